@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from service.actor_info import RELEASED, check_names, onnx_files, read_actor_info
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
-from service.instance import OBJECTIVES, PLANE, Instance
+from service.instance import PLANE, Instance
 from service.onnx_runtime import onnxruntime
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ class OnnxActor:
                 self._session = self._open()
 
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
-        """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
+        """Return tours, shape (k, n), one for each preference, shape (k, m), by one inference.
 
         The network sees cities at one place as one city; in the tours they follow one another.
         With repairs, each tour is repaired that many times, and the shape is (2k, n): the k last
@@ -84,7 +84,7 @@ class OnnxActor:
             inputs: dict[str, NDArray[Any]] = {"matrices": costs}
         else:
             scaled = instance.scaled_coordinates.clip(-_MARGIN, 1 + _MARGIN)
-            planes = scaled.astype(np.float32).reshape(-1, OBJECTIVES, PLANE)
+            planes = scaled.astype(np.float32).reshape(instance.n, -1, PLANE)
             cities = _without_zeros(planes.swapaxes(0, 1)).swapaxes(0, 1).reshape(scaled.shape)
             first, place = _places(np.rint(cities * np.float32(_RESOLUTION)))
             inputs = {"cities": _without_tied_cities(cities[first])}
@@ -157,7 +157,7 @@ def _places(rows: NDArray[np.floating[Any]]) -> tuple[Indices, Indices]:
 
 
 def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices]:
-    """Return the same for matrices, shape (2, n, n): cities at one place have equal costs."""
+    """Return the same for matrices, shape (m, n, n): cities at one place have equal costs."""
     n = matrices.shape[1]
     if np.count_nonzero((matrices == 0).all(axis=0)) <= n:  # only the diagonal: all are apart
         return np.arange(n), np.arange(n)
@@ -165,17 +165,21 @@ def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices
 
 
 def _without_zeros(objectives: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return planes or matrices, shape (2, n, ...), with the other one in place of one of zeros.
+    """Return planes or matrices, shape (m, n, ...), with another one in place of each of zeros.
 
-    All tours have the same length in an objective of zeros, so only the other one matters.
+    All tours have the same length in an objective of zeros, so only the others matter.
     """
-    first, second = (bool(objective.any()) for objective in objectives)
-    return objectives if first == second else objectives[[0, 0] if first else [1, 1]]
+    known = np.flatnonzero(objectives.reshape(len(objectives), -1).any(axis=1))
+    if len(known) in (0, len(objectives)):
+        return objectives
+    chosen = np.arange(len(objectives))
+    chosen[np.setdiff1d(chosen, known)] = known[0]
+    return objectives[chosen]
 
 
 def _without_tied_cities(cities: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return cities, shape (n, 4), moved a little where most coincide with others in one plane."""
-    planes = cities[:, :PLANE], cities[:, PLANE:]
+    """Return cities, shape (n, 2 m), moved a little where most coincide with others in a plane."""
+    planes = cities.reshape(len(cities), -1, PLANE).swapaxes(0, 1)
     if all(2 * len(np.unique(plane, axis=0)) > len(cities) for plane in planes):
         return cities
     moves = np.random.default_rng(0).random(cities.shape, np.float32)
@@ -183,7 +187,7 @@ def _without_tied_cities(cities: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _without_tied_costs(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return matrices, shape (2, n, n), changed a little where most costs of a row are equal."""
+    """Return matrices, shape (m, n, n), changed a little where most costs of a row are equal."""
     n = matrices.shape[1]
     rows = matrices[:, :: -(-n // _SAMPLED)]
     if all(len(np.unique(costs)) > n for costs in rows):

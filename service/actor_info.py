@@ -14,7 +14,7 @@ from typing import Any, get_args
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from google.protobuf.message import DecodeError, Message
 
-from service.instance import Kind
+from service.instance import MOST_OBJECTIVES, OBJECTIVES, Kind
 
 RELEASED = Path(__file__).parent / "actors"
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
@@ -36,14 +36,15 @@ class ActorInfo:
         name: Its name in requests.
         digest: The SHA-256 of the file, in hex.
         commit: The commit of the code that wrote the file.
-        inputs: The kind of instance that it reads: `coordinates`, shape (n, 4), each plane moved
-            and scaled into the unit square; or `matrices`, shape (2, n, n), in units of the
+        inputs: The kind of instance that it reads: `coordinates`, shape (n, 2 m), each plane
+            moved and scaled into the unit square; or `matrices`, shape (m, n, n), in units of the
             scale, with zeros on the diagonal.
         sizes: The least and greatest number of cities in its training.
         angles: The least and greatest angle in its training, in degrees.
         config: The configuration of the training run.
         figures: The hypervolumes that were measured after training, by number of cities.
         repairs: Whether it can repair the tours that it has built.
+        most_objectives: The most objectives m that it takes.
     """
 
     name: str
@@ -55,15 +56,16 @@ class ActorInfo:
     config: Any
     figures: Any
     repairs: bool = False
+    most_objectives: int = OBJECTIVES
 
     @property
     def identity(self) -> dict[str, str]:
         """The name and digest, as answers report them."""
         return {"name": self.name, "digest": self.digest}
 
-    def serves(self, kind: Kind) -> bool:
+    def serves(self, kind: Kind, objectives: int = OBJECTIVES) -> bool:
         """Return whether it builds tours for instances of a kind: matrices serve both kinds."""
-        return self.inputs in ("matrices", kind)
+        return self.inputs in ("matrices", kind) and objectives <= self.most_objectives
 
 
 def read_actor_infos(directory: Path, own_directory: Path | None = None) -> dict[Path, ActorInfo]:
@@ -121,9 +123,19 @@ def read_actor_info(content: bytes, path: Path) -> ActorInfo:
         digest=hashlib.sha256(content).hexdigest(),
         inputs=inputs,
         repairs=any(value.name == "repairs" for value in model.graph.input),
+        most_objectives=_most_objectives(metadata, path),
         **{name: metadata[name] for name in ("name", "commit")},
         **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
     )
+
+
+def _most_objectives(metadata: Mapping[str, str], path: Path) -> int:
+    """Return the most objectives that a file takes: two, unless it says more."""
+    text = metadata.get("objectives", str(OBJECTIVES))
+    if text not in map(str, range(OBJECTIVES, MOST_OBJECTIVES + 1)):
+        demand = f"must be from {OBJECTIVES} to {MOST_OBJECTIVES}"
+        raise ValueError(f"objectives of {path} {demand}, got {text!r}")
+    return int(text)
 
 
 def _parsed(content: bytes, path: Path) -> Any:

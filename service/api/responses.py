@@ -21,7 +21,7 @@ from service.errors import Refusal
 from service.files.reading import Kind
 from service.fleet.fleet import Over
 from service.front import Termination
-from service.instance import OBJECTIVES
+from service.instance import MOST_OBJECTIVES, OBJECTIVES
 from service.jobs.record import Status
 from service.requests.stop_fields import StopItem
 from service.requests.task import KindName
@@ -29,7 +29,7 @@ from service.requests.task import KindName
 PROBLEM_JSON = "application/problem+json"
 LEAST_COMPRESSED = 2**16  # bytes; shorter answers are sent as they are
 _GZIP_LEVEL = 1  # 6 MB of tours in a tenth of a second, to two fifths; 6 takes four times as long
-Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=OBJECTIVES)]
+Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=MOST_OBJECTIVES)]
 Balance = Annotated[
     float, Field(description="0 at the front's least first length, 1 at its least second")
 ]
@@ -60,8 +60,19 @@ class Problem(BaseModel):
 class TourItem(BaseModel):
     """A tour and where it stands."""
 
-    angle: float = Field(description="direction of the scaled lengths, in degrees")
-    balance: Balance
+    angle: float | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of two objectives: direction of the scaled lengths, in degrees",
+    )
+    balance: float | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of two objectives: 0 at the front's least first length, 1 at its least second",
+    )
+    losses: Lengths | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of more objectives: each length in the front's own box, 0 at its least and 1"
+        " at its greatest",
+    )
     kept: float | SkipJsonSchema[None] = Field(
         default=None,
         description="only in a front that was replanned: the share of the driven tour's remaining"
@@ -71,7 +82,7 @@ class TourItem(BaseModel):
     tour: list[int]
     arrivals: list[Lengths] | SkipJsonSchema[None] = Field(
         default=None,
-        description="only if `arrivals` is true: both lengths up to each stop, and up to the return"
+        description="only if `arrivals` is true: all lengths up to each stop, and up to the return"
         " of a closed tour",
     )
     stops: list[str] | SkipJsonSchema[None] = Field(
@@ -268,6 +279,7 @@ class ActorItem(ActorName):
     config: Any
     figures: Any = Field(description="what was measured of it")
     repairs: bool = Field(description="whether it can repair its tours")
+    most_objectives: int = Field(description="the most objectives that it takes")
 
 
 class ActorsAnswer(BaseModel):

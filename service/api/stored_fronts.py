@@ -98,14 +98,15 @@ class StoredFrontRoutes:
         return StreamingResponse(_events(states), media_type="text/event-stream", headers=headers)
 
     async def get_tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
-        """Return one tour of a front: at an angle, at a balance, within a budget, or the knee."""
+        """Return one tour of a front: at an angle or balance, by weights or budgets, or a knee."""
         query.check()
         record = await self._record(request, query.front)
         if KINDS[record.front.kind].of_plans:
             raise Refusal("no-tours", front=record.id)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)
-        index = query.choose(record.front.lengths, record.front.directions)
+        names = [each["name"] for each in record.front.objectives or ()]
+        index = query.choose(record.front.lengths, record.front.directions, names)
         return await self._answers.tour(request, record, index, query.geometry)
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002

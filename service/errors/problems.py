@@ -89,7 +89,11 @@ PROBLEMS: Mapping[str, Problem] = {
     "invalid-parts": Problem(422, "{reason}", _BODIES),
     "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
     "no-plan": Problem(422, "{reason}", _PLANS),
-    "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
+    "no-actor": Problem(
+        422,
+        "{kind} need an actor that reads them, and none is loaded",
+        _PLANS,
+    ),
     "no-repairs": Problem(
         422, "repairs must be 0 for {name}, which cannot repair tours, got {came}", _PLANNED
     ),

@@ -19,12 +19,12 @@ from pydantic_core import to_json
 from service.coverage.frame import CoveragePath
 from service.fleet.plans import FleetFront
 from service.front import Front, Termination
-from service.instance import OBJECTIVES
-from service.pareto import balances
+from service.pareto import OBJECTIVES, balances
 from service.preferences import angles
 from service.requests.task import KindName
 
 _HEAD = 100  # the first bytes of a tour, which contain its first members
+_POSITIONS = (b'"balance":', b'"losses":')  # of a tour in its front: members that it has
 PATH_PART = 2**14  # cells of a path that are written at once
 
 
@@ -48,7 +48,8 @@ class FrontDocument:
         uncovered: The free cells of a map that are out of reach.
         tours: The JSON of all tours, separated by commas, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
-        angles: The direction of each tour in degrees, as m native floats of 8 bytes.
+        angles: The direction of each tour in degrees, as m native floats of 8 bytes; of more than
+            two objectives NaN.
         gained: The hypervolume that the search added, for the metrics.
     """
 
@@ -82,7 +83,7 @@ class FrontDocument:
             scale=front.scale.tolist(),
             timings_ms=front.timings,
             terminated=front.terminated,
-            angles=angles(front.points, front.scale).tobytes(),
+            angles=_angles(front).tobytes(),
             **members,
         )
 
@@ -99,7 +100,7 @@ class FrontDocument:
 
     def with_balances(self) -> Self:
         """Return the front with the balance of each tour, computed where it is missing."""
-        if b'"balance":' in self.tours[:_HEAD]:
+        if not self.tours or any(name in self.tours[:_HEAD] for name in _POSITIONS):
             return self
         tours, ends = joined(
             tour.replace(b',"lengths":', b',"balance":' + to_json(balance) + b',"lengths":', 1)
@@ -130,9 +131,11 @@ class FrontDocument:
 
     @property
     def lengths(self) -> NDArray[np.float64]:
-        """The lengths of each tour, shape (m, 2)."""
+        """The lengths of each of k tours, shape (k, m)."""
         texts = [_between(self.tours, b'"lengths":[', b"]", begin) for begin in self._begins]
-        return np.fromstring(b",".join(texts), sep=",").reshape(-1, OBJECTIVES)
+        if not texts:
+            return np.empty((0, OBJECTIVES))
+        return np.fromstring(b",".join(texts), sep=",").reshape(len(texts), -1)
 
     @property
     def orders(self) -> NDArray[np.int64]:
@@ -178,6 +181,13 @@ _ENCODED = ("tours", "ends", "angles", "gained")
 _MEMBER_FIELDS = [field for field in fields(FrontDocument) if field.name not in _ENCODED]
 _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
+
+
+def _angles(front: Front | FleetFront) -> NDArray[np.float64]:
+    """Return the direction of each tour in degrees; of more than two objectives NaN."""
+    if front.points.shape[1] > OBJECTIVES:
+        return np.full(len(front.points), np.nan)
+    return angles(front.points, front.scale)
 
 
 def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:

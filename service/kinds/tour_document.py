@@ -19,7 +19,7 @@ from service.kinds.front_document import (
     split,
     with_member,
 )
-from service.pareto import balances
+from service.pareto import OBJECTIVES, balances, losses
 from service.requests.stops import Labels
 
 
@@ -39,7 +39,7 @@ def encode_front(
         surveyed: The map, whose places and uncovered cells are members of the document.
         paths: The path of each tour.
         labels: The names of stops and objectives.
-        arrivals: Both lengths of each tour up to each of its stops, shape (m, stops, 2).
+        arrivals: All lengths of each tour up to each of its stops, shape (k, stops, m).
     """
     tours, ends = encode_tours(_rows(front, arrivals))
     if labels is not None:
@@ -73,9 +73,11 @@ def on_map(surveyed: Survey | None) -> dict[str, Any]:
 
 def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:
     """Return the members of each tour, all of them numbers, ready for JSON."""
+    flat = front.points.shape[1] == OBJECTIVES
     columns = {
-        "angle": front.angles,
-        "balance": balances(front.points),
+        "angle": front.angles if flat else None,
+        "balance": balances(front.points) if flat else None,
+        "losses": None if flat else losses(front.points),
         "kept": front.kept,
         "lengths": front.points,
         "tour": front.tours,

@@ -33,7 +33,7 @@ def array_field(parse: Callable[[Any, str], Array], rows_type: Any) -> GetPydant
 
 
 def stack_matrices(matrices: list[CostRows], name: str = "matrices") -> Array:
-    """Return the costs of each objective as one array, shape (2, n, n), as `cost_matrix` does.
+    """Return the costs of each objective as one array, shape (m, n, n), as `cost_matrix` does.
 
     Raises:
         Refusal: A matrix is not square, or they differ in size, or an entry is not finite.

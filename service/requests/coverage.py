@@ -17,7 +17,7 @@ from service.requests.fields import (
     CostRows,
     NonNegativeInteger,
     Number,
-    OneEach,
+    OneForBoth,
     Pair,
     PlanePoint,
     PositiveNumber,
@@ -132,7 +132,7 @@ class CoverageRequest(MapRequest):
         description="several robots that share the places; the answer is a front of plans. They may"
         " do without a second objective: then both are metres",
     )
-    over: OneEach[Over] = Field(
+    over: OneForBoth[Over] = Field(
         default_factory=lambda: list(DEFAULT_OVER),
         description="for robots: whether the length of a plan in each objective is the sum over its"
         " routes or the longest route; max for one objective at most; by default sum and"

@@ -4,11 +4,13 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
+from service.errors import invalid
 from service.front import PlanOptions
-from service.instance import CLOSED, OBJECTIVES, RouteEnds
-from service.preferences import fan
+from service.instance import CLOSED, MOST_OBJECTIVES, OBJECTIVES, RouteEnds
+from service.preferences import from_angles, spread
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.
 LARGEST = 1e150
@@ -42,9 +44,16 @@ Items = Annotated[list[Each], Field(fail_fast=True)]
 SomeItems = Annotated[list[Each], Field(min_length=1, fail_fast=True)]
 Pair = Annotated[list[Each], Field(min_length=2, max_length=2, fail_fast=True)]
 OneEach = Annotated[  # for each objective
+    list[Each], Field(min_length=OBJECTIVES, max_length=MOST_OBJECTIVES, fail_fast=True)
+]
+OneForBoth = Annotated[  # the same where there are two
     list[Each], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
 ]
 Angle = Annotated[float, Field(ge=0, le=90, allow_inf_nan=False)]
+Direction = Annotated[  # for each objective a part of it; not all of them 0
+    list[Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)]],
+    Field(min_length=OBJECTIVES, max_length=MOST_OBJECTIVES, fail_fast=True),
+]
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
@@ -61,6 +70,12 @@ ArrayRows = Items[Items[float]]
 # Costs from each city to each; null where there is no way.
 CostRows = Items[Items[float | None]]
 NO_WAY = "null where there is no way; the diagonal is ignored"
+
+
+def _form_of_preferences(value: object) -> str:
+    if not isinstance(value, list):
+        return "[count]"
+    return "[directions]" if value and isinstance(value[0], list) else "[angles]"
 
 
 def optional(description: str) -> Any:
@@ -87,7 +102,7 @@ class SearchFields(StrictModel):
     reference_point: list[PositiveNumber] = Field(
         default_factory=list,
         min_length=OBJECTIVES,
-        max_length=OBJECTIVES,
+        max_length=MOST_OBJECTIVES,
         description="the reference point of the hypervolume; by default, for tours the number of"
         " cities times the scale, for plans lengths above those of all sensible plans",
     )
@@ -95,13 +110,21 @@ class SearchFields(StrictModel):
         default=0, description="the seed of everything random in the search"
     )
 
-    def options(self) -> PlanOptions:
-        """Return the options for the planner."""
+    def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
+        """Return the options for the planner of a front under so many objectives.
+
+        Raises:
+            Refusal: The reference point is not of as many.
+        """
+        point = self.reference_point
+        if point and len(point) != objectives:
+            demand = f"must have {objectives} numbers, one for each objective"
+            raise invalid("reference_point", f"{demand}, got {len(point)}")
         return PlanOptions(
-            angles=np.empty(0),
+            directions=np.empty((0, objectives)),
             size=self.size,
             time_limit=self.time_limit,
-            reference_point=np.array(self.reference_point) if self.reference_point else None,
+            reference_point=np.array(point) if point else None,
             seed=self.seed,
         )
 
@@ -111,13 +134,15 @@ class PlanFields(SearchFields):
 
     preferences: Annotated[
         Annotated[PositiveInteger, Tag("[count]")]
-        | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")],
-        Discriminator(lambda value: "[angles]" if isinstance(value, list) else "[count]"),
+        | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")]
+        | Annotated[list[Direction], Field(min_length=1, fail_fast=True), Tag("[directions]")],
+        Discriminator(_form_of_preferences),
     ] = Field(
         default=100,
-        description="the angles in degrees along which the network builds tours, or the number of"
-        " evenly spread ones; by default 100 if time_limit is 0, else as many as fit into"
-        " a tenth of it, maybe none",
+        description="the directions along which the network builds tours: the number of evenly"
+        " spread ones; of two objectives angles in degrees; or for each a number for every"
+        " objective. By default 100 if time_limit is 0, else as many as fit into a tenth of it,"
+        " maybe none",
     )
     repairs: NonNegativeInteger = Field(
         default=_MOST_INTEGER,
@@ -145,13 +170,35 @@ class PlanFields(SearchFields):
         """The name of the actor; None where the request leaves the choice to the service."""
         return self.actor if "actor" in self.model_fields_set else None
 
-    def options(self) -> PlanOptions:
-        """Return the options for the planner."""
-        angles = self.preferences
+    def _directions(self, m: int) -> NDArray[np.float64]:
+        """Return the directions of the preferences, shape (k, m), under m objectives.
+
+        Raises:
+            Refusal: One is not for each objective, or is 0 for all.
+        """
+        given = self.preferences
+        if isinstance(given, int):
+            return spread(given, m)
+        rows = [each for each in given if isinstance(each, list)]
+        if not rows:
+            if m > OBJECTIVES:
+                demand = f"must be a list of {m} numbers, one for each objective"
+                raise invalid("preferences/0", f"{demand}, got the angle {given[0]:g}")
+            return from_angles(np.array(given))
+        for index, row in enumerate(rows):
+            if len(row) != m or not any(row):
+                demand = f"must have {m} numbers, one for each objective, that are not all 0"
+                raise invalid(f"preferences/{index}", f"{demand}, got {row}")
+        directions = np.array(rows)
+        unit: NDArray[np.float64] = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        return unit
+
+    def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
+        """Return the options for the planner of a front under so many objectives."""
         given = "repairs" in self.model_fields_set
         return replace(
-            super().options(),
-            angles=fan(angles) if isinstance(angles, int) else np.array(angles),
+            super().options(objectives),
+            directions=self._directions(objectives),
             fewer="preferences" not in self.model_fields_set,
             repairs=self.repairs if given or self.time_limit == 0 else 0,
             fewer_repairs=not given,
@@ -179,7 +226,7 @@ class PlanRequest(PlanFields):
             return CLOSED
         return RouteEnds(closed=False, start=self.start, end=self.end)
 
-    def options(self) -> PlanOptions:
-        """Return the options for the planner."""
+    def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
+        """Return the options for the planner of a front under so many objectives."""
         first = np.array(self.initial_tours) if self.initial_tours else None
-        return replace(super().options(), start=self.start or 0, initial_tours=first)
+        return replace(super().options(objectives), start=self.start or 0, initial_tours=first)

@@ -15,7 +15,7 @@ from service.requests.fields import (
     Cost,
     Geometry,
     Items,
-    OneEach,
+    OneForBoth,
     Pair,
     PositiveNumber,
     SearchFields,
@@ -157,7 +157,7 @@ class FleetRequest(SearchFields):
     vehicles: Annotated[
         list[VehicleItem], Field(min_length=1, max_length=_MOST_VEHICLE_TYPES, fail_fast=True)
     ] = Field(description="the types of vehicles")
-    objectives: OneEach[FleetObjectiveItem] = Field(
+    objectives: OneForBoth[FleetObjectiveItem] = Field(
         description="both, each with the costs between the stops"
     )
     shipments: Items[ShipmentItem] = Field(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import Refusal, invalid
-from service.instance import OBJECTIVES, PLANE, Kind
+from service.instance import MOST_OBJECTIVES, OBJECTIVES, PLANE, Kind
 from service.requests.arrays import array_field, check_costs, stack_matrices
 from service.requests.fields import (
     END,
@@ -46,17 +46,19 @@ from service.requests.stops import (
 )
 from service.requests.validation import parse_json, too_many_cities
 
-_COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
+_LEAST_COLUMNS, _MOST_COLUMNS = PLANE * OBJECTIVES, PLANE * MOST_OBJECTIVES
 _MOST_SYMMETRIES = 8  # the most that earlier versions allowed
 FORMS = ("coordinates", "matrices", "stops")  # of a request, each named by its member
 _REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stops by their ids
-City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
+City = Annotated[
+    list[Number], Field(min_length=_LEAST_COLUMNS, max_length=_MOST_COLUMNS, fail_fast=True)
+]
 _MatrixRows = OneEach[CostRows]
 Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRows)]
 
 
 class FrontRequest(PlanRequest):
-    """Cities or stops under two objectives, and the options of their front.
+    """Cities or stops under two to four objectives, and the options of their front.
 
     A request is complete only after `parse_front_request` has checked it.
     """
@@ -64,7 +66,7 @@ class FrontRequest(PlanRequest):
     # An empty default means that the field was not given: no caller can give an empty array.
     coordinates: SomeItems[City] = Field(
         default_factory=list,
-        description="a row for each city: x and y in plane 1, x and y in plane 2",
+        description="a row for each city: for each objective x and y in its plane",
     )
     matrices: Matrices = Field(
         default_factory=lambda: np.empty((OBJECTIVES, 0, 0)),
@@ -75,7 +77,7 @@ class FrontRequest(PlanRequest):
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
     objectives: OneEach[ObjectiveItem] = Field(
-        default_factory=list, description="both, each with the costs between the stops"
+        default_factory=list, description="two to four, each with the costs between the stops"
     )
     # In a checked request these hold only indexes, as in every PlanRequest.
     start: StopReference | None = Field(  # type: ignore[assignment]
@@ -107,6 +109,13 @@ class FrontRequest(PlanRequest):
         """The number of cities."""
         return len(self.stops) or len(self.coordinates) or self.matrices.shape[1]
 
+    @property
+    def objective_count(self) -> int:
+        """The number of objectives."""
+        if self.stops:
+            return len(self.objectives)
+        return len(self.coordinates[0]) // PLANE if self.coordinates else len(self.matrices)
+
     @cached_property
     def labels(self) -> Labels | None:
         """The names of stops and objectives; None if they have none."""
@@ -121,10 +130,11 @@ class FrontRequest(PlanRequest):
             return tuple(read_sources(self.objectives, self.labels.stops))
         if self.coordinates:
             cities = np.array(self.coordinates, np.float64)
-            return tuple(Plane(cities[:, m : m + PLANE]) for m in range(0, _COLUMNS, PLANE))
+            starts = range(0, cities.shape[1], PLANE)
+            return tuple(Plane(cities[:, m : m + PLANE]) for m in starts)
         for m, item in enumerate(self.objectives):
             if item.sources:
-                demand = "must have no source where the part matrices holds both, got"
+                demand = "must have no source where the part matrices holds them, got"
                 raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
         return tuple(Matrix(matrix) for matrix in self.matrices)
 
@@ -159,6 +169,7 @@ def parse_front_as(
             update={"matrices": read_npy(npy, limits.most_cities("matrices"))}
         )
     _check_cities(request, limits)
+    _check_objectives(request)
     request = _by_index(request)
     n, id_bytes = request.n, 0 if request.labels is None else request.labels.id_bytes
     check_limits(request, n, limits, id_bytes)
@@ -189,7 +200,7 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
         raise too_many_cities(form, limits.cities, request.n)
     most = limits.most_cities("matrices")
     if request.n > most and request.kind == "matrices":
-        condition = " unless both objectives have coordinates" if request.stops else ""
+        condition = " unless all objectives have coordinates" if request.stops else ""
         raise too_many_cities(form, most, request.n, condition)
     if request.matrices.size:
         _check_matrices(request)
@@ -203,6 +214,21 @@ def _check_matrices(request: FrontRequest) -> None:
         raise invalid("matrices", f"must have {request.n} rows, one for each stop, got {rows}")
     for m, matrix in enumerate(request.matrices):
         check_costs(matrix, f"matrices/{m}")
+
+
+def _check_objectives(request: FrontRequest) -> None:
+    """Raise a refusal where parts of the request are for different numbers of objectives."""
+    m = request.objective_count
+    for index, row in enumerate(request.coordinates):
+        if len(row) != PLANE * m or len(row) % PLANE:
+            columns = f"{PLANE * m} numbers, as coordinates/0"
+            if index == 0:
+                columns = "4, 6 or 8 numbers, x and y in the plane of each objective"
+            demand = f"must have {columns}"
+            raise invalid(f"coordinates/{index}", f"{demand}, got {len(row)}")
+    if request.stops and request.matrices.size and len(request.matrices) != m:
+        demand = f"must be {m}, one for each objective, got {len(request.matrices)}"
+        raise invalid("matrices", demand)
 
 
 def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:

@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from service.instance import OBJECTIVES
 from service.requests.coverage import ENDS, OF_ONE_ROBOT, CoverageRequest
 from service.requests.fields import PlanFields
 from service.requests.fleet import FleetRequest
@@ -65,9 +66,9 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     named = reference_to("NamedObjective")
     file_stops = _with(whole, objectives={**fields["objectives"], "items": named})
     forms = [
-        _form(cities, "CoordinatesRequest", "Cities in two planes", ["coordinates"]),
+        _form(cities, "CoordinatesRequest", "Cities in planes", ["coordinates"]),
         _form(cities, "MatricesRequest", "Cities by their costs", ["matrices"]),
-        _form(stops, "StopsRequest", "Stops under two objectives", ["stops", "objectives"]),
+        _form(stops, "StopsRequest", "Stops under named objectives", ["stops", "objectives"]),
         _form(cities, "MatricesFileRequest", "Cities by costs in a file", []),
         _form(file_stops, "StopsFileRequest", "Stops by costs in a file", ["stops", "objectives"]),
     ]
@@ -75,9 +76,15 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     return _by_title(_without_null(parts["StopItem"]), *objectives, *forms)
 
 
+def _of_two(schema: Schema) -> Schema:
+    """Return the schema of a request that is about two objectives alone, which is changed."""
+    schema["properties"]["reference_point"]["maxItems"] = OBJECTIVES
+    return schema
+
+
 def fleet_schemas(limits: Limits) -> dict[str, Schema]:
     """Return the schema of a request for a fleet, and of all that is in it, by name."""
-    whole = _limited(FleetRequest, limits)
+    whole = _of_two(_limited(FleetRequest, limits))
     parts = whole.pop("$defs")
     fields = whole["properties"]
     fields["stops"]["maxItems"] = fields["shipments"]["maxItems"] = limits.fleet_stops
@@ -121,7 +128,7 @@ def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]
 
 
 def _coverage_schema(limits: Limits, actors: Iterable[str]) -> Schema:
-    whole = limited_schema(CoverageRequest, limits, actors)
+    whole = _of_two(limited_schema(CoverageRequest, limits, actors))
     schema: Schema = _inlined(whole, whole.pop("$defs"))
     fields = schema["properties"]
     for name in ("cell_size", "mode", "free_thresh", "spacing"):
@@ -166,8 +173,10 @@ def limited_schema(model: type[PlanFields], limits: Limits, actors: Iterable[str
     """Return the JSON schema of a request under these limits, with these actors to choose from."""
     schema = _limited(model, limits)
     fields = schema["properties"]
-    count, angles = fields["preferences"]["oneOf"]
-    count["maximum"] = angles["maxItems"] = limits.preferences
+    count, *lists = fields["preferences"]["oneOf"]
+    count["maximum"] = limits.preferences
+    for each in lists:
+        each["maxItems"] = limits.preferences
     fields["repairs"]["maximum"] = limits.repairs
     fields["actor"]["enum"] = sorted(actors)
     for name in ("preferences", "repairs", "actor"):

@@ -161,7 +161,7 @@ def check_reference_point(
 
     Args:
         options: The options, with the reference point if one was given.
-        least: Returns lower bounds of all lengths, shape (2,).
+        least: Returns lower bounds of all lengths, shape (m,).
         noun: What the front consists of, for the sentence.
 
     Raises:
@@ -194,7 +194,7 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
             raise Refusal(
                 "too-many-for-network", name=part, pointer=f"/{part}", limit=most, actual=n
             )
-    return replace(options, angles=options.angles[:0])
+    return replace(options, directions=options.directions[:0])
 
 
 def check_router(sources: Sequence[Source], limits: Limits) -> None:

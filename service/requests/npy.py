@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
-from service.instance import OBJECTIVES
+from service.instance import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.validation import shorten, too_many_cities
 
 _MAGIC = b"\x93NUMPY"
@@ -38,10 +38,10 @@ class _Header(NamedTuple):
 
 
 def read_npy(content: bytes, most_cities: int) -> NDArray[np.float64]:
-    """Return the matrices, shape (2, n, n), in a file as numpy.save writes it.
+    """Return the matrices, shape (m, n, n), in a file as numpy.save writes it.
 
     Raises:
-        Refusal: The file is not .npy or is cut short, does not hold two square matrices of
+        Refusal: The file is not .npy or is cut short, does not hold two to four square matrices of
             numbers, or its header declares too many cities.
     """
     text, offset = _header_text(content)
@@ -90,8 +90,11 @@ def _check_header(header: _Header, most_cities: int) -> None:
         demand = "must be of real numbers of at most 8 bytes"
         raise invalid("matrices", f"{demand}, got {header.descr!r}")
     shape = header.shape
-    if len(shape) != 3 or shape[0] != OBJECTIVES or shape[1] != shape[2] or shape[1] < 1:
-        demand = f"must have shape ({OBJECTIVES}, n, n) with n at least 1"
+    enough = len(shape) == 3 and OBJECTIVES <= shape[0] <= MOST_OBJECTIVES
+    if not enough or shape[1] != shape[2] or shape[1] < 1:
+        demand = (
+            f"must have shape (m, n, n) with m from {OBJECTIVES} to {MOST_OBJECTIVES}, n at least 1"
+        )
         raise invalid("matrices", f"{demand}, got {shorten(str(shape))}")
     if shape[1] > most_cities:
         raise too_many_cities("matrices", most_cities, shape[1])

@@ -8,7 +8,7 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.front import PlanOptions
-from service.instance import Instance, Kind, least_lengths
+from service.instance import OBJECTIVES, Instance, Kind, least_lengths
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import CoverageRequest, parse_coverage_request
 from service.requests.fields import PlanFields
@@ -64,10 +64,12 @@ def front_task(
             every tour has a forbidden leg.
         InvalidInstance: The costs cannot be planned.
     """
-    name = choose_actor(actors, stops.kind, request.requested_actor)
+    name = choose_actor(actors, stops.kind, request.requested_actor, len(stops.sources))
     task = Task(
         subject=stops,
-        options=within_network(options_of(request, actors[name]), stops.n, limits),
+        options=within_network(
+            options_of(request, actors[name], len(stops.sources)), stops.n, limits
+        ),
         actor=name,
         labels=labels,
         arrivals=request.arrivals,
@@ -91,13 +93,13 @@ def check_instance(task: Task, instance: Instance) -> None:
     check_reference_point(task.options, partial(least_lengths, instance))
 
 
-def options_of(request: PlanFields, actor: ActorInfo) -> PlanOptions:
+def options_of(request: PlanFields, actor: ActorInfo, objectives: int = OBJECTIVES) -> PlanOptions:
     """Return the options of a request, with 0 repairs if the actor cannot repair.
 
     Raises:
         Refusal: The request asks for repairs, which the actor cannot make.
     """
-    options = request.options()
+    options = request.options(objectives)
     if actor.repairs or options.repairs == 0:
         return options
     if "repairs" in request.model_fields_set:
@@ -152,27 +154,38 @@ def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) ->
     )
 
 
-def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) -> str:
+def choose_actor(
+    actors: Mapping[str, ActorInfo], kind: Kind, name: str | None, objectives: int = OBJECTIVES
+) -> str:
     """Return the name of the actor for instances of a kind: the one requested, or the default.
 
     If the default is not loaded, the first by name that serves the kind is taken.
 
     Raises:
-        Refusal: The requested actor is not loaded or does not serve the kind, or none does.
+        Refusal: The requested actor is not loaded, or does not serve the kind or as many
+            objectives, or none does.
     """
     first = DEFAULT_ACTORS[kind] if name is None else name
-    if first in actors and actors[first].serves(kind):
+    if first in actors and actors[first].serves(kind, objectives):
         return first
-    able = sorted(each for each, info in actors.items() if info.serves(kind))
+    able = sorted(each for each, info in actors.items() if info.serves(kind, objectives))
     if name is None:
         if not able:
-            raise Refusal("no-actor", kind=kind)
+            raise Refusal("no-actor", kind=_under(kind, objectives))
         return able[0]
     among = f"one of {', '.join(able)}" if able else "one that is loaded, and none is"
     if name not in actors:
         raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
-    inputs = actors[name].inputs
-    raise Refusal("unfit-actor", kind=kind, among=among, name=name, inputs=inputs, pointer="/actor")
+    most = actors[name].most_objectives if objectives > OBJECTIVES else OBJECTIVES
+    asked, inputs = _under(kind, objectives), _under(actors[name].inputs, most)
+    raise Refusal(
+        "unfit-actor", kind=asked, among=among, name=name, inputs=inputs, pointer="/actor"
+    )
+
+
+def _under(kind: str, objectives: int) -> str:
+    """Return a kind of instance, with the number of objectives where that is not two."""
+    return kind if objectives == OBJECTIVES else f"{kind} under {objectives} objectives"
 
 
 def actor_for_plans(actors: Mapping[str, ActorInfo]) -> str:

@@ -117,7 +117,7 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
     """Return the objectives of a request.
 
     Raises:
-        Refusal: Both have the same name, or one has a unit other than its measure's.
+        Refusal: Two have the same name, or one has a unit other than its measure's.
     """
     check_unique([item.name for item in items], "objectives", "name")
     return tuple(item.objective(f"objectives/{m}") for m, item in enumerate(items))

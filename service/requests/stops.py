@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.errors import CityNames
-from service.instance import CLOSED, OBJECTIVES, Instance, Kind, RouteEnds
+from service.instance import CLOSED, Instance, Kind, RouteEnds
 from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ class Objective:
 
 @dataclass(frozen=True)
 class Labels:
-    """The caller's names of everything in a request: its n stops, in order, and both objectives."""
+    """The caller's names of everything in a request: its n stops, in order, and its objectives."""
 
     stops: tuple[Stop, ...]
     objectives: tuple[Objective, ...]
@@ -134,20 +134,20 @@ class Stops:
 
     @cached_property
     def instance(self) -> Instance:
-        """The stops and the costs between them as an instance. O(n^2) unless both are planes.
+        """The stops and the costs between them as an instance. O(n^2) unless all are planes.
 
         Raises:
             InvalidInstance: The costs are too large, or too far apart, to be planned.
         """
         planes = [source.points for source in self.sources if isinstance(source, Plane)]
         ends = self.ends._asdict()
-        if len(planes) == OBJECTIVES:
+        if len(planes) == len(self.sources):
             return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
         return Instance(matrices=cost_matrices(self), **ends)
 
     @cached_property
     def known_scale(self) -> tuple[Array, Array] | None:
-        """The scale and the default reference point, shape (2,); None before all is measured."""
+        """The scale and the default reference point, shape (m,); None before all is measured."""
         return (self.instance.scale, self.instance.reference_point) if self.measured else None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -202,7 +202,7 @@ def locations_of(stops: Sequence[Stop]) -> Array:
 
 
 def cost_matrices(stops: Stops) -> Array:
-    """Return the costs between stops, all of them measured, shape (2, n, n)."""
+    """Return the costs between stops, all of them measured, shape (m, n, n)."""
     return np.stack([_costs(source, stops.locations) for source in stops.sources])
 
 

@@ -9,6 +9,7 @@ from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.fleet.fleet import Fleet, Over, Rules
 from service.front import PlanOptions
+from service.instance import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
 from service.requests.stops import Array, Labels, RoadMeasure, Stops, cost_matrices
@@ -89,7 +90,7 @@ class Task:
         actor: The name of the actor that builds the first tours; empty for a fleet or several
             robots, if no actor that is loaded reads matrices.
         paths: Whether each tour comes with its path over the map.
-        arrivals: Whether each tour comes with both lengths up to each stop.
+        arrivals: Whether each tour comes with its lengths up to each stop.
         geometry: Whether lines in GeoJSON are straight or follow the streets.
         labels: The caller's names of stops and objectives.
         timings: Milliseconds of each step that was done for it after parsing, by name.
@@ -141,15 +142,16 @@ class Task:
         if not isinstance(self.subject, Stops):
             return True
         options = self.options
-        constructed = len(options.angles) * (TOURS_REPAIRED if options.repairs > 0 else 1)
-        return options.time_limit > 0 or options.bound or constructed > options.size
+        constructed = len(options.directions) * (TOURS_REPAIRED if options.repairs > 0 else 1)
+        several = len(self.subject.sources) > OBJECTIVES  # the hypervolume alone needs it
+        return options.time_limit > 0 or options.bound or constructed > options.size or several
 
     @property
     def is_brief(self) -> bool:
         """Whether planning is one short call of a network: 50 ms or less with pa-one."""
         if not isinstance(self.subject, Stops) or self.needs_compiled_code:
             return False
-        short = len(self.options.angles) * self.subject.n <= _BRIEF
+        short = len(self.options.directions) * self.subject.n <= _BRIEF
         return short and self.options.repairs == 0 and self.subject.measured
 
 

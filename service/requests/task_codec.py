@@ -36,7 +36,7 @@ from service.requests.stops import (
 )
 from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet
 
-_FIRST_LINE = b"paretour task 1\n"
+_FIRST_LINE = b"paretour task 2\n"
 _LENGTH = struct.Struct("!Q")
 _TYPES: Mapping[str, type[Any]] = {
     each.__name__: each

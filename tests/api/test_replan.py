@@ -150,7 +150,7 @@ def changed(**entry: Any) -> dict[str, Any]:
         (
             {"costs": [{"objective": 2, "from": 1, "to": 2, "cost": 1}]},
             "/costs/0/objective",
-            "less",
+            "must be 0, 1 or",
         ),
         (
             {"costs": [{"objective": "x", "from": 1, "to": 2, "cost": 1}]},

@@ -102,10 +102,10 @@ def test_a_body_that_takes_too_much_memory_is_refused() -> None:
 class WarningActor(ActorInfo):
     """An actor whose choice warns, in the process that chooses it."""
 
-    def serves(self, kind: Kind) -> bool:
+    def serves(self, kind: Kind, objectives: int = 2) -> bool:
         for number in range(50):
             warnings.warn_explicit("over\nflow" * 100, RuntimeWarning, "/a/choice.py", number)
-        return super().serves(kind)
+        return super().serves(kind, objectives)
 
 
 @pytest.mark.parametrize("refused", [False, True])

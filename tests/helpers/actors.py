@@ -8,7 +8,7 @@ import numpy as np
 
 from service.actor_info import ActorInfo
 from service.construction.call_estimate import CallEstimate
-from service.instance import Instance, Kind
+from service.instance import MOST_OBJECTIVES, Instance, Kind
 
 
 def info_of(name: str, inputs: Kind, repairs: bool = False) -> ActorInfo:
@@ -23,6 +23,7 @@ def info_of(name: str, inputs: Kind, repairs: bool = False) -> ActorInfo:
         config={},
         figures={},
         repairs=repairs,
+        most_objectives=MOST_OBJECTIVES,
     )
 
 

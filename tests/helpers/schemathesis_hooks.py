@@ -11,6 +11,7 @@ _MESSAGE = {
     "data": [0, 0, 0, 0],
 }
 _CHOICES = ("angle", "balance", "first_at_most", "second_at_most", "knee")
+_BY_NAME = ("weights", "at_most", "prefer")  # of objectives, which a schema does not know
 
 
 @schemathesis.hook
@@ -40,6 +41,8 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
     if case.path.endswith("/replan") and case.meta.generation.mode.is_positive:
         _change_nothing(case.body)
+    if isinstance(case.body, dict) and _are_directions(case.body.get("preferences")):
+        case.body["preferences"] = len(case.body["preferences"])
     _correct_body(case.body, positive=case.meta.generation.mode.is_positive)
 
 
@@ -52,15 +55,22 @@ def _correct_body(body: Any, *, positive: bool) -> None:
         case {"stops": _, "objectives": _} if positive:
             _make_plannable(body)
         case {"coordinates": [_, *_] as rows}:
-            if _is_point(body.get("reference_point")):
-                del body["reference_point"]
-            _fit_to_cities(body, len(rows))
-        case {"matrices": [[_, *_] as rows, _] as matrices} if _are_matrices(matrices):
-            body["matrices"] = [[[1.0] * len(rows)] * len(rows)] * 2
+            _in_two_planes(body, rows)
+        case {"matrices": [[_, *_] as rows, _, *_] as matrices} if _are_matrices(matrices):
+            body["matrices"] = [[[1.0] * len(rows)] * len(rows)] * len(matrices)
             if body.get("actor") == "pa-one":
                 body["actor"] = "pa-one-matrix"
             _reach(body)
             _fit_to_cities(body, len(rows))
+
+
+def _in_two_planes(body: dict[str, Any], rows: list[Any]) -> None:
+    """Leave the first two planes of cities, of which each may have had others."""
+    if _is_point(body.get("reference_point")):
+        del body["reference_point"]
+    if _are_rows(rows):
+        body["coordinates"] = [row[:4] for row in rows]
+    _fit_to_cities(body, len(rows))
 
 
 def _change_nothing(body: Any) -> None:
@@ -141,7 +151,8 @@ def _make_drivable(body: dict[str, Any]) -> None:
 def _choose_in_one_way(case: Any) -> None:
     """Leave one choice of a tour in the query, an angle where there is none."""
     choices = [name for name in _CHOICES if name in (case.query or {})]
-    case.query = {k: v for k, v in (case.query or {}).items() if k not in choices[1:]}
+    left_out = (*choices[1:], *_BY_NAME)
+    case.query = {k: v for k, v in (case.query or {}).items() if k not in left_out}
     if not choices:
         case.query["angle"] = 45
 
@@ -149,7 +160,7 @@ def _choose_in_one_way(case: Any) -> None:
 def _reach(body: dict[str, Any]) -> None:
     """Replace a reference point by one beyond all tours."""
     if _is_point(body.get("reference_point")):
-        body["reference_point"] = [1e100, 1e100]
+        body["reference_point"] = [1e100] * len(body.get("matrices", body.get("objectives", "of")))
 
 
 def _fit_to_cities(body: dict[str, Any], n: int) -> None:
@@ -177,8 +188,25 @@ def _is_point(value: Any) -> bool:
     """Whether the schema allows the value as a reference point."""
     return (
         isinstance(value, list)
-        and len(value) == 2
+        and 2 <= len(value) <= 4
         and all(_is_number(length) and 1e-150 <= length <= 1e150 for length in value)
+    )
+
+
+def _are_rows(value: list[Any]) -> bool:
+    """Whether the schema allows the value as coordinates."""
+    return all(
+        isinstance(row, list) and 4 <= len(row) <= 8 and all(map(_is_number, row)) for row in value
+    )
+
+
+def _are_directions(value: Any) -> bool:
+    """Whether the schema allows the value as directions."""
+    return (
+        isinstance(value, list)
+        and value != []
+        and all(isinstance(row, list) and 2 <= len(row) <= 4 for row in value)
+        and all(_is_number(part) and 0 <= part <= 1e6 for row in value for part in row)
     )
 
 

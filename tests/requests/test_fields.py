@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
+from service.preferences import from_angles
 from service.requests.fields import PlanRequest
 from service.requests.validation import parse_json
 
@@ -24,7 +25,7 @@ from service.requests.validation import parse_json
         ('"size": 0', "/size", "size must be at least 1, got 0"),
         ('"size": 1e10', "/size", "size must be at most 2147483647, got 10000000000"),
         ('"start": -1', "/start", "start must be at least 0, got -1"),
-        ('"reference_point": [1]', "/reference_point", "must have 2 items, got 1"),
+        ('"reference_point": [1]', "/reference_point", "must have 2 items or more, got 1"),
         ('"reference_point": [0, 1]', "/reference_point/0", "must be at least 1e-150, got 0"),
         ('"reference_point": null', "/reference_point", "must be a valid array, got null"),
         ('"actor": 1', "/actor", "actor must be a valid string, got 1"),
@@ -50,8 +51,8 @@ def test_a_whole_number_may_be_written_with_a_point() -> None:
 def test_preferences_become_angles() -> None:
     even = parse_json(PlanRequest, b'{"preferences": 3}')
     given = parse_json(PlanRequest, b'{"preferences": [0, 12.5]}')
-    np.testing.assert_allclose(even.options().angles, [15, 45, 75])
-    np.testing.assert_array_equal(given.options().angles, [0, 12.5])
+    np.testing.assert_allclose(even.options().directions, from_angles(np.array([15, 45, 75])))
+    np.testing.assert_array_equal(given.options().directions, from_angles(np.array([0, 12.5])))
 
 
 def test_an_actor_is_requested_by_name_or_not_at_all() -> None:

@@ -42,12 +42,13 @@ def instance_of(request: FrontRequest) -> Instance:
         (
             '{"coordinates": [[1, 2, 3, 4], [1, 2, 3]]}',
             "/coordinates/1",
-            "coordinates/1 must have 4 items, got 3",
+            "coordinates/1 must have 4 items or more, got 3",
         ),
         (
             '{"coordinates": [[1, 2, 3, 4, 5]]}',
             "/coordinates/0",
-            "coordinates/0 must have 4 items, got 5",
+            "coordinates/0 must have 4, 6 or 8 numbers, x and y in the plane of each objective,"
+            " got 5",
         ),
         ('{"coordinates": [7]}', "/coordinates/0", "coordinates/0 must be a valid array, got 7"),
         ('{"coordinates": "x"}', "/coordinates", 'coordinates must be a valid array, got "x"'),
@@ -106,8 +107,8 @@ def test_a_wrong_coordinate_is_named(number: str, sentence: str) -> None:
     [
         ("7", "", "must be a valid array, got 7"),
         ("null", "", "must be a valid array, got null"),
-        (f"[{SQUARE}]", "", "must have 2 items, got 1"),
-        (f"[{SQUARE}, {SQUARE}, {SQUARE}]", "", "must have 2 items, got 3"),
+        (f"[{SQUARE}]", "", "must have 2 items or more, got 1"),
+        (f"[{', '.join([SQUARE] * 5)}]", "", "must have 4 items or fewer, got 5"),
         (f"[{SQUARE}, 7]", "/1", "must be a valid array, got 7"),
         (f"[[[0], 7, [2]], {SQUARE}]", "/0/1", "must be a valid array, got 7"),
         (f"[{SQUARE}, [[0, -0.5], [1, 0]]]", "/1", "must have 3 rows, as many as matrices/0"),
@@ -138,7 +139,7 @@ def test_fewer_cities_are_allowed_where_costs_are_matrices() -> None:
         ({"matrices": [[[1] * 3] * 3] * 2}, "matrices must have at most 2 rows, got 3"),
         (
             {**stops, "objectives": [plane, matrix]},
-            "stops must have at most 2 rows unless both objectives have coordinates, got 3",
+            "stops must have at most 2 rows unless all objectives have coordinates, got 3",
         ),
     ):
         with pytest.raises(Refusal) as refused:

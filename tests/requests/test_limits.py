@@ -55,15 +55,15 @@ def test_of_more_cities_than_a_network_serves_its_tours_are_refused(members: Any
 
 def test_of_more_cities_than_a_network_serves_the_search_is_alone() -> None:
     options = within_network(PlanRequest().options(), N, replace(LIMITS, network_cities=N - 1))
-    assert (len(options.angles), options.time_limit) == (0, 1.0)
+    assert (len(options.directions), options.time_limit) == (0, 1.0)
 
 
 def test_preferences_that_are_lowered_still_count_as_not_given() -> None:
     few = replace(LIMITS, preferences=7)
     silent = lower_defaults(PlanRequest(time_limit=0.1), N, few).options()
-    assert (len(silent.angles), silent.fewer) == (7, True)
+    assert (len(silent.directions), silent.fewer) == (7, True)
     asked = lower_defaults(PlanRequest(preferences=5), N, few).options()
-    assert (len(asked.angles), asked.fewer) == (5, False)
+    assert (len(asked.directions), asked.fewer) == (5, False)
 
 
 @pytest.mark.parametrize("tour", [[0], [*range(1, N), 1], [*range(1, N), N]])

@@ -48,9 +48,15 @@ def test_a_file_of_matrices_is_read_in_every_layout(saved: np.ndarray) -> None:
             "must be of real numbers of at most 8 bytes, got '|O'",
         ),
         (npy(COSTS * 1j), "must be of real numbers of at most 8 bytes, got '<c16'"),
-        (npy(COSTS[0]), "must have shape (2, n, n) with n at least 1, got (12, 12)"),
-        (npy(COSTS[:, :3]), "must have shape (2, n, n) with n at least 1, got (2, 3, 12)"),
-        (npy(COSTS[:, :0, :0]), "must have shape (2, n, n) with n at least 1, got (2, 0, 0)"),
+        (npy(COSTS[0]), "must have shape (m, n, n) with m from 2 to 4, n at least 1, got (12, 12)"),
+        (
+            npy(COSTS[:, :3]),
+            "must have shape (m, n, n) with m from 2 to 4, n at least 1, got (2, 3, 12)",
+        ),
+        (
+            npy(COSTS[:, :0, :0]),
+            "must have shape (m, n, n) with m from 2 to 4, n at least 1, got (2, 0, 0)",
+        ),
         (npy(COSTS)[:-8], "must have 2304 bytes after its header, got 2296"),
     ],
 )

@@ -1,5 +1,6 @@
 """The tour that a query of `GET /tour` chooses, against a search through all tours."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,7 @@ def test_service_and_client_choose_what_a_plain_search_finds(
     angle, others = query.get("angle"), {k: v for k, v in query.items() if k != "angle"}
     if expected is not None:
         assert asked.choose(points, directions) == expected
-        assert choose(points, directions, angle, others) == expected
+        assert choose(points, directions, [], angle, others) == expected
         return
     with pytest.raises(Refusal) as refused:
         asked.choose(points, directions)
@@ -67,7 +68,7 @@ def test_service_and_client_choose_what_a_plain_search_finds(
     assert (refused.value.code, refused.value.limit) == ("no-such-tour", budget)
     assert refused.value.actual == least > budget
     with pytest.raises(ValueError, match=f"the least is {least:g}"):
-        choose(points, directions, angle, others)
+        choose(points, directions, [], angle, others)
 
 
 @pytest.mark.parametrize(
@@ -83,3 +84,104 @@ def test_service_and_client_choose_what_a_plain_search_finds(
 def test_exactly_one_way_must_be_given(query: dict[str, Any], came: str) -> None:
     with pytest.raises(Refusal, match=f"must be given, got {came}$"):
         TourQuery(**query).check()
+
+
+def several(objectives: int) -> st.SearchStrategy[np.ndarray]:
+    """Fronts of so many objectives."""
+    shape = st.tuples(st.integers(1, 12), st.just(objectives))
+    points = arrays(np.float64, shape, elements=st.integers(0, 20))
+    return points.map(lambda each: each[nondominated(each)])
+
+
+def number_of_each(objectives: int, most: int) -> st.SearchStrategy[dict[int, int]]:
+    """Numbers for some objectives."""
+    index = st.integers(0, objectives - 1)
+    return st.dictionaries(index, st.integers(1, most), min_size=1)
+
+
+def parts(numbers: dict[int, int], names: list[str]) -> list[str]:
+    """Numbers as a query has them: by name where the index is even, else by index."""
+    return [f"{names[k] if k % 2 == 0 else k}:{number}" for k, number in numbers.items()]
+
+
+@pytest.mark.parametrize("objectives", [2, 3, 4])
+@given(data=st.data())
+def test_weights_choose_the_least_of_the_greatest_loss(
+    objectives: int, data: st.DataObject
+) -> None:
+    points = data.draw(several(objectives))
+    weights = data.draw(number_of_each(objectives, 9))
+    names = [f"way, {k}:" for k in range(objectives)]
+    least, most = points.min(axis=0), points.max(axis=0)
+    found = []
+    for index, point in enumerate(points):
+        loss = [
+            weight * ((point[k] - least[k]) / ((most[k] - least[k]) or 1))
+            for k, weight in weights.items()
+        ]
+        found.append((max(loss), sum(loss), index))
+    query = TourQuery(weights=parts(weights, names))
+    query.check()
+    nowhere = np.full(len(points), np.nan)
+    assert query.choose(points, nowhere, names) == min(found)[2]
+    assert choose(points, nowhere, names, None, {"weights": weights}) == min(found)[2]
+
+
+@pytest.mark.parametrize("objectives", [2, 3, 4])
+@given(data=st.data())
+def test_budgets_choose_the_least_of_the_objective_preferred(
+    objectives: int, data: st.DataObject
+) -> None:
+    points = data.draw(several(objectives))
+    budgets = data.draw(number_of_each(objectives, 30))
+    prefer = data.draw(st.integers(0, objectives - 1))
+    names = [f"way {k}" for k in range(objectives)]
+    within = [
+        (point[prefer], index)
+        for index, point in enumerate(points)
+        if all(point[k] <= budget for k, budget in budgets.items())
+    ]
+    query = TourQuery(at_most=parts(budgets, names), prefer=names[prefer])
+    query.check()
+    nowhere = np.full(len(points), np.nan)
+    if within:
+        assert query.choose(points, nowhere, names) == min(within)[1]
+        choice = {"at_most": budgets, "prefer": prefer}
+        assert choose(points, nowhere, names, None, choice) == min(within)[1]
+        return
+    with pytest.raises(Refusal) as refused:
+        query.choose(points, nowhere, names)
+    assert refused.value.code == "no-such-tour"
+    assert refused.value.actual > refused.value.limit
+
+
+@pytest.mark.parametrize(
+    ("members", "sentence"),
+    [
+        (
+            {"weights": ["time"]},
+            "weights must be a name, a colon and a number that is not negative",
+        ),
+        ({"weights": ["time:-1"]}, "that is not negative"),
+        ({"weights": ["time:nan"]}, "that is not negative"),
+        ({"weights": ["cost:1"]}, 'weights must name one of "0", "1", "2", "time"'),
+        ({"weights": ["time:0,1:0"]}, "weights must have one that is more than 0"),
+        ({"weights": ["time:1,0:2"]}, "weights must have each objective once"),
+        ({"at_most": ["3:1"]}, "at_most must name one of"),
+        ({"at_most": ["time:9"]}, "prefer is required, as 2 objectives have no limit"),
+        ({"at_most": ["time:9"], "prefer": "cost"}, "prefer must name one of"),
+        ({"angle": 30}, "angle is for fronts of two objectives"),
+        ({"balance": 0.5}, "balance is for fronts of two objectives"),
+        ({"first_at_most": 9}, "first_at_most is for fronts of two objectives"),
+    ],
+)
+def test_what_is_not_a_choice_is_refused(members: dict[str, Any], sentence: str) -> None:
+    query = TourQuery(**members)
+    query.check()
+    with pytest.raises(Refusal, match=re.escape(sentence)):
+        query.choose(np.eye(3) + 1, np.full(3, np.nan), ["time", "risk", "way"])
+
+
+def test_what_is_preferred_needs_a_limit() -> None:
+    with pytest.raises(Refusal, match="prefer is for a choice by at_most alone"):
+        TourQuery(knee=True, prefer="time").check()

@@ -72,10 +72,13 @@ def test_a_long_text_is_shown_shortened() -> None:
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [
-        (b'{"coordinates":[[0,1,2]]}', "coordinates/0 must have 4 items, got 3"),
-        (b'{"coordinates":[[0,1,2,3],[0,1,2,3,4]]}', "coordinates/1 must have 4 items, got 5"),
-        (b'{"matrices":[[[0]]]}', "matrices must have 2 items, got 1"),
-        (b'{"reference_point":[1,1,1]}', "reference_point must have 2 items, got 3"),
+        (
+            b'{"objectives":[{"name":"a","coordinates":[[0]]},{"name":"b"}]}',
+            "objectives/0/coordinates/0 must have 2 items, got 1",
+        ),
+        (b'{"coordinates":[[0,1,2]]}', "coordinates/0 must have 4 items or more, got 3"),
+        (b'{"matrices":[[[0]]]}', "matrices must have 2 items or more, got 1"),
+        (b'{"reference_point":[1,1,1,1,1]}', "reference_point must have 4 items or fewer, got 5"),
         (b'{"coordinates":[]}', "coordinates must have 1 item or more, got 0"),
     ],
 )

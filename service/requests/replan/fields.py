@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
-from service.instance import OBJECTIVES
+from service.instance import MOST_OBJECTIVES
 from service.requests.coverage import Cell, RobotPose
 from service.requests.fields import (
     GEOMETRY,
@@ -65,9 +65,10 @@ class CostEntry(StrictModel):
     """One cost that has changed, in one direction."""
 
     objective: Annotated[
-        Annotated[int, Field(ge=0, lt=OBJECTIVES), Tag("[index]")] | Annotated[Text, Tag("[name]")],
+        Annotated[int, Field(ge=0, lt=MOST_OBJECTIVES), Tag("[index]")]
+        | Annotated[Text, Tag("[name]")],
         Discriminator(lambda value: "[name]" if isinstance(value, str) else "[index]"),
-    ] = Field(description="0 or 1, or its name")
+    ] = Field(description="its index, from 0, or its name")
     origin: StopReference = Field(alias="from", description="the stop that the step leads from")
     destination: StopReference = Field(alias="to", description="the stop that it leads to")
     cost: Cost | None = Field(

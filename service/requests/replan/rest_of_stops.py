@@ -136,7 +136,8 @@ def _all_costs(
                 raise invalid(f"{part}/{name}", "must not be given together with objectives")
         sources = read_sources(request.objectives, stops.stops)
     else:
-        objectives = front.labels.objectives
+        objectives = front.labels.objectives[: len(front.sources)]
+        _check_counts(stops, len(objectives))
         sources = [
             _extended(source, m, objective.name, stops)
             for m, (source, objective) in enumerate(zip(front.sources, objectives, strict=True))
@@ -148,6 +149,15 @@ def _all_costs(
         for source, entries in zip(sources, changed, strict=True)
     ]
     return objectives, sources, np.array(steps, np.int64)
+
+
+def _check_counts(stops: _AllStops, objectives: int) -> None:
+    """Raise a refusal where a new stop has costs or coordinates, but not for each objective."""
+    for part, item in stops.new.items():
+        for name, given in (("coordinates", item.coordinates), ("costs", item.costs)):
+            if given and len(given) != objectives:
+                demand = f"must have {objectives} entries, one for each objective"
+                raise invalid(f"{part}/{name}", f"{demand}, got {len(given)}")
 
 
 def _between(source: Source, chosen: NDArray[np.int64]) -> Source:
@@ -261,9 +271,10 @@ def _changed(source: Source, entries: Mapping[tuple[int, int], float]) -> Source
 
 
 def _objective(objective: int | str, names: Sequence[str], part: str) -> int:
-    if isinstance(objective, int):
+    if isinstance(objective, int) and objective < len(names):
         return objective
-    if objective not in names:
-        demand = f"must be 0, 1 or {' or '.join(map(show, names))}"
+    if isinstance(objective, int) or objective not in names:
+        indexes = ", ".join(map(str, range(len(names))))
+        demand = f"must be {indexes} or {' or '.join(map(show, names))}"
         raise invalid(f"{part}/objective", f"{demand}, got {show(objective)}")
     return names.index(objective)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
 from service.errors import Refusal, invalid
-from service.instance import CLOSED, RouteEnds
+from service.instance import CLOSED, OBJECTIVES, RouteEnds
 from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest
@@ -23,7 +23,7 @@ from service.search.open_routes import rotated
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
-_NAMES = ("first", "second")  # of objectives that the front's request did not name
+_NAMES = ("first", "second", "third", "fourth")  # of objectives that the request did not name
 _OF_FRONT = "a stop of the front"
 
 
@@ -36,7 +36,7 @@ class FoundTours(Protocol):
 
     @property
     def lengths(self) -> Array:
-        """The lengths of each tour, shape (m, 2)."""
+        """The lengths of each tour, shape (k, m)."""
 
     @property
     def places(self) -> Sequence[Sequence[int]] | None:
@@ -93,7 +93,12 @@ class EarlierFront:
         return (self.start, self.start) if self.ends.closed else (self.ends.start, self.ends.end)
 
     def balance_of(self, tour: Indices) -> float | None:
-        """Return the balance of a tour in the front; None if the front does not have it."""
+        """Return the balance of a tour in the front.
+
+        None if the front does not have it, or is of more than two objectives.
+        """
+        if self.lengths.shape[1] > OBJECTIVES:
+            return None
         same = (self.tours == tour).all(axis=1)
         return float(balances(self.lengths)[same.argmax()]) if same.any() else None
 
