@@ -14,7 +14,6 @@ from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 
 # As the search does, which cannot be imported here.
 _THREE_OPT = 250  # cities from which on three-opt searches; fewer where costs differ by direction
-_TABULATED = 1_500  # cities up to which costs under three or four objectives are looked up
 _MANY = {"coordinates": 600, "matrices": 2_000}  # from which on candidates or tours come otherwise
 
 
@@ -65,7 +64,7 @@ def parts_of(task: Task) -> frozenset[Part]:
             if not task.needs_compiled_code:
                 return frozenset()
             if len(stops.sources) > OBJECTIVES:
-                return _of_several(stops, replanned=task.earlier is not None)
+                return _of_several(replanned=task.earlier is not None)
             few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
             parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
             if stops.n >= _MANY[stops.kind]:
@@ -76,11 +75,7 @@ def parts_of(task: Task) -> frozenset[Part]:
     return frozenset(Part) - {Part.FLEETS, Part.SEVERAL_OBJECTIVES}
 
 
-def _of_several(stops: Stops, *, replanned: bool) -> frozenset[Part]:
+def _of_several(*, replanned: bool) -> frozenset[Part]:
     """Return the parts that stops under three or four objectives need."""
     parts = {Part.FEW_CITIES, Part.MORE_CITIES, Part.SEVERAL_OBJECTIVES}
-    if stops.n > _TABULATED:
-        parts.add(Part.MANY_CITIES)
-    if replanned:
-        parts.add(Part.CHANGES)
-    return frozenset(parts)
+    return frozenset(parts | {Part.CHANGES} if replanned else parts)

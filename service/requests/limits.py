@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from service.errors import Refusal, invalid
 from service.front import PlanOptions
-from service.instance import Array, Kind
+from service.instance import OBJECTIVES, Array, Kind
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
 from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
 
@@ -24,6 +24,7 @@ class Limits:
         cities: Stops in two planes.
         matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
+        several_cities: Stops under more than two objectives, whose costs are all looked up.
         network_cities: Stops for which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
@@ -43,6 +44,7 @@ class Limits:
     size: int
     seconds: float
     matrix_cities: int = 1000
+    several_cities: int = 2000
     network_cities: int = 5000
     path_cells: int = 2**21
     fleet_stops: int = 500
@@ -59,9 +61,10 @@ class Limits:
             "time_limit": self.seconds,
         }
 
-    def most_cities(self, kind: Kind) -> int:
-        """Return the most cities of an instance of a kind."""
-        return self.cities if kind == "coordinates" else min(self.cities, self.matrix_cities)
+    def most_cities(self, kind: Kind, objectives: int = OBJECTIVES) -> int:
+        """Return the most cities of an instance of a kind, under so many objectives."""
+        most = self.cities if objectives == OBJECTIVES else min(self.cities, self.several_cities)
+        return most if kind == "coordinates" else min(most, self.matrix_cities)
 
     def most_places(self, *, shared: bool) -> int:
         """Return the most places on a map, which several robots share or one visits."""

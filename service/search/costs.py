@@ -20,8 +20,6 @@ Array = NDArray[np.float64]
 # second-level cache, and memory stays linear in the number of cities.
 DENSE_BELOW = 600
 
-PLANES = 4  # columns of the coordinates of two objectives
-
 # Of a reference point, in units in which costs are below 2: products of two are finite, not 0.
 LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
 
@@ -35,7 +33,7 @@ class Costs(NamedTuple):
     Those of open routes have one more city, city 0, which comes before the instance's.
     """
 
-    cities: Array  # (n, 4); or (n, 2 m) of the planes of a weighted sum, which is the first cost
+    cities: Array  # (n, 4)
     matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
     symmetric: bool
     closing: Array  # (2, n), the costs from city 0 and to it; (2, 0) of closed tours
@@ -89,21 +87,9 @@ def step_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
         closing = closing_cost(costs.closing, i, j)
         return closing, closing
     cities = costs.cities
-    if cities.shape[1] > PLANES:
-        return sum_over_planes(cities, i, j), 0.0
     x, y = cities[i, 0] - cities[j, 0], cities[i, 1] - cities[j, 1]
     u, v = cities[i, 2] - cities[j, 2], cities[i, 3] - cities[j, 3]
     return np.sqrt(x * x + y * y), np.sqrt(u * u + v * v)
-
-
-@compiled
-def sum_over_planes(cities: Array, i: int, j: int) -> float:
-    """Return the sum of the distances of two cities in all planes."""
-    total = 0.0
-    for m in range(0, cities.shape[1], 2):
-        x, y = cities[i, m] - cities[j, m], cities[i, m + 1] - cities[j, m + 1]
-        total += np.sqrt(x * x + y * y)
-    return total
 
 
 @inlined

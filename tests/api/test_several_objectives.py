@@ -1,6 +1,7 @@
 """Fronts of three and four objectives over HTTP: planned, chosen from, replanned, refused."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from io import BytesIO
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from paretour import Client
 
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 N = 12
 several = pytest.mark.parametrize("objectives", [3, 4])
@@ -167,3 +168,12 @@ def test_a_job_and_the_client(client: httpx.Client) -> None:
         assert tight.lengths[1] == least
         job = caller.submit(coordinates=cities(4), time_limit=0.1)
         assert job.result().lengths.shape[1] == 4
+
+
+def test_of_many_cities_two_objectives_alone_are_planned() -> None:
+    limits = replace(LIMITS, several_cities=9)
+    with serving(app_of(limits=limits)) as address:
+        refused = problem(
+            httpx.post(f"{address}/front", json={"coordinates": cities(3)}), 413, "too-many-cities"
+        )
+    assert (refused["limit"], refused["actual"]) == (9, N)

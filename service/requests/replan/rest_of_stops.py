@@ -71,7 +71,7 @@ def rest_of_stops(
 def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:
     """Raise a refusal of a part of the request where the rest has too many stops."""
     kind = kind_of(sources)
-    most = limits.most_cities(kind)
+    most = limits.most_cities(kind, len(sources))
     if len(rest.stops) > most:
         unless = " unless all costs are distances in planes" if kind == "matrices" else ""
         detail = f"{part} must leave at most {most} stops{unless}, got {len(rest.stops)}"

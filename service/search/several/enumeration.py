@@ -27,7 +27,7 @@ def exact_tours_of_several(
     Where time runs out first, return those found so far, one at least, and False.
     """
     costs = make_objective_costs(instance)
-    n = len(costs.cities)
+    n = len(costs.table)
     archive = make_archive(n, instance.objectives)
     order = np.arange(n, dtype=np.int32)
     ends = np.array([ANY if end is None else 1 + end for end in (instance.start, instance.end)])

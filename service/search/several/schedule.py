@@ -37,7 +37,7 @@ from service.search.several.local_search import (
     search_from_points,
 )
 from service.search.several.weights import WeightedSums, search_weights
-from service.search.starts.constructed_tour import GREEDY, constructed_tour
+from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import LocalSearch, TwoOptSearch, choose_local_searches
 from service.search.working_tour import enqueue_cities, make_working_tour
 
@@ -81,7 +81,7 @@ class SearchOfSeveral:
         self.reference_point = reference_point
         self._touched = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
         self._costs = make_objective_costs(instance)
-        self._n = len(self._costs.cities)
+        self._n = len(self._costs.table)
         self._sums = WeightedSums(self._costs, search_weights(instance))
         self._weights = self._sums.weights
         self._archive = make_archive(self._n, instance.objectives, capacity)
@@ -262,8 +262,5 @@ class SearchOfSeveral:
         return float(self._archive.points[row] @ self._weights[k])
 
     def _constructed(self, k: int, scalarization: Scalarization | None = None) -> NDArray[np.int32]:
-        """Return a tour that is constructed under weight k; without candidates by neighbours."""
-        greedy = scalarization is not None and self._n >= GREEDY and self._costs.symmetric
-        if scalarization is None:
-            scalarization = self._sums.scalarization(k)
-        return constructed_tour(self.instance, scalarization, greedy)
+        """Return a tour by nearest neighbours under weight k."""
+        return constructed_tour(self.instance, scalarization or self._sums.scalarization(k))
