@@ -4,7 +4,8 @@ Uniform cities in three unit squares, the 105 weights of the lattice of 13 steps
 the reference point that is used there. The instances are ours, for theirs are not at hand; so the
 weighted sums stand beside the network, each nearly as short as it can be, by the search. The rows:
 the network without repairs, with as many as the service makes by default, and with more; every tour
-of a call counts, with those visited on the way. Seconds are those of the processor, on one thread.
+of a call counts, with those visited on the way; and the search for the whole front, from nothing,
+which is given so many seconds of the clock. Seconds are those of the processor, on one thread.
 What is stored is not measured again. Stores `results/tri.json`.
 """
 
@@ -24,7 +25,9 @@ from models.data.instances import tour_lengths
 from models.data.preferences import fan_or_lattice
 from models.expert import expert_tours
 from service.construction.repairs import repairs_worth
+from service.instance import Instance
 from service.onnx_runtime import onnxruntime
+from service.search.improve import improve
 from tests.benchmarks.printed import TRI_CORNERS
 from tests.benchmarks.rows import resume
 
@@ -34,6 +37,7 @@ COUNT = 200
 WEIGHTS = 105
 MANY = 50  # repairs
 ITERATIONS = 50  # of the search for each city and weight
+SEARCHED = (0.3, 1.0, 3.0, 10.0)  # seconds
 
 Array = NDArray[np.float32]
 Tours = NDArray[np.int64]
@@ -97,6 +101,17 @@ def _searched(_: onnxruntime.InferenceSession, cities: Array, preferences: Array
     return expert_tours(*doubles, iterations=ITERATIONS * len(cities), seed=0).astype(np.int64)
 
 
+def _whole_front(
+    seconds: float, _: onnxruntime.InferenceSession, cities: Array, preferences: Array
+) -> Tours:
+    instance = Instance(coordinates=cities.astype(np.float64))
+    corner = np.full(preferences.shape[1], float(TRI_CORNERS[len(cities)]))
+    deadline = time.monotonic() + seconds
+    nothing = np.empty((0, len(cities)), np.int32)
+    found = improve(instance, nothing, deadline=deadline, reference_point=corner)
+    return found.tours.astype(np.int64)
+
+
 def _session(content: bytes) -> onnxruntime.InferenceSession:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
@@ -110,4 +125,5 @@ ROWS: dict[str, Method] = {
     "PA-One, repaired": partial(_built, partial(repairs_worth, "coordinates")),
     f"PA-One, {MANY} repairs": partial(_built, lambda _: MANY),
     SUMS: _searched,
+    **{f"search, {each:g} s": partial(_whole_front, each) for each in SEARCHED},
 }
