@@ -28,6 +28,7 @@ from service.construction.repairs import repairs_worth
 from service.instance import Instance
 from service.onnx_runtime import onnxruntime
 from service.search.improve import improve
+from service.search.several.warm_up import warm_up
 from tests.benchmarks.printed import TRI_CORNERS
 from tests.benchmarks.rows import resume
 
@@ -53,6 +54,7 @@ def main(arguments: list[str]) -> None:
     )
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
+    warm_up()
     content = ACTOR.read_bytes()
     session = _session(content)
     for n in options.cities:
