@@ -148,7 +148,7 @@ export class Scatter {
 
   #described({ one, many }) {
     const count = this.#front.length;
-    if (!count) return "No front yet: bring stops, then press Plan";
+    if (!count) return "No tours yet";
     const ranges = this.#objectives.map(({ name }, axis) => `${name} from ${this.#ends[axis].map((value) => length(value)).join(" to ")}`);
     return `A front of ${count} ${count === 1 ? one : many}: ${ranges.join(", ")}`;
   }
