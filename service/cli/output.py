@@ -17,6 +17,7 @@ from paretour import (
     RobotPlan,
     Tour,
 )
+from paretour.choice import losses
 from rich.markup import escape
 from rich.table import Table
 
@@ -196,14 +197,13 @@ def named_points(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) ->
 
     The knee comes after the first. Points have shape (k, m).
     """
-    low, high = lengths.min(axis=0), lengths.max(axis=0)
-    losses = (lengths - low) / np.where(high > low, high - low, 1.0)
+    sums = losses(lengths).sum(axis=1)
     least = {
-        f"least {name}": int(np.lexsort((losses.sum(axis=1), lengths[:, m]))[0])
+        f"least {name}": int(np.lexsort((sums, lengths[:, m]))[0])
         for m, name in enumerate(names[: lengths.shape[1]])
     }
     (title, first), *others = least.items()
-    return {title: first, "knee": int(losses.sum(axis=1).argmin()), **dict(others)}
+    return {title: first, "knee": int(sums.argmin()), **dict(others)}
 
 
 def tour_as_json(tour: Tour) -> str:

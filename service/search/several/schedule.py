@@ -245,7 +245,7 @@ class SearchOfSeveral:
         row = best_row(self._archive, self._weights[k])
         least = np.inf
         if row >= 0:
-            least = self._least(k)
+            least = float(self._archive.points[row] @ self._weights[k])
             local_search.load(self._archive.tours[row], least, 0.0)
         if not construct and row >= 0:
             return False
