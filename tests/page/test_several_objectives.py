@@ -100,7 +100,7 @@ def test_limits_leave_the_best_of_what_they_allow(page: Page) -> None:
     shortest = lengths[lengths[:, 0].argmin()]
     assert shown(page) == pytest.approx(shortest, rel=1e-5)
     for _ in range(3):
-        limit(page, "Way").press("PageUp")
+        limit(page, "Way").press("ArrowRight")
     said = limit(page, "Way").get_attribute("aria-valuetext") or ""
     assert said.startswith("at most ")
     expect(page.locator("#caps-said")).to_contain_text(" are within the limits.")
