@@ -32,6 +32,14 @@ class RouteEnds(NamedTuple):
 CLOSED = RouteEnds()
 
 
+@dataclass(frozen=True)
+class Objective:
+    """The name of an objective, and its unit if the caller said so."""
+
+    name: str
+    unit: str | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Instance:
     """Cities, and the cost of going from one to another under each of m objectives, two to four.

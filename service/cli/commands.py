@@ -83,7 +83,7 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     ends: options.Ends,
     unrounded: options.Unrounded = False,
     area: options.Area,
-    cost_layer: options.CostLayer = None,
+    cost_layers: options.CostLayers = None,
     as_json: options.AsJson = False,
     service: options.Service,
 ) -> None:
@@ -95,7 +95,7 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     of_search = {**vars(search), **vars(network), **vars(ends)}
     members = {**of_search, **vars(area), "augment": augment}
     run_tour(
-        partial(plan_tour, file, file2, cost_layer, unrounded=unrounded, options=members),
+        partial(plan_tour, file, file2, cost_layers or (), unrounded=unrounded, options=members),
         backend_for(service),
         choice,
         as_json,
@@ -159,7 +159,7 @@ def coverage(  # noqa: PLR0913  a group of options, or one, each
     file: options.MapFile,
     *,
     area: options.Area,
-    cost_layer: options.CostLayer = None,
+    cost_layers: options.CostLayers = None,
     robots: options.Robots = None,
     paths: options.Paths = None,
     search: options.Search,
@@ -179,7 +179,9 @@ def coverage(  # noqa: PLR0913  a group of options, or one, each
     of_search = {**vars(search), **vars(network), **vars(ends)}
     members = {**of_search, **vars(area), "paths": paths, "size": size}
     run_front(
-        partial(plan_map, file, cost_layer, members, robots or ()), backend_for(service), output
+        partial(plan_map, file, cost_layers or (), members, robots or ()),
+        backend_for(service),
+        output,
     )
 
 

@@ -88,7 +88,7 @@ def read_request(
 def check_inputs(*files: Path | None) -> None:
     """Raise UnreadableFile if two files are standard input, which can be read once."""
     if files.count(STANDARD_INPUT) > 1:
-        raise UnreadableFile("only one of the two files can be standard input")
+        raise UnreadableFile("only one of the files can be standard input")
 
 
 def ids_in(stops: object) -> Ids | None:

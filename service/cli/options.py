@@ -89,7 +89,15 @@ Robots = Annotated[
         " They share the places: total distance against longest route.",
     ),
 ]
-CostLayer = Annotated[Path | None, Option(help="The second objective: CSV, a cost for each pixel.")]
+CostLayers = Annotated[
+    list[Path] | None,
+    Option(
+        "--cost-layer",
+        metavar="FILE",
+        help="The second objective: CSV, a cost for each pixel. Given two or three times, each is"
+        " an objective, which is named after its file.",
+    ),
+]
 Paths = Annotated[
     bool | None,
     Option("--paths", help="With --json, add the path of each tour, in cells and metres."),

@@ -31,7 +31,7 @@ from service.cli.inputs import (
 )
 from service.cli.options import ANY
 
-_SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
+_SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
 
 Options = Mapping[str, Any]  # members of a request; a member that is None is left to the file
 
@@ -58,20 +58,20 @@ def _cities(found: FileRequest, options: Options, angles: str | None = None) -> 
 def plan_tour(
     file: Path,
     file2: Path | None,
-    cost_layer: Path | None,
+    cost_layers: Sequence[Path],
     *,
     unrounded: bool = False,
     options: Options,
 ) -> tuple[Plan, Ids | None]:
     """Return the plan of one tour, of cities as by `plan_cities` or on a map as by `plan_map`."""
-    check_inputs(file, file2, cost_layer)
+    check_inputs(file, file2, *cost_layers)
     options = _with_poses(options)
     found = read_request([file, file2], "front", "coverage", unrounded=unrounded)
     if found.request.get("robots"):
         raise UsageError(f"{file} is about several robots: `paretour coverage` plans that")
     if found.kind == "coverage":
-        return _map(found, cost_layer, options), None
-    if cost_layer is not None:
+        return _map(found, cost_layers, options), None
+    if cost_layers:
         raise UsageError(f"--cost-layer is for a map, and {file} is not one")
     return _cities(found, options), found.ids
 
@@ -100,33 +100,42 @@ def plan_fleet(file: Path, vehicles: Path | None, options: Options) -> tuple[Pla
 
 
 def plan_map(
-    file: Path, cost_layer: Path | None, options: Options, robots: Sequence[str] = ()
+    file: Path, cost_layers: Sequence[Path], options: Options, robots: Sequence[str] = ()
 ) -> tuple[Plan, None]:
-    """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
+    """Return the plan for places on the map in a file, maybe with costs in others; and no ids.
 
     Args:
         file: The map, or a request.
-        cost_layer: A file of costs.
+        cost_layers: Files of costs.
         options: Members of the request; poses are numbers with commas between.
         robots: The poses where several robots start, in the same form. They share the places.
 
     Raises:
         UsageError: Something that a plan needs is missing; the message names everything that is.
     """
-    check_inputs(file, cost_layer)
+    check_inputs(file, *cost_layers)
     parsed = _with_poses(options)
-    return _map(read_request([file], "coverage"), cost_layer, parsed, robots), None
+    return _map(read_request([file], "coverage"), cost_layers, parsed, robots), None
 
 
 def _map(
-    found: FileRequest, cost_layer: Path | None, options: Options, robots: Sequence[str] = ()
+    found: FileRequest, cost_layers: Sequence[Path], options: Options, robots: Sequence[str] = ()
 ) -> Plan:
-    costs = None if cost_layer is None else read_layer(cost_layer)
-    members = {"cost_layer": costs, "robots": _parse_robots(robots)}
+    members = {**_costs(cost_layers), "robots": _parse_robots(robots)}
     given = _without_none({**options, **_ends(options, None), **members})
     whole = {**found.request, **given}
     _check_complete(whole)
     return coverage_plan(cast(CoverageRequest, whole), found.picture)
+
+
+def _costs(files: Sequence[Path]) -> dict[str, Any]:
+    """Return the member of a request that has the costs in these files, if there are any."""
+    match files:
+        case []:
+            return {}
+        case [one]:
+            return {"cost_layer": read_layer(one)}
+    return {"cost_layers": [{"name": each.stem, "layer": read_layer(each)} for each in files]}
 
 
 def _with_poses(options: Options) -> Options:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.coverage.frame import Array, Cells, MapFrame, Mask
 from service.errors import InvalidCoverage
-from service.instance import CLOSED, RouteEnds
+from service.instance import CLOSED, Objective, RouteEnds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,9 +46,9 @@ class Robot:
 class Coverage:
     """A coverage task.
 
-    Exactly one of `places` and `spacing` is given, and exactly one source of the second objective:
-    a matrix, a layer or coordinates. A task with `robots` needs no second objective: then both
-    objectives are metres.
+    The first objective is metres. Exactly one of `places` and `spacing` is given, and exactly one
+    source of the other objectives: a matrix, layers or coordinates. A task with `robots` has two
+    objectives and needs no such source: then both are metres.
 
     Args:
         blocked: Obstacles, shape (rows, columns).
@@ -64,7 +64,9 @@ class Coverage:
             ignored. Its cell becomes a place, if it is not one already.
         end_pose: Replaces the end of open routes, in the same way.
         second_matrix: Costs between places, shape (n, n).
-        cost_layer: Costs on the grid, shape (rows, columns).
+        cost_layers: Costs on the grid, shape (layers, rows, columns), one to three layers. Each is
+            an objective.
+        layers: The caller's names of the layers; empty if there are none.
         second_coordinates: Coordinates of the places in a plane, shape (n, 2).
         robots: The robots that share the places. Each has a start of its own, which replaces
             `start`, `ends` and both poses. Empty if one robot visits all places.
@@ -85,7 +87,8 @@ class Coverage:
     start_pose: Sequence[float] | None = None
     end_pose: Sequence[float] | None = None
     second_matrix: Array | None = None
-    cost_layer: Array | None = None
+    cost_layers: Array | None = None
+    layers: tuple[Objective, ...] = ()
     second_coordinates: Array | None = None
     robots: tuple[Robot, ...] = ()
 
@@ -99,7 +102,7 @@ class Coverage:
             raise InvalidCoverage(("places", "or spacing is required, and not both"))
         if self.spacing is not None and not 0 < self.spacing < np.inf:
             raise InvalidCoverage(("spacing", f"must be positive, got {self.spacing:g}"))
-        second = (self.second_matrix, self.cost_layer, self.second_coordinates)
+        second = (self.second_matrix, self.cost_layers, self.second_coordinates)
         given = sum(source is not None for source in second)
         if given > 1 or (given == 0 and not self.robots):
             demand = "or cost_layer or second_coordinates is required, and only one of them"
@@ -107,7 +110,7 @@ class Coverage:
         if self.frame is None:
             for name in self.poses:
                 raise InvalidCoverage((name, "must be in the frame of a map with an origin"))
-        self._check_layer()
+        self._check_layers()
 
     @property
     def frame(self) -> MapFrame | None:
@@ -131,9 +134,14 @@ class Coverage:
         return {name: pose for name, pose in poses.items() if pose is not None}
 
     @property
+    def objectives(self) -> int:
+        """The number of objectives: metres, and the layers or the one other source."""
+        return 2 if self.cost_layers is None else 1 + len(self.cost_layers)
+
+    @property
     def has_costs(self) -> bool:
         """Whether the second objective is not the metres of the first."""
-        return self.has_costs_of_places_alone or self.cost_layer is not None
+        return self.has_costs_of_places_alone or self.cost_layers is not None
 
     @property
     def has_costs_of_places_alone(self) -> bool:
@@ -150,18 +158,25 @@ class Coverage:
         """How far the robot has to be from obstacles, in words."""
         return f"farther than {self.robot_radius:g} m from every obstacle"
 
-    def _check_layer(self) -> None:
-        layer = self.cost_layer
-        if layer is None:
+    def _check_layers(self) -> None:
+        layers = self.cost_layers
+        if layers is None:
             return
-        if layer.shape != self.blocked.shape:
-            demand = f"must be as large as grid, {self.size}, got {size_of(layer)}"
-            raise InvalidCoverage(("cost_layer", demand))
-        costs = (layer >= 0) & (layer < np.inf)
-        if not costs.all():
-            row, column = np.unravel_index(costs.argmin(), costs.shape)
-            demand = f"must be finite and not negative, got {layer[row, column]:g}"
-            raise InvalidCoverage((f"cost_layer/{row}/{column}", demand))
+        for index, layer in enumerate(layers):
+            part = f"cost_layers/{index}/layer" if self.layers else "cost_layer"
+            check_layer(layer, part, self.blocked)
+
+
+def check_layer(layer: Array, part: str, grid: NDArray[np.generic]) -> None:
+    """Raise InvalidCoverage where a layer of this part of a request does not fit the grid."""
+    if layer.shape != grid.shape:
+        demand = f"must be as large as grid, {size_of(grid)}, got {size_of(layer)}"
+        raise InvalidCoverage((part, demand))
+    costs = (layer >= 0) & (layer < np.inf)
+    if not costs.all():
+        row, column = np.unravel_index(costs.argmin(), costs.shape)
+        demand = f"must be finite and not negative, got {layer[row, column]:g}"
+        raise InvalidCoverage((f"{part}/{row}/{column}", demand))
 
 
 def size_of(cells: NDArray[np.generic]) -> str:

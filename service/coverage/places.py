@@ -55,7 +55,7 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
         found[name] = int(there[0]) if len(there) else len(cells)
         if not len(there):
             if coverage.has_costs_of_places_alone:
-                costs = "only a cost_layer has costs of other cells"
+                costs = "only a cost layer has costs of other cells"
                 raise InvalidCoverage((name, f"must be in the cell of a place, as {costs}"))
             cells, names = np.vstack((cells, cell)), [*names, name]
     if coverage.spacing is not None and len(cells) > max_places:

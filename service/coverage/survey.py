@@ -1,9 +1,10 @@
 """survey(...): from a grid and places on it to an instance; Survey.paths: from tours to paths.
 
 The first objective is the length in metres of the shortest path between two places that keeps
-clear of obstacles. The second comes from the caller: a matrix, distances between points in a plane,
-or a cost layer on the grid. In a cost layer, a step costs its length in metres times the mean of
-the layer at both its ends. Of equally short paths the cheapest is taken.
+clear of obstacles. The others come from the caller: a matrix, distances between points in a plane,
+or one to three cost layers on the grid. In a cost layer, a step costs its length in metres times
+the mean of the layer at both its ends. Of equally short paths the cheapest by the first layer is
+taken.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -21,14 +22,17 @@ from service.coverage.shortest_paths import (
     Grid,
     cell_numbers,
     find_paths,
+    framed_layer,
     make_grid,
     pairwise_paths,
     trace_path,
 )
 from service.errors import Cancelled, InvalidCoverage, Refusal
-from service.instance import Instance, RouteEnds
+from service.instance import Instance, Objective, RouteEnds
 
 Indices = NDArray[np.integer]
+
+METRES = Objective("distance", "m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +49,7 @@ class Survey:
         to_visit: As in Places.
         uncovered: The cells to which no path leads.
         robots: As in Places.
+        objectives: The names of all objectives, if the caller named the cost layers.
     """
 
     places: Cells
@@ -56,6 +61,7 @@ class Survey:
     to_visit: int
     uncovered: Uncovered
     robots: tuple[RouteEnds, ...] = ()
+    objectives: tuple[Objective, ...] = ()
 
     def paths(
         self,
@@ -149,13 +155,15 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
         )
     places = find_places(coverage, free, max_places)
     cells = places.cells
-    grid = make_grid(free, coverage.cost_layer)
+    layers = [] if coverage.cost_layers is None else list(coverage.cost_layers)
+    grid = make_grid(free, layers[0] if layers else None)
     _check(stop)
     steps = np.zeros((len(cells), len(cells)), np.int32)
-    lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), stop, steps)
+    further = [framed_layer(layer) for layer in layers[1:]]
+    lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), stop, steps, further)
     _check(stop)
     metres = coverage.cell_size * lengths
-    matrices = np.stack((metres, _second_objective(coverage, metres, costs)))
+    matrices = np.concatenate((metres[np.newaxis], _other_objectives(coverage, metres, costs)))
     instance = Instance(matrices=matrices, **places.ends._asdict())
     return Survey(
         cells,
@@ -167,17 +175,21 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
         places.to_visit,
         uncovered(free, cells[0], coverage.cell_size),
         places.robots,
+        (METRES, *coverage.layers) if coverage.layers else (),
     )
 
 
-def _second_objective(coverage: Coverage, metres: Array, costs: Array) -> Array:
-    """Return the costs of the second objective, shape (n, n); `costs` are those by the layer."""
+def _other_objectives(coverage: Coverage, metres: Array, costs: Array) -> Array:
+    """Return the costs of the objectives after metres, shape (m - 1, n, n).
+
+    `costs` are those by the layers, shape (layers, n, n), for each cell and not yet for each metre.
+    """
     if coverage.second_matrix is not None:
-        return coverage.second_matrix
+        return coverage.second_matrix[np.newaxis]
     if coverage.second_coordinates is not None:
         steps = coverage.second_coordinates[:, np.newaxis] - coverage.second_coordinates
-        return np.hypot(steps[..., 0], steps[..., 1])
-    return metres if coverage.cost_layer is None else coverage.cell_size * costs
+        return np.hypot(steps[..., 0], steps[..., 1])[np.newaxis]
+    return metres[np.newaxis] if coverage.cost_layers is None else coverage.cell_size * costs
 
 
 def _check(stop: Callable[[], bool]) -> None:

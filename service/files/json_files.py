@@ -12,7 +12,7 @@ from service.files.texts import text_of
 from service.files.vroom import is_vroom, read_vroom
 
 _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
-_OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives"}
+_OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives", "cost_layers"}
 _ROWS = {"coordinates", "grid", "cost_layer"}
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
 
@@ -78,7 +78,7 @@ def _parsed(source: Source, text: str) -> Any:
 def _kind_of(request: dict[str, Any]) -> Kind | None:
     if request.keys() & {"vehicles", "shipments"}:
         return "fleet"
-    if request.keys() & {"grid", "occupancy_grid", "robots", "cost_layer"}:
+    if request.keys() & {"grid", "occupancy_grid", "robots", "cost_layer", "cost_layers"}:
         return "coverage"
     return "front" if request.keys() & {"coordinates", "matrices", "stops"} else None
 
@@ -90,12 +90,25 @@ def _check_lists(source: Source, request: dict[str, Any]) -> None:
             items = request[name]
             if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
                 raise source.refusal(f"{name} must be a list of {what}", items)
-    for name in {"grid", "cost_layer"} & request.keys():
-        if not request[name] or not request[name][0]:
+    layers = dict(_layers(source, request))
+    for name, rows in layers.items():
+        if not rows or not rows[0]:
             raise source.refusal(f"{name} must have a cell or more")
-    rows = {len(request[name]) for name in ("grid", "cost_layer") if name in request}
-    if "grid" in request and len(rows) > 1:
-        raise source.refusal("cost_layer and grid must have as many rows")
+    for name, rows in layers.items():
+        if "grid" in layers and len(rows) != len(layers["grid"]):
+            raise source.refusal(f"{name} and grid must have as many rows")
+
+
+def _layers(source: Source, request: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:
+    """Yield the rows of the grid and of each layer of costs, with its name."""
+    for name in ("grid", "cost_layer"):
+        if name in request:
+            yield name, request[name]
+    for index, item in enumerate(request.get("cost_layers", ())):
+        rows, name = item.get("layer"), f"cost_layers/{index}/layer"
+        if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows):
+            raise source.refusal(f"{name} must be a list of rows", rows)
+        yield name, rows
 
 
 def _read_list(source: Source, value: list[Any]) -> Reading:

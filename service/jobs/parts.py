@@ -7,6 +7,7 @@ a task waits for its own parts alone. This module loads no compiled code.
 from dataclasses import dataclass
 from enum import Enum
 
+from service.coverage.coverage import Coverage
 from service.errors import WarmingUp
 from service.instance import OBJECTIVES
 from service.requests.stops import Stops
@@ -72,7 +73,9 @@ def parts_of(task: Task) -> frozenset[Part]:
             if task.earlier is not None:
                 parts.add(Part.CHANGES)
             return frozenset(parts)
-    return frozenset(Part) - {Part.FLEETS, Part.SEVERAL_OBJECTIVES}
+    assert isinstance(task.subject, Coverage)
+    several = set() if task.subject.objectives > OBJECTIVES else {Part.SEVERAL_OBJECTIVES}
+    return frozenset(Part) - {Part.FLEETS} - several
 
 
 def _of_several(*, replanned: bool) -> frozenset[Part]:

@@ -65,10 +65,16 @@ def encode_front(
 
 
 def on_map(surveyed: Survey | None) -> dict[str, Any]:
-    """Return the members about a map: where its places lie, and which cells are uncovered."""
+    """Return the members about a map: where its places lie, and which cells are uncovered.
+
+    And about its objectives, if the caller named them.
+    """
     if surveyed is None:
         return {}
-    return {"places": surveyed.places.tolist(), "uncovered": asdict(surveyed.uncovered)}
+    members = {"places": surveyed.places.tolist(), "uncovered": asdict(surveyed.uncovered)}
+    if surveyed.objectives:
+        members["objectives"] = [asdict(objective) for objective in surveyed.objectives]
+    return members
 
 
 def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:

@@ -84,7 +84,7 @@ def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
     """
     assert isinstance(task.subject, Coverage)
     try:
-        return survey(task.subject, limits.most_places(shared=False), stop)
+        return survey(task.subject, limits.most_places(task.subject.objectives, shared=False), stop)
     except InvalidCoverage as refusal:
         if not task.parts:
             raise

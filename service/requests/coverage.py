@@ -10,7 +10,7 @@ from service.coverage.coverage import Coverage, Robot
 from service.errors import invalid
 from service.fleet.fleet import Over
 from service.instance import CLOSED, RouteEnds
-from service.requests.arrays import array_field, check_costs, cost_matrix
+from service.requests.arrays import Array, array_field, check_costs, cost_matrix
 from service.requests.fields import (
     NO_WAY,
     Cost,
@@ -26,7 +26,7 @@ from service.requests.fields import (
     Text,
 )
 from service.requests.limits import Limits, check_limits, lower_defaults
-from service.requests.maps.fields import Layer, MapRequest, empty_array
+from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_array, stacked
 from service.requests.stop_fields import check_unique
 from service.requests.task import SharedCoverage
 from service.requests.validation import parse_json, too_many_cities
@@ -43,6 +43,7 @@ OF_ONE_ROBOT = (
     "end",
     "start_pose",
     "end_pose",
+    "cost_layers",
     "initial_tours",
     "preferences",
     "repairs",
@@ -85,7 +86,7 @@ class RobotItem(StrictModel):
 
 
 class CoverageRequest(MapRequest):
-    """Places on a map, a second objective between them, and the options of their front."""
+    """Places on a map, the objectives between them, and the options of their front."""
 
     robot_radius: Cost = Field(
         default=0.0,
@@ -118,6 +119,10 @@ class CoverageRequest(MapRequest):
         default_factory=empty_array,
         description="or: the cost of a metre on each cell of the grid; costs are added up along the"
         " paths",
+    )
+    cost_layers: CostLayers = Field(
+        default_factory=list,
+        description="or: one to three such layers, each an objective with a name",
     )
     second_coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
@@ -160,10 +165,15 @@ class CoverageRequest(MapRequest):
             start_pose=self.start_pose or None,
             end_pose=self.end_pose or None,
             second_matrix=self.second_matrix if self.second_matrix.size else None,
-            cost_layer=self.cost_layer if self.cost_layer.size else None,
+            cost_layers=self._layers(),
+            layers=tuple(item.objective for item in self.cost_layers),
             second_coordinates=np.array(points, dtype=np.float64) if points else None,
             robots=tuple(robot.robot(self.closed) for robot in self.robots),
         )
+
+    def _layers(self) -> Array | None:
+        """Return all cost layers, shape (layers, rows, columns); None without one."""
+        return self.cost_layer[np.newaxis] if self.cost_layer.size else stacked(self.cost_layers)
 
     def shared(self) -> SharedCoverage:
         """Return the task that the robots share."""
@@ -190,7 +200,11 @@ def parse_coverage_as(
 ) -> AnyCoverageRequest:
     """Return a request of a class, as `parse_coverage_request` does."""
     request = parse_json(model, body).with_map(picture, limits.cells)
-    most = limits.most_places(shared=bool(request.robots))
+    check_unique([item.name for item in request.cost_layers], "cost_layers", "name")
+    if request.cost_layer.size and request.cost_layers:
+        raise invalid("cost_layers", "or cost_layer must be left out")
+    objectives = 1 + max(1, len(request.cost_layers))
+    most = limits.most_places(objectives, shared=bool(request.robots))
     if len(request.places) > most:
         raise too_many_cities("places", most, len(request.places))
     _check_poses(request)

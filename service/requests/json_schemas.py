@@ -25,7 +25,7 @@ JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
 FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
 _CITIES = (*FORMS, "objectives")
 _SOURCES = ("matrix", "coordinates", "from")
-_SECOND = ("second_matrix", "cost_layer", "second_coordinates")
+_SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
 # The schemas of an objective by its source of costs; those of fleets have names of their own.
 _Described = Mapping[str, tuple[str, Sequence[str]]]  # description and source, by name
 _OBJECTIVES: _Described = {
@@ -128,7 +128,7 @@ def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]
 
 
 def _coverage_schema(limits: Limits, actors: Iterable[str]) -> Schema:
-    whole = _of_two(limited_schema(CoverageRequest, limits, actors))
+    whole = limited_schema(CoverageRequest, limits, actors)
     schema: Schema = _inlined(whole, whole.pop("$defs"))
     fields = schema["properties"]
     for name in ("cell_size", "mode", "free_thresh", "spacing"):

@@ -66,9 +66,9 @@ class Limits:
         most = self.cities if objectives == OBJECTIVES else min(self.cities, self.several_cities)
         return most if kind == "coordinates" else min(most, self.matrix_cities)
 
-    def most_places(self, *, shared: bool) -> int:
+    def most_places(self, objectives: int = OBJECTIVES, *, shared: bool) -> int:
         """Return the most places on a map, which several robots share or one visits."""
-        places = self.most_cities("matrices")
+        places = self.most_cities("matrices", objectives)
         return min(places, self.fleet_stops) if shared else places
 
     def most_tours(self, n: int, id_bytes: int = 0) -> int:

@@ -130,10 +130,11 @@ def coverage_task(
     Raises:
         Refusal: No actor serves it, or the actor cannot do what it asks for.
     """
-    name = choose_actor(actors, "matrices", request.requested_actor)
+    m = coverage.objectives
+    name = choose_actor(actors, "matrices", request.requested_actor, m)
     return Task(
         subject=coverage,
-        options=replace(options_of(request, actors[name]), start=coverage.start),
+        options=replace(options_of(request, actors[name], m), start=coverage.start),
         actor=name,
         paths=request.paths,
         arrivals=request.arrivals,

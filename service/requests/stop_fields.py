@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
+from service.instance import Objective
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import (
     NO_WAY,
@@ -17,7 +18,7 @@ from service.requests.fields import (
     StrictModel,
     Text,
 )
-from service.requests.stops import UNITS, Matrix, Measure, Measured, Objective, Plane, Source, Stop
+from service.requests.stops import UNITS, Matrix, Measure, Measured, Plane, Source, Stop
 from service.requests.validation import nearest, show
 
 StopReference = Annotated[

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.errors import CityNames
-from service.instance import CLOSED, Instance, Kind, RouteEnds
+from service.instance import CLOSED, Instance, Kind, Objective, RouteEnds
 from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]
@@ -27,14 +27,6 @@ class Stop:
 
     id: str
     location: Location | None = None
-
-
-@dataclass(frozen=True)
-class Objective:
-    """The name of an objective, and its unit if the caller said so."""
-
-    name: str
-    unit: str | None = None
 
 
 @dataclass(frozen=True)

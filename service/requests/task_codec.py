@@ -19,7 +19,7 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, Robot
 from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
-from service.instance import RouteEnds
+from service.instance import Objective, RouteEnds
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.earlier_versions import parse_rest
 from service.requests.limits import Limits
@@ -29,14 +29,13 @@ from service.requests.stops import (
     Labels,
     Matrix,
     Measured,
-    Objective,
     Plane,
     Stop,
     Stops,
 )
 from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet
 
-_FIRST_LINE = b"paretour task 2\n"
+_FIRST_LINE = b"paretour task 3\n"
 _LENGTH = struct.Struct("!Q")
 _TYPES: Mapping[str, type[Any]] = {
     each.__name__: each

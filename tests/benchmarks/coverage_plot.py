@@ -54,7 +54,9 @@ def _coverage(free: NDArray[np.bool_], risk: Array) -> Coverage:
     region = largest_region(free_cells(~free, 1.0, RADIUS))
     places = covering_places(region, SPACING)
     safe = places[risk[tuple(places.T)] < SAFE]
-    return Coverage(blocked=~free, cell_size=1.0, robot_radius=RADIUS, places=safe, cost_layer=risk)
+    return Coverage(
+        blocked=~free, cell_size=1.0, robot_radius=RADIUS, places=safe, cost_layers=risk[np.newaxis]
+    )
 
 
 def _risk(rng: np.random.Generator) -> Array:

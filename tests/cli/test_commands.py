@@ -132,6 +132,19 @@ def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:
     assert all(item["path"]["metres"] > 0 for item in answer["front"])
 
 
+def test_each_of_several_files_of_costs_is_an_objective_with_its_name(tmp_path: Path) -> None:
+    Image.new("L", (8, 6), 255).save(tmp_path / "map.png")
+    for seed, name in enumerate(("people", "noise")):
+        drawn = np.random.default_rng(seed).random((6, 8))
+        np.savetxt(tmp_path / f"{name}.csv", drawn, delimiter=",")
+    costs = ["--cost-layer", tmp_path / "people.csv", "--cost-layer", tmp_path / "noise.csv"]
+    asked = ["coverage", tmp_path / "map.png", *costs, "--cell-size=0.5", "--spacing=1"]
+    answer = json.loads(paretour(*asked, "--json").stdout)
+    names = [objective["name"] for objective in answer["objectives"]]
+    assert names == ["distance", "people", "noise"]
+    assert all(len(item["lengths"]) == 3 for item in answer["front"])
+
+
 def test_a_map_of_ros_is_covered_as_the_same_map_in_a_message(tmp_path: Path) -> None:
     shades = np.full((5, 7), 254, np.uint8)
     shades[0], shades[1, :4], shades[4, 2:] = 205, 0, 205  # unknown, an obstacle, unknown

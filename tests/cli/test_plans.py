@@ -52,7 +52,7 @@ def test_a_map_is_a_file_beside_its_options_and_costs(tmp_path: Path) -> None:
     (tmp_path / "map.png").write_bytes(b"PNG")
     (tmp_path / "costs.csv").write_text("1,2\n3,4\n")
     options = {"cell_size": 1.0, "spacing": 2.0, "paths": None}
-    plan, _ = plan_map(tmp_path / "map.png", tmp_path / "costs.csv", options)
+    plan, _ = plan_map(tmp_path / "map.png", [tmp_path / "costs.csv"], options)
     assert plan.file is not None
     assert (plan.path, plan.file.content) == ("/coverage", b"PNG")
     np.testing.assert_array_equal(plan.request["cost_layer"], [[1, 2], [3, 4]])
@@ -62,10 +62,10 @@ def test_a_map_is_a_file_beside_its_options_and_costs(tmp_path: Path) -> None:
 def test_everything_that_a_map_lacks_is_named_at_once(tmp_path: Path) -> None:
     (tmp_path / "map.png").write_bytes(b"PNG")
     with pytest.raises(UsageError, match=r"without --cell-size, --spacing .*, --cost-layer"):
-        plan_map(tmp_path / "map.png", None, {"spacing": None})
+        plan_map(tmp_path / "map.png", [], {"spacing": None})
     (tmp_path / "map.json").write_text('{"grid": [[0]], "places": [[0, 0]], "cell_size": 1}')
     with pytest.raises(UsageError, match="without --cost-layer"):
-        plan_map(tmp_path / "map.json", None, {})
+        plan_map(tmp_path / "map.json", [], {})
 
 
 def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
@@ -73,7 +73,7 @@ def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
     poses = {"start_pose": "-1,2.5", "end_pose": None}
     options = {"spacing": 2.0, "unknown": None, "cell_size": None, **poses}
     (tmp_path / "costs.csv").write_text("1\n")
-    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options)
+    plan, _ = plan_map(tmp_path / "map.json", [tmp_path / "costs.csv"], options)
     assert plan.request.keys() == {"occupancy_grid", "spacing", "cost_layer", "start_pose"}
     assert plan.request["occupancy_grid"] == {"info": {}, "data": [0]}
     assert plan.request["start_pose"] == [-1.0, 2.5]
@@ -82,13 +82,13 @@ def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
 def test_robots_share_a_map_without_a_second_objective(tmp_path: Path) -> None:
     (tmp_path / "map.png").write_bytes(b"PNG")
     options = {"cell_size": 1.0, "spacing": 2.0}
-    plan, _ = plan_map(tmp_path / "map.png", None, options, robots=["-1,2.5", "3,4,1.57"])
+    plan, _ = plan_map(tmp_path / "map.png", [], options, robots=["-1,2.5", "3,4,1.57"])
     assert plan.request["robots"] == [
         {"id": "robot-1", "start_pose": [-1.0, 2.5]},
         {"id": "robot-2", "start_pose": [3.0, 4.0, 1.57]},
     ]
     with pytest.raises(UsageError, match="--robot must be numbers with commas between, got '1;2'"):
-        plan_map(tmp_path / "map.png", None, options, robots=["1;2"])
+        plan_map(tmp_path / "map.png", [], options, robots=["1;2"])
 
 
 def test_ids_of_cities_come_beside_the_plan(tmp_path: Path) -> None:

@@ -120,7 +120,7 @@ def test_what_a_replica_has_begun_another_tells_of_when_it_is_killed(
 def test_when_a_worker_is_lost_its_job_ends_with_a_front(
     machines: Machines, client: httpx.Client, with_its_processes: bool
 ) -> None:
-    path = later(client, SOME_SECONDS)
+    path = later(client, {**SOME_SECONDS, "time_limit": 4})
     until_found(client, path)
     planner = machines.state.planning(id_of(path))
     assert planner is not None

@@ -25,7 +25,12 @@ LAYER = np.ones(ROOMS.shape)
 
 
 def places(max_places: int = 50, **members: Any) -> Places:
-    task = {"blocked": ROOMS, "cell_size": 1.0, "origin": (10.0, 20.0, 0.0), "cost_layer": LAYER}
+    task = {
+        "blocked": ROOMS,
+        "cell_size": 1.0,
+        "origin": (10.0, 20.0, 0.0),
+        "cost_layers": LAYER[np.newaxis],
+    }
     coverage = Coverage(**{**task, **members})
     free = free_cells(coverage.blocked, coverage.cell_size, coverage.robot_radius)
     return find_places(coverage, free, max_places)
@@ -76,8 +81,8 @@ def test_without_a_pose_a_spacing_covers_the_largest_region() -> None:
             "must be a cell farther than 1 m from every obstacle, and [2, 3] is not",
         ),
         (
-            {"start_pose": (14.5, 20.5), "cost_layer": None, "second_matrix": np.zeros((3, 3))},
-            "must be in the cell of a place, as only a cost_layer has costs of other cells",
+            {"start_pose": (14.5, 20.5), "cost_layers": None, "second_matrix": np.zeros((3, 3))},
+            "must be in the cell of a place, as only a cost layer has costs of other cells",
         ),
         (
             {"start_pose": (14.5, 20.5), "origin": None},
@@ -128,7 +133,7 @@ def test_a_place_that_the_robot_cannot_reach_is_named() -> None:
 
 def test_a_pose_at_a_place_needs_no_costs_of_its_own() -> None:
     found = places(
-        places=GIVEN, start_pose=(15.5, 20.5), cost_layer=None, second_matrix=np.zeros((3, 3))
+        places=GIVEN, start_pose=(15.5, 20.5), cost_layers=None, second_matrix=np.zeros((3, 3))
     )
     assert found.start == 1
 

@@ -13,8 +13,10 @@ from scipy.sparse.csgraph import dijkstra
 from service.coverage.shortest_paths import (
     cell_numbers,
     find_paths,
+    framed_layer,
     make_grid,
     pairwise_paths,
+    path_costs,
     trace_path,
 )
 
@@ -72,7 +74,7 @@ def test_lengths_are_those_of_scipy(drawn: tuple[np.ndarray, np.ndarray]) -> Non
     reached = np.isfinite(expected)
     both = by_scipy(free, layer, 1e-5)[inside]
     added = (both[reached] - expected[reached]) * 1e5
-    np.testing.assert_allclose(added, costs[reached], atol=1e-6)
+    np.testing.assert_allclose(added, costs[0][reached], atol=1e-6)
 
 
 @given(GRIDS)
@@ -93,6 +95,8 @@ def test_a_path_is_made_of_steps_and_is_as_long_and_as_costly_as_it_says(
             length, cost = np.sum(taken, axis=0) if taken else (0, 0)
             np.testing.assert_allclose(tree.length[number], length)
             np.testing.assert_allclose(tree.cost[number], cost)
+            by_layer = path_costs(grid, tree, framed_layer(layer), numbers)
+            np.testing.assert_allclose(by_layer[numbers == number], cost)
 
 
 def test_no_corner_is_cut() -> None:

@@ -52,7 +52,9 @@ def test_a_cost_layer_is_integrated_along_the_cheapest_of_the_shortest_paths() -
     open_ground = np.zeros((3, 3), np.bool_)
     places = np.array([[0, 0], [0, 2], [1, 2]])
     found = survey(
-        Coverage(blocked=open_ground, cell_size=2.0, places=places, cost_layer=layer), 10, never
+        Coverage(blocked=open_ground, cell_size=2.0, places=places, cost_layers=layer[np.newaxis]),
+        10,
+        never,
     )
     assert found.instance.matrices is not None
     lengths, costs = found.instance.matrices
@@ -156,7 +158,7 @@ def test_the_path_of_a_tour_of_one_place_is_that_place() -> None:
 
 
 def test_places_are_laid_out_where_a_spacing_is_given() -> None:
-    layer = {"second_matrix": None, "cost_layer": np.ones(ROOM.shape)}
+    layer = {"second_matrix": None, "cost_layers": np.ones((1, *ROOM.shape))}
     found = survey(room(places=None, spacing=1.5, **layer), 10, never)
     assert found.places.tolist() == [[1, 1], [1, 4], [4, 1], [4, 4]]
     with pytest.raises(TooManyPlaces, match="at most 3 places, got 4") as raised:
@@ -185,11 +187,11 @@ WALLED = np.array([[0, 0, 1, 0], [0, 0, 1, 0]], dtype=np.bool_)
             [("second_matrix", "or cost_layer or second_coordinates is required, and only one")],
         ),
         (
-            {"second_matrix": None, "cost_layer": np.zeros((5, 5))},
+            {"second_matrix": None, "cost_layers": np.zeros((1, 5, 5))},
             [("cost_layer", "must be as large as grid, 5 x 6 cells, got 5 x 5 cells")],
         ),
         (
-            {"second_matrix": None, "cost_layer": -np.eye(5, 6)},
+            {"second_matrix": None, "cost_layers": -np.eye(5, 6)[np.newaxis]},
             [("cost_layer/0/0", "must be finite and not negative, got -1")],
         ),
         (

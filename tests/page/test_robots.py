@@ -7,6 +7,8 @@ import re
 from contextlib import redirect_stdout
 from xml.etree import ElementTree
 
+import numpy as np
+import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect
 
@@ -133,6 +135,30 @@ def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, releas
         open_files(page, {"wrong.json": json.dumps({**CORRIDOR, "start": 1})})
         page.get_by_role("button", name="Plan", exact=True).click()
         expect(page.locator("#request-fault")).to_contain_text("must be left out with robots")
+
+
+def test_each_cost_layer_of_a_robot_has_a_limit_of_its_own(browser: Browser, released: str) -> None:
+    layers = [
+        {
+            "name": name,
+            "layer": (9.0 * (np.random.default_rng(seed).random((9, 14)) > 0.6)).tolist(),
+        }
+        for seed, name in enumerate(("people", "dust"))
+    ]
+    spread = {"grid": [[0] * 14] * 9, "cell_size": 0.5, "spacing": 1.2, "time_limit": 0.5}
+    with open_page(browser, released) as page:
+        open_files(page, {"robot.json": json.dumps({**spread, "cost_layers": layers})})
+        expect(page.locator("#shade")).to_have_text("shaded: people")
+        expect(page.locator("#named")).to_be_hidden()
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        for name in ("Distance", "People", "Dust"):
+            expect(page.get_by_role("slider", name=name, exact=True)).to_be_visible()
+        page.get_by_role("slider", name="Dust", exact=True).press("Home")
+        expect(page.locator("#caps-said")).to_contain_text("are within the limits")
+        least = min(item["lengths"][2] for item in json.loads(saved(page, "json"))["front"])
+        shown = page.locator("#comparison tbody td:nth-child(2)").nth(2).inner_text()
+        assert float(shown.replace(",", "")) == pytest.approx(least, rel=1e-3)
 
 
 def test_a_picture_of_one_robot_has_its_map_and_path(browser: Browser, released: str) -> None:

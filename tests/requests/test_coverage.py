@@ -43,7 +43,7 @@ def test_a_request_becomes_a_coverage_task() -> None:
     np.testing.assert_array_equal(coverage.places, PLACES)
     np.testing.assert_array_equal(coverage.second_coordinates, POINTS)
     assert (coverage.cell_size, coverage.robot_radius, coverage.start) == (0.5, 0.0, 2)
-    assert (coverage.spacing, coverage.second_matrix, coverage.cost_layer) == (None, None, None)
+    assert (coverage.spacing, coverage.second_matrix, coverage.cost_layers) == (None, None, None)
 
 
 @pytest.mark.parametrize(
@@ -130,6 +130,6 @@ def test_the_schema_asks_for_places_and_a_second_objective_in_one_form_each() ->
     assert ways == [
         [["grid", "cell_size"], ["occupancy_grid"]],
         [["places"], ["spacing"]],
-        [["second_matrix"], ["cost_layer"], ["second_coordinates"], ["robots"]],
+        [["second_matrix"], ["cost_layer"], ["cost_layers"], ["second_coordinates"], ["robots"]],
     ]
     assert schema["properties"]["places"]["maxItems"] == LIMITS.cities

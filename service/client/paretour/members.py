@@ -124,8 +124,16 @@ class FleetRequest(TypedDict, total=False):
     seed: int
 
 
+class LayerRequest(TypedDict, total=False):
+    """A cost layer on a map: an objective with a name."""
+
+    name: Required[str]
+    unit: str
+    layer: Required[ArrayLike]
+
+
 class CoverageRequest(PlanRequest, total=False):
-    """The members of a request to POST /coverage: map, places, second objective."""
+    """The members of a request to POST /coverage: map, places, and costs beside the metres."""
 
     grid: ArrayLike
     occupancy_grid: Mapping[str, Any]
@@ -146,6 +154,7 @@ class CoverageRequest(PlanRequest, total=False):
     end_pose: ArrayLike
     second_matrix: Costs
     cost_layer: ArrayLike
+    cost_layers: Sequence[LayerRequest]
     second_coordinates: ArrayLike
     paths: bool
 
@@ -188,4 +197,5 @@ class ReplanRequest(PlanOptions, total=False):
     blocked: ArrayLike
     freed: ArrayLike
     cost_layer: ArrayLike
+    cost_layers: Sequence[LayerRequest]
     paths: bool

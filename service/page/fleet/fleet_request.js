@@ -14,7 +14,7 @@ export const describedRobots = ({ robots }, map) =>
 
 const NOT_EDITED = "are shown here and not edited: change the request’s JSON, and open it again.";
 // Members that are long lists of rows.
-const ROWS = ["matrix", "coordinates", "grid", "cost_layer", "second_matrix", "second_coordinates"];
+const ROWS = ["matrix", "coordinates", "grid", "cost_layer", "layer", "second_matrix", "second_coordinates"];
 
 /** The request as JSON; costs, planes and maps in a few words. */
 export function jsonOf(asked) {

@@ -46,6 +46,12 @@ export function requestFor({ rounded: whole, ids, names, ...body }) {
   return { path, body: (ids || names) && form && form !== "stops" ? long(short, ids, names) : short };
 }
 
+/** The names of the objectives of more than two matrices or of cost layers; undefined for any other request. */
+export function ownNames({ matrices, cost_layers: layers }) {
+  if (layers) return [{ name: "distance", unit: "m" }, ...layers.map(({ name, unit = "" }) => ({ name, unit }))];
+  return matrices?.length > 2 ? matrices.map((_, axis) => unnamed(axis)) : undefined;
+}
+
 /** A request whose rows have more than two planes, as stops under objectives with a plane each; any other as it is. */
 export function inPlanes(request) {
   const { coordinates, names, ids, ...others } = request;

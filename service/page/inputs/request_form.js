@@ -2,7 +2,7 @@
 
 import { isCity, textOf } from "./cities.js";
 import { Fields } from "./fields.js";
-import { askedFor, described, inPlanes, requestFor } from "./instance.js";
+import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.js";
 import { RequestText } from "../fleet/request_text.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
@@ -11,7 +11,7 @@ import { StopsTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
-import { UNNAMED, namesIn, unnamed } from "../common/objectives.js";
+import { UNNAMED, namesIn } from "../common/objectives.js";
 
 const element = (id) => document.getElementById(id);
 const COLUMNS = { coordinates: ["x₁", "y₁", "x₂", "y₂"], stops: ["Longitude", "Latitude"] };
@@ -54,9 +54,9 @@ export class RequestForm {
     const wanted = inPlanes(opened);
     const [kind, form] = [kindOf(wanted), formOf(wanted)];
     this.#brought = this.#fields.take(wanted, kind);
-    this.#objectives = wanted.names ?? (wanted.matrices?.length > 2 ? wanted.matrices.map((_, axis) => unnamed(axis)) : names);
+    this.#objectives = wanted.names ?? ownNames(wanted) ?? names;
     element("typed").hidden = form !== "coordinates";
-    element("named").hidden = Boolean(kind.movers) || !(kind.onGrid || form);
+    element("named").hidden = Boolean(kind.movers || wanted.cost_layers) || !(kind.onGrid || form);
     this.#text.show(kind.movers ? wanted : null);
     element("brought").textContent = described(wanted);
     element("brought").hidden = !element("brought").textContent;

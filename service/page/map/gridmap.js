@@ -42,8 +42,8 @@ export class GridMap {
   }
 
   /** Shows a grid, rows of 0 and 1, tinted by a layer of costs if there is one. */
-  show({ grid, cost_layer, places }) {
-    this.#grid = { grid, costs: cost_layer };
+  show({ grid, places, ...costs }) {
+    this.#grid = { grid, costs: shadeOf(costs) };
     for (const name of Object.keys(this.#lines)) this.draw(name, null);
     this.drawRoutes([]);
     this.#element.style.aspectRatio = `${grid[0].length} / ${grid.length}`;
@@ -126,6 +126,9 @@ export class GridMap {
     return [[-this.#grid.grid.length, 0], [0, this.#grid.grid[0].length]];
   }
 }
+
+/** The costs that a request's map is tinted by, those of its second objective; undefined without a layer. */
+export const shadeOf = ({ cost_layer: layer, cost_layers: layers }) => layer ?? layers?.[0].layer;
 
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];

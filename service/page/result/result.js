@@ -6,6 +6,7 @@ import { compare } from "./comparison.js";
 import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
 import { nameOf } from "../inputs/names.js";
+import { shadeOf } from "../map/gridmap.js";
 import { Maps } from "../map/maps.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { PlanView } from "../fleet/plan_view.js";
@@ -77,7 +78,7 @@ export class Result {
     this.#planView.open(instance);
     this.#kind = kindOf(instance);
     element("uncovered").textContent = "";
-    element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
+    element("shade").textContent = shadeOf(instance) ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#id = null;
     this.#balance = MIDDLE;

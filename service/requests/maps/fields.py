@@ -4,6 +4,7 @@ A map is the rows of `grid`, a picture beside the JSON, or an occupancy grid of 
 picture go by the names of the keys of a map.yaml, so that one becomes a request by copying them.
 """
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -11,8 +12,18 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import invalid
+from service.instance import MOST_OBJECTIVES, Objective
 from service.requests.arrays import Array, array_field, check_grid, rectangular_array
-from service.requests.fields import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber, Share
+from service.requests.fields import (
+    ArrayRows,
+    AsInteger,
+    Number,
+    PlanRequest,
+    PositiveNumber,
+    Share,
+    StrictModel,
+    Text,
+)
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
     UNKNOWN,
@@ -38,6 +49,39 @@ USELESS = {
 def empty_array() -> Array:
     """Return the default of an array that was not given: no caller can give an empty one."""
     return np.empty((0, 0))
+
+
+class LayerItem(StrictModel):
+    """A cost layer with its name: an objective of its own."""
+
+    name: Text = Field(description="comes back with the objective; no two layers share one")
+    unit: Text | None = Field(default=None, description="comes back with the objective")
+    layer: Layer = Field(description="the cost of a metre on each cell of the grid")
+
+    @property
+    def objective(self) -> Objective:
+        """Its name and its unit."""
+        return Objective(self.name, self.unit)
+
+
+def stacked(items: Sequence[LayerItem]) -> Array | None:
+    """Return cost layers as an array, shape (layers, rows, columns); None without one.
+
+    Raises:
+        Refusal: They differ in size.
+    """
+    for index, item in enumerate(items):
+        rows, columns = items[0].layer.shape
+        if item.layer.shape != (rows, columns):
+            came = " x ".join(map(str, item.layer.shape))
+            demand = f"must be as large as the first, {rows} x {columns} cells, got {came}"
+            raise invalid(f"cost_layers/{index}/layer", demand)
+    return np.stack([item.layer for item in items]) if items else None
+
+
+CostLayers = Annotated[
+    list[LayerItem], Field(min_length=1, max_length=MOST_OBJECTIVES - 1, fail_fast=True)
+]
 
 
 def _no_occupancy_grid() -> OccupancyGrid:

@@ -20,7 +20,7 @@ from service.requests.fields import (
     StrictModel,
     Text,
 )
-from service.requests.maps.fields import Layer, empty_array
+from service.requests.maps.fields import CostLayers, Layer, empty_array
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
 _Row = SomeItems[Cost | None]
@@ -159,12 +159,16 @@ class ReplanRequest(PlanFields):
         default_factory=empty_array,
         description="on a map: a new second objective, as in `POST /coverage`",
     )
+    cost_layers: CostLayers = Field(
+        default_factory=list,
+        description="on a map whose cost layers have names: these layers anew",
+    )
     paths: bool = Field(
         default=False, description="on a map: whether each tour comes with its path"
     )
 
 
-_OF_MAPS = ("pose", "grid", "blocked", "freed", "cost_layer", "paths")
+_OF_MAPS = ("pose", "grid", "blocked", "freed", "cost_layer", "cost_layers", "paths")
 _OF_STOPS = ("costs", "objectives", "geometry")
 
 

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
-from service.coverage.coverage import Coverage, size_of
+from service.coverage.coverage import Coverage, check_layer, size_of
 from service.errors import InvalidCoverage, invalid
-from service.requests.arrays import check_grid
+from service.requests.arrays import Array, check_grid
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
 from service.requests.replan.fields import ReplanRequest, check_fields
 from service.requests.replan.way import RestOfWay, StoredFront, earlier_front_of_map, rest_of_way
 from service.requests.task import Task
-from service.requests.validation import too_many_cities
+from service.requests.validation import show, too_many_cities
 
 Cells = NDArray[np.int64]
 
@@ -40,15 +40,15 @@ def rest_of_map(
     front = earlier_front_of_map(stored, coverage)
     changes = _changes(coverage, request)
     known = np.array(stored.found.places, np.int64).reshape(-1, 2)
-    anywhere = request.cost_layer.size > 0 or coverage.cost_layer is not None
+    anywhere = "cost_layers" in changes or coverage.cost_layers is not None
     cells, request = _all_places(known, coverage, request, anywhere)
     rest = rest_of_way(front, request)
-    n, most = len(rest.stops), limits.most_places(shared=False)
+    n, most = len(rest.stops), limits.most_places(coverage.objectives, shared=False)
     if n > most:
         raise too_many_cities("add", most, n)
     check_amounts(request, n, limits)
     matrix, points = coverage.second_matrix, coverage.second_coordinates
-    if request.cost_layer.size:  # it replaces both
+    if "cost_layers" in changes:  # they replace both
         matrix = points = None
     members = {
         "places": cells[rest.stops],
@@ -74,9 +74,29 @@ def _changes(coverage: Coverage, request: ReplanRequest) -> dict[str, Any]:
     changes: dict[str, Any] = {}
     if request.grid.size or request.blocked or request.freed:
         changes["blocked"] = _blocked(coverage, request)
-    if request.cost_layer.size:
-        changes["cost_layer"] = request.cost_layer
+    if request.cost_layer.size or request.cost_layers:
+        changes["cost_layers"] = _layers(coverage, request)
     return changes
+
+
+def _layers(coverage: Coverage, request: ReplanRequest) -> Array:
+    """Return the cost layers of the map as they are now, shape (layers, rows, columns)."""
+    names = [layer.name for layer in coverage.layers]
+    if request.cost_layer.size:
+        if names:
+            raise invalid("cost_layer", "must be one of cost_layers, as these have names")
+        return request.cost_layer[np.newaxis]
+    if coverage.cost_layers is None or not names:
+        raise invalid("cost_layers", "must be left out: the front has no layers with names")
+    layers = coverage.cost_layers.copy()
+    for index, item in enumerate(request.cost_layers):
+        part = f"cost_layers/{index}"
+        if item.name not in names:
+            known = ", ".join(names)
+            raise invalid(f"{part}/name", f"must be one of {known}, got {show(item.name)}")
+        check_layer(item.layer, f"{part}/layer", coverage.blocked)
+        layers[names.index(item.name)] = item.layer
+    return layers
 
 
 def _blocked(coverage: Coverage, request: ReplanRequest) -> NDArray[np.bool_]:
@@ -158,7 +178,7 @@ def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, lis
 
 def _check_costs(anywhere: bool, part: str) -> None:
     if not anywhere:
-        demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
+        demand = "must be in the cell of a place, as only a cost layer has costs of other cells"
         raise invalid(part, demand)
 
 

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
 from service.errors import Refusal, invalid
-from service.instance import CLOSED, OBJECTIVES, RouteEnds
+from service.instance import CLOSED, OBJECTIVES, Objective, RouteEnds
 from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
-from service.requests.stops import Labels, Objective, Source, Stop, Stops
+from service.requests.stops import Labels, Source, Stop, Stops
 from service.requests.task import Task, TaskSource
 from service.requests.validation import show
 from service.search.open_routes import rotated

@@ -28,6 +28,7 @@ FRAME = MapFrame(origin=ORIGIN, cell_size=0.5, rows=ROWS)
 LAYER = np.random.default_rng(1).integers(1, 9, (ROWS, COLUMNS)).tolist()
 MATRIX = (np.random.default_rng(2).integers(1, 9, (6, 6)) * (1 - np.eye(6))).tolist()
 POINTS = np.random.default_rng(3).integers(0, 9, (6, 2)).tolist()
+MEMBERS = {"cost_layer": "cost_layers"}  # of the task, where they have another name
 SECONDS = {"cost_layer": LAYER, "second_matrix": MATRIX, "second_coordinates": POINTS}
 
 
@@ -88,12 +89,12 @@ def test_the_rest_has_the_places_that_are_left_and_the_costs_between_them(second
     assert task.earlier is not None
     assert [left[place] for place in task.earlier.driven] == [1, 5, 2, 3, 0]
     expected = {
-        "cost_layer": LAYER,
+        "cost_layer": [LAYER],
         "second_matrix": [[MATRIX[i][j] for j in left] for i in left],
         "second_coordinates": [POINTS[i] for i in left],
     }
     for name in SECONDS:
-        costs = getattr(coverage, name)
+        costs = getattr(coverage, MEMBERS.get(name, name))
         assert (None if costs is None else costs.tolist()) == (
             expected[name] if name == second else None
         )
@@ -103,8 +104,8 @@ def test_the_rest_has_the_places_that_are_left_and_the_costs_between_them(second
 def test_a_new_layer_replaces_any_second_objective(second: str) -> None:
     layer = [[2] * COLUMNS] * ROWS
     coverage = map_of(rest(second, cost_layer=layer, add=[[2, 1]]))
-    assert coverage.cost_layer is not None
-    assert coverage.cost_layer.tolist() == layer
+    assert coverage.cost_layers is not None
+    assert coverage.cost_layers.tolist() == [layer]
     assert (coverage.second_matrix, coverage.second_coordinates) == (None, None)
     assert coverage.places is not None
     assert coverage.places.tolist() == [*PLACES, [2, 1]]
@@ -162,9 +163,9 @@ def test_what_may_have_changed_everywhere_has_touched_every_place() -> None:
         ("cost_layer", {"remove": [0]}, "/remove/0", "must not be where the way goes on"),
         ("cost_layer", {"remove": [1], "done": [1]}, "/remove/0", "must not be done"),
         ("cost_layer", {"add": [[2, 1]] * 15}, "/add", "at most 20"),
-        ("second_matrix", {"add": [[2, 1]]}, "/add/0", "only a cost_layer"),
-        ("second_coordinates", {"position": [2, 1]}, "/position", "only a cost_layer"),
-        ("second_matrix", {"pose": pose_of([2, 1])}, "/pose", "only a cost_layer"),
+        ("second_matrix", {"add": [[2, 1]]}, "/add/0", "only a cost layer"),
+        ("second_coordinates", {"position": [2, 1]}, "/position", "only a cost layer"),
+        ("second_matrix", {"pose": pose_of([2, 1])}, "/pose", "only a cost layer"),
     ],
 )
 def test_what_cannot_be_on_a_map_is_refused_at_its_place(
