@@ -51,7 +51,7 @@ def test_a_few_stops_of_any_costs_give_the_front_of_all_plans(
     np.testing.assert_allclose(front.points, known, rtol=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_search_finds_the_least_of_both_lengths_in_costs_of_any_size(seed: int) -> None:
     fleet = with_costs(100 + seed, 8, ("sum", "sum"))
     plans = exact_plans(fleet)

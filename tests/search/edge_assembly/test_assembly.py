@@ -1,5 +1,7 @@
 """Edge assembly: what two tours differ by, and the tour that has what is better in both."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from tests.helpers.instances import (
     scalarization_of,
     steps_of,
     uniform,
+    weighted_cost,
     weighted_length,
 )
 
@@ -35,16 +38,18 @@ def assembled(
 
 def short_tour(scalarization: Scalarization, tour: np.ndarray) -> np.ndarray:
     """A local optimum by reversals of any part of a tour."""
-    best, least = tour, weighted_length(scalarization, tour)
-    improved = True
+    n = len(tour)
+    costs = [[weighted_cost(scalarization, i, j) for j in range(n)] for i in range(n)]
+    best, improved = tour.tolist(), True
     while improved:
         improved = False
-        for i in range(len(tour) - 1):
-            for j in range(i + 2, len(tour) + 1):
-                new = np.concatenate([best[:i], best[i:j][::-1], best[j:]])
-                if (length := weighted_length(scalarization, new)) < least - LEAST:
-                    best, least, improved = new, length, True
-    return best
+        for i, j in combinations(range(n), 2):
+            before, first, last, after = best[i - 1], best[i], best[j], best[(j + 1) % n]
+            gain = costs[before][first] + costs[last][after]
+            if gain - costs[before][last] - costs[first][after] > LEAST and before != last:
+                best[i : j + 1] = best[i : j + 1][::-1]
+                improved = True
+    return np.array(best)
 
 
 def with_blocks_swapped(tour: np.ndarray, start: int) -> np.ndarray:
