@@ -14,7 +14,7 @@ from service.files.reading import NamedFile
 _FILE = {"type": "string", "format": "binary", "description": "a file, with its filename"}
 _FORM = {
     "type": "object",
-    "description": "One file, or two: an objective each, or stops and vehicles.",
+    "description": "One file; one for each objective; or stops and vehicles.",
     "properties": {"file": {"type": "array", "items": _FILE, "minItems": 1}},
     "required": ["file"],
 }
@@ -45,8 +45,8 @@ def file_router(
 
         A file is CSV with any separator, XLSX, GeoJSON, JSON, TSPLIB, CVRPLIB, in the format of
         Solomon, of Li and Lim or of VROOM, or a map: a picture, with or without its map.yaml. Two
-        tables or TSPLIB files are one objective each; a table of stops and one of vehicles are a
-        fleet. The answer also lists what was assumed. Nothing is planned: the request in the
+        to four tables or TSPLIB files are one objective each; a table of stops and one of vehicles
+        are a fleet. The answer also lists what was assumed. Nothing is planned: the request in the
         answer is for `POST /front`, `/fleet` or `/coverage`, as its `kind` says.
         """
         client = client_of(request)

@@ -45,7 +45,7 @@ def before_the_command(
 @with_groups
 def front(  # noqa: PLR0913  a group of options, or one, each
     file: options.File,
-    file2: options.SecondFile = None,
+    more: options.MoreFiles = None,
     *,
     search: options.Search,
     size: options.Size = None,
@@ -64,7 +64,9 @@ def front(  # noqa: PLR0913  a group of options, or one, each
 
     members = {**vars(search), **vars(network), **vars(ends), "size": size, "augment": augment}
     run_front(
-        partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=members),
+        partial(
+            plan_cities, [file, *(more or ())], unrounded=unrounded, angles=angles, options=members
+        ),
         backend_for(service),
         output,
     )
@@ -74,7 +76,7 @@ def front(  # noqa: PLR0913  a group of options, or one, each
 @with_groups
 def tour(  # noqa: PLR0913  a group of options, or one, each
     file: options.FileOrMap,
-    file2: options.SecondFile = None,
+    more: options.MoreFiles = None,
     *,
     choice: options.Ways,
     search: options.Search,
@@ -95,7 +97,13 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     of_search = {**vars(search), **vars(network), **vars(ends)}
     members = {**of_search, **vars(area), "augment": augment}
     run_tour(
-        partial(plan_tour, file, file2, cost_layers or (), unrounded=unrounded, options=members),
+        partial(
+            plan_tour,
+            [file, *(more or ())],
+            cost_layers or (),
+            unrounded=unrounded,
+            options=members,
+        ),
         backend_for(service),
         choice,
         as_json,

@@ -44,7 +44,7 @@ class FileRequest(NamedTuple):
 def read_request(
     paths: Sequence[Path | None], *kinds: Kind, unrounded: bool = False
 ) -> FileRequest:
-    """Return the request in one file, in two with an objective each, or in stops and vehicles.
+    """Return the request in one file, in one for each objective, or in stops and vehicles.
 
     A map is a PNG or PGM file, or a map.yaml of ROS, which names its picture and says how to read
     it; or JSON, a request or a message nav_msgs/OccupancyGrid. Notes on what was assumed go to
@@ -86,7 +86,7 @@ def read_request(
 
 
 def check_inputs(*files: Path | None) -> None:
-    """Raise UnreadableFile if two files are standard input, which can be read once."""
+    """Raise UnreadableFile if several files are standard input, which can be read once."""
     if files.count(STANDARD_INPUT) > 1:
         raise UnreadableFile("only one of the files can be standard input")
 

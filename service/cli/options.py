@@ -18,15 +18,15 @@ File = Annotated[
     Path,
     Argument(
         help="JSON: a request, or its coordinates. GeoJSON: stops, as points. CSV or XLSX: stops"
-        " with columns lon and lat, or four numbers for each city: x and y in the plane of each"
-        " objective. With a second file: the first objective. - is standard input."
+        " with columns lon and lat, or four to eight numbers for each city: x and y in the plane of"
+        " each objective. With more files: the first objective. - is standard input."
     ),
 ]
-SecondFile = Annotated[
-    Path | None,
+MoreFiles = Annotated[
+    list[Path] | None,
     Argument(
-        help="The second objective. Each file is a table (x and y for each city, or a matrix of"
-        " costs) or a file of TSPLIB."
+        help="The second objective, and maybe the third and fourth. Each file is a table (x and y"
+        " for each city, or a matrix of costs) or a file of TSPLIB."
     ),
 ]
 FileOrMap = Annotated[

@@ -37,15 +37,14 @@ Options = Mapping[str, Any]  # members of a request; a member that is None is le
 
 
 def plan_cities(
-    file: Path,
-    file2: Path | None = None,
+    files: Sequence[Path],
     *,
     unrounded: bool = False,
     angles: str | None = None,
     options: Options,
 ) -> tuple[Plan, Ids | None]:
     """Return the plan for the cities in a file, or in one for each objective; and their ids."""
-    found = read_request([file, file2], "front", unrounded=unrounded)
+    found = read_request(files, "front", unrounded=unrounded)
     return _cities(found, options, angles), found.ids
 
 
@@ -56,23 +55,22 @@ def _cities(found: FileRequest, options: Options, angles: str | None = None) -> 
 
 
 def plan_tour(
-    file: Path,
-    file2: Path | None,
+    files: Sequence[Path],
     cost_layers: Sequence[Path],
     *,
     unrounded: bool = False,
     options: Options,
 ) -> tuple[Plan, Ids | None]:
     """Return the plan of one tour, of cities as by `plan_cities` or on a map as by `plan_map`."""
-    check_inputs(file, file2, *cost_layers)
+    check_inputs(*files, *cost_layers)
     options = _with_poses(options)
-    found = read_request([file, file2], "front", "coverage", unrounded=unrounded)
+    found = read_request(files, "front", "coverage", unrounded=unrounded)
     if found.request.get("robots"):
-        raise UsageError(f"{file} is about several robots: `paretour coverage` plans that")
+        raise UsageError(f"{files[0]} is about several robots: `paretour coverage` plans that")
     if found.kind == "coverage":
         return _map(found, cost_layers, options), None
     if cost_layers:
-        raise UsageError(f"--cost-layer is for a map, and {file} is not one")
+        raise UsageError(f"--cost-layer is for a map, and {files[0]} is not one")
     return _cities(found, options), found.ids
 
 

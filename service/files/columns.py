@@ -30,7 +30,7 @@ _NAMES = {
     " servicezeit standzeit",
     "skills": "skills skill",
     "prize": "prize",
-    "cost": "cost costs risk danger exposure co2 emissions kosten risiko",
+    "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
 }
 _AMOUNTS = _NAMES["demand"].split()
 _OF_VEHICLES_ONLY = {
@@ -71,7 +71,7 @@ _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|poi
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(](.*?)[\])]")
 _SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
-_SEVERAL = ("demand", "capacity")  # fields that a table may have several times
+_SEVERAL = ("demand", "capacity", "cost")  # fields that a table may have several times
 FLEET = ("demand", "window_from", "window_to", "window", "service", "skills", "prize")
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
@@ -239,8 +239,8 @@ def amount_of(name: str) -> str:
 def fields_of(heading: Sequence[str], names: Mapping[str, str] = _NAMES) -> list[str | None]:
     """Return the field that each column may be, by default of stops, or None.
 
-    Only demand and capacity may come several times. Of two columns for any other field, the one
-    whose name comes first in `names` gets it, and the other one gets None.
+    Only demand, capacity and cost may come several times. Of two columns for any other field, the
+    one whose name comes first in `names` gets it, and the other one gets None.
     """
     ranks = [_rank(plain_name(name), names) for name in heading]
     taken: list[str | None] = [None] * len(heading)

@@ -1,6 +1,7 @@
-"""Read one file or two. The content of a file tells its format; if not, the end of its name."""
+"""Read one file or several. The content of a file tells its format; if not, the end of its name."""
 
 from collections.abc import Sequence
+from itertools import chain
 
 from service.files.benchmarks import is_customers, is_cvrp, read_customers, read_cvrp
 from service.files.json_files import looks_like_json, read_json
@@ -12,14 +13,15 @@ from service.files.reading import (
     Request,
     Source,
     UnreadableFile,
-    reading_of_both,
+    reading_of_several,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
-from service.files.stop_tables import Part, part_of, reading_of
+from service.files.stop_tables import NTH, Part, part_of, reading_of
 from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
 from service.files.vehicle_tables import has_vehicles, read_fleet
+from service.instance import MOST_OBJECTIVES, OBJECTIVES
 
 _BINARY = {
     b"%PDF": "a PDF",
@@ -37,7 +39,7 @@ def read_files(
     wanted: Kind | None = "front",
     unrounded: bool = False,
 ) -> Reading:
-    """Return the request in a file, or in two files of an objective each, or of stops and vehicles.
+    """Return the request in a file, in a file for each objective, or in stops and vehicles.
 
     Args:
         files: The files in the order of their objectives; or stops, then vehicles.
@@ -55,25 +57,29 @@ def read_files(
         return read_map(sources)
     if len(sources) == 1:
         return _read(sources[0], wanted)
-    if len(sources) != 2:
-        raise UnreadableFile(f"there must be one file or two, got {len(files)}")
-    return _read_two(sources, wanted, unrounded)
+    if not OBJECTIVES <= len(sources) <= MOST_OBJECTIVES:
+        demand = f"there must be one file, or one for each of two to {MOST_OBJECTIVES} objectives"
+        raise UnreadableFile(f"{demand}, got {len(files)}")
+    return _read_several(sources, wanted, unrounded)
 
 
-def _read_two(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
-    """Return the request in two files of an objective each, or of stops and vehicles."""
+def _read_several(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
+    """Return the request in a file for each objective, or in one of stops and one of vehicles."""
     contents = [(source, _content(source)) for source in sources]
     tables = [(source, each) for source, each in contents if isinstance(each, Table)]
-    if wanted == "fleet" and len(tables) != 2:
-        raise UnreadableFile("two files of a fleet must be a table of stops and one of vehicles")
-    if len(tables) == 2 and (wanted == "fleet" or any(has_vehicles(each) for _, each in tables)):
+    if wanted == "fleet" and not len(tables) == len(sources) == 2:
+        raise UnreadableFile("the files of a fleet must be a table of stops and one of vehicles")
+    if len(tables) == len(sources) == 2 and (
+        wanted == "fleet" or any(has_vehicles(each) for _, each in tables)
+    ):
         stops, vehicles = sorted(tables, key=lambda each: has_vehicles(each[1]))
         return read_fleet(stops, vehicles)
-    first, second = (_part(source, each, unrounded) for source, each in contents)
-    planes = None
-    if first.plane and second.plane:
-        planes = [[*one, *other] for one, other in zip(first.plane, second.plane, strict=True)]
-    return reading_of_both("front", _joined(first, second), sources, planes)
+    parts = [_part(source, each, unrounded) for source, each in contents]
+    request = _joined(parts)
+    known = [part.plane for part in parts if part.plane]
+    # The page draws the planes behind rounded distances of two objectives alone.
+    planes = _side_by_side(known) if len(known) == len(parts) == OBJECTIVES else None
+    return reading_of_several("front", request, sources, planes)
 
 
 def _read(source: Source, wanted: Kind | None) -> Reading:
@@ -121,11 +127,11 @@ def _content(source: Source) -> Table | TsplibFile | str:
 
 
 def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Part:
-    """Return the content of one of two files."""
+    """Return the content of one of several files."""
     if isinstance(file, Table):
         return part_of(source, file)
     if isinstance(file, str):
-        raise source.refusal("must be a table or TSPLIB, as one of two files")
+        raise source.refusal("must be a table or TSPLIB, as one of several files")
     if unrounded:
         if file.kind != "EUC_2D":
             raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
@@ -137,32 +143,39 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Pa
     return Part(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
 
 
-def _joined(first: Part, second: Part) -> Request:
-    """Return the request of two files about the same stops.
+def _joined(parts: Sequence[Part]) -> Request:
+    """Return the request of files about the same stops, one for each objective.
 
     Raises:
-        UnreadableFile: Their stops differ, or both say where stops lie.
+        UnreadableFile: Their stops differ, or more than one says where stops lie.
     """
-    if first.count != second.count:
-        came = f"{first.count} of {first.name} and {second.count} of {second.name}"
-        raise UnreadableFile(f"both files must have the same number of stops, got {came}")
-    if first.ids and second.ids and first.ids != second.ids:
-        raise UnreadableFile("both files must have the same ids, in the same order")
-    ids = first.ids or second.ids
-    located = first.stops or second.stops
-    if first.stops and second.stops:
-        raise UnreadableFile("only one of the two files may have longitudes and latitudes")
-    if not ids and first.costs.keys() == second.costs.keys():
-        if "matrix" in first.costs:
-            return {"matrices": [first.costs["matrix"], second.costs["matrix"]]}
-        planes = zip(first.costs["coordinates"], second.costs["coordinates"], strict=True)
-        return {"coordinates": [[*one, *other] for one, other in planes]}
-    names = [part.name.rpartition(".")[0][:80] or part.name[:80] for part in (first, second)]
-    if names[0] == names[1]:
-        names = ["first length", "second length"]
+    first = parts[0]
+    for part in parts:
+        if part.count != first.count:
+            came = f"{first.count} of {first.name} and {part.count} of {part.name}"
+            raise UnreadableFile(f"all files must have the same number of stops, got {came}")
+    ids = next((part.ids for part in parts if part.ids), None)
+    if any(part.ids and part.ids != ids for part in parts):
+        raise UnreadableFile("all files must have the same ids, in the same order")
+    located = [part.stops for part in parts if part.stops]
+    if len(located) > 1:
+        raise UnreadableFile("only one of the files may have longitudes and latitudes")
+    if not ids and all(part.costs.keys() == {"matrix"} for part in parts):
+        return {"matrices": [part.costs["matrix"] for part in parts]}
+    if not ids and all(part.costs.keys() == {"coordinates"} for part in parts):
+        return {"coordinates": _side_by_side([part.costs["coordinates"] for part in parts])}
+    names = [part.name.rpartition(".")[0][:80] or part.name[:80] for part in parts]
+    if len(set(names)) < len(names):
+        names = [f"{nth} length" for nth in NTH[: len(parts)]]
     objectives = [
         {"name": name, **(part.costs or {"from": "great_circle"})}
-        for name, part in zip(names, (first, second), strict=True)
+        for name, part in zip(names, parts, strict=True)
     ]
-    stops = located or [{"id": each} for each in ids or map(str, range(1, first.count + 1))]
+    named = [{"id": each} for each in ids or map(str, range(1, first.count + 1))]
+    stops = located[0] if located else named
     return {"stops": stops, "objectives": objectives}
+
+
+def _side_by_side(planes: Sequence[list[list[float]]]) -> list[list[float]]:
+    """Return the places of each stop in all planes as one row."""
+    return [list(chain.from_iterable(each)) for each in zip(*planes, strict=True)]

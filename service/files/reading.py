@@ -131,10 +131,10 @@ class Source:
 
     def reading(self, kind: Kind, request: Request) -> Reading:
         """Return the reading of this file alone."""
-        return reading_of_both(kind, request, (self,))
+        return reading_of_several(kind, request, (self,))
 
 
-def reading_of_both(
+def reading_of_several(
     kind: Kind, request: Request, sources: Sequence[Source], planes: list[list[float]] | None = None
 ) -> Reading:
     """Return the reading of several files together."""

@@ -1,4 +1,4 @@
-"""Make requests from tables: of stops with places, of two planes, or of one objective."""
+"""Make requests from tables: of stops with places, of two to four planes, or of one objective."""
 
 import re
 from dataclasses import dataclass, field
@@ -13,14 +13,17 @@ from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
+from service.instance import MOST_OBJECTIVES
 
 Array = NDArray[np.float64]
+NTH = ("first", "second", "third", "fourth")
+_IN_PLANES = ("x", "y", *(f"{nth} {axis}" for nth in NTH[1:] for axis in "xy"))
 _NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none", "x", "∞"}
 
 
 @dataclass(frozen=True)
 class Part:
-    """The stops in one of two files: their ids, and costs, a plane, or places on the earth."""
+    """The stops in one of several files: their ids, and costs, a plane, or places on the earth."""
 
     name: str
     count: int
@@ -31,7 +34,7 @@ class Part:
 
 
 def reading_of(source: Source, table: Table) -> Reading:
-    """Return the request of a table of two planes, of stops with locations, or of a fleet.
+    """Return the request of a table of planes, of stops with locations, or of a fleet.
 
     Raises:
         UnreadableFile: A field does not fit its column, or columns are missing.
@@ -39,7 +42,7 @@ def reading_of(source: Source, table: Table) -> Reading:
     columns = columns_of(source, table)
     if any(each in FLEET for each in columns.fields):
         return _fleet(columns)
-    return _located(columns) if _is_located(columns) else _two_planes(columns)
+    return _located(columns) if _is_located(columns) else _in_planes(columns)
 
 
 def _is_located(columns: Columns) -> bool:
@@ -73,32 +76,34 @@ def _others(columns: Columns) -> list[str]:
     ]
 
 
-def _two_planes(columns: Columns) -> Reading:
-    """Return the request of four columns of numbers: x and y in the first plane and the second."""
+def _in_planes(columns: Columns) -> Reading:
+    """Return the request of four, six or eight columns of numbers: x and y in each plane."""
     source, table = columns.source, columns.table
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
     if table.heading and len(free) > 4:
         free = [at for at in free if columns.are_numbers(at)]
     named = [columns.fields[at] for at in free]
-    planes = len(free) == 4 and set(named) <= {None, "x", "y"}
-    if planes and {"x", "y"} <= set(named):
+    planes = len(free) in (4, 6, 8) and set(named) <= {None, "x", "y"}
+    # More than four columns under other names may be anything.
+    if planes and ({"x", "y"} <= set(named) or (table.heading and len(free) > 4)):
         planes = all(re.match("[xy]|[uv]$|x?lon|y?lat", name) for name in _others(columns))
     if not planes:
         came = f"{len(free)} columns: {', '.join(quoted(columns.names[at]) for at in free[:8])}"
-        demand = "must have 4 columns, x and y in either plane, or columns named lon and lat"
+        demand = "must have 4, 6 or 8 columns, x and y in each plane, or columns named lon and lat"
         hint = "; one plane needs a second file with the other" if len(free) == 2 else ""
         raise source.refusal(f"{demand}, got {came}{hint}")
-    for at, name in zip(free, ("x", "y", "second x", "second y"), strict=True):
+    for at, name in zip(free, _IN_PLANES, strict=False):
         columns.fields[at] = name
     rows = columns.numbers(free)
     ids = ids_of(columns) if "id" in columns.fields else None
     columns.report()
     if ids is None:
         return source.reading("front", {"coordinates": rows})
-    names = ("first length", "second length")
-    planes_of = [[row[at : at + 2] for row in rows] for at in (0, 2)]
-    pairs = zip(names, planes_of, strict=True)
-    objectives = [{"name": name, "coordinates": plane} for name, plane in pairs]
+    planes_of = [[row[at : at + 2] for row in rows] for at in range(0, len(free), 2)]
+    objectives = [
+        {"name": f"{nth} length", "coordinates": plane}
+        for nth, plane in zip(NTH, planes_of, strict=False)
+    ]
     stops = [{"id": each} for each in ids]
     return source.reading("front", {"stops": stops, "objectives": objectives})
 
@@ -108,10 +113,10 @@ def _located(columns: Columns) -> Reading:
     source = columns.source
     stops = _stops(columns, _places(columns))
     note_places(source, stops)
-    second = _second(columns, stops)
+    others = _other_objectives(columns, stops)
     columns.report()
     distance = {"name": "distance", "from": "great_circle"}
-    return source.reading("front", {"stops": stops, "objectives": [distance, second]})
+    return source.reading("front", {"stops": stops, "objectives": [distance, *others]})
 
 
 def _fleet(columns: Columns) -> Reading:
@@ -173,30 +178,38 @@ def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
     return [{"id": each, "location": place} for each, place in zip(ids, places, strict=True)]
 
 
-def _second(columns: Columns, stops: list[Stop]) -> dict[str, Any]:
-    """Return the second objective: the plane of x and y, a cost per metre, or time by road."""
-    x, y, cost = (columns.find(name) for name in ("x", "y", "cost"))
+def _other_objectives(columns: Columns, stops: list[Stop]) -> list[dict[str, Any]]:
+    """Return the objectives after distance: a plane, costs per metre, or else time by road."""
+    x, y = (columns.find(name) for name in ("x", "y"))
     if x is not None and y is not None:
-        return {"name": "second length", "coordinates": columns.numbers([x, y])}
-    if cost is not None:
-        source = columns.source
-        source.check_count("stops with a cost", source.bounds.matrix_cities, len(stops))
-        weights = np.array([each for (each,) in columns.numbers([cost])])
-        if (weights < 0).any():
-            row = int(np.argmax(weights < 0))
-            raise columns.refusal(row, cost, "must not be negative")
-        name = quoted(columns.names[cost])
-        source.note(
-            "objectives", f"{name} is what a metre costs near a stop: the second objective."
-        )
-        places = np.array([stop["location"] for stop in stops])
-        return {"name": columns.names[cost][:100], "matrix": weighted(places, weights)}
-    columns.source.note("objectives", "The second objective is time by road, of a routing engine.")
-    return {"name": "time", "from": "road_time"}
+        return [{"name": "second length", "coordinates": columns.numbers([x, y])}]
+    costs = [at for at, each in enumerate(columns.fields) if each == "cost"]
+    if not costs:
+        sentence = "The second objective is time by road, of a routing engine."
+        columns.source.note("objectives", sentence)
+        return [{"name": "time", "from": "road_time"}]
+    if len(costs) >= MOST_OBJECTIVES:
+        came = ", ".join(quoted(columns.names[at]) for at in costs)
+        raise columns.source.refusal(f"must have at most 3 columns of costs, got {came}")
+    return [_cost_per_metre(columns, at, stops) for at in costs]
+
+
+def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> dict[str, Any]:
+    """Return the objective of a column that says what a metre costs near each stop."""
+    source = columns.source
+    source.check_count("stops with a cost", source.bounds.matrix_cities, len(stops))
+    weights = np.array([each for (each,) in columns.numbers([cost])])
+    if (weights < 0).any():
+        row = int(np.argmax(weights < 0))
+        raise columns.refusal(row, cost, "must not be negative")
+    name = quoted(columns.names[cost])
+    source.note("objectives", f"{name} is what a metre costs near a stop: an objective.")
+    places = np.array([stop["location"] for stop in stops])
+    return {"name": columns.names[cost][:100], "matrix": weighted(places, weights)}
 
 
 def part_of(source: Source, table: Table) -> Part:
-    """Return the content of one of two tables: stops, a plane, or costs from rows to columns.
+    """Return the content of one of several tables: stops, a plane, or costs from rows to columns.
 
     Raises:
         UnreadableFile: The table is none of these.

@@ -22,7 +22,7 @@ from service.files.fleets import (
     timed,
 )
 from service.files.places import check_range
-from service.files.reading import Reading, Source, quoted, reading_of_both
+from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import visits_of
 from service.files.tables import Table
 from service.files.visits import add_visits, is_time, seconds_in, span_in
@@ -58,7 +58,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     _add_fixed(columns, vehicles, located=plane is None)
     columns.report()
     request = fleet_request(stops, vehicles, objectives)
-    return reading_of_both("fleet", request, (source, other))
+    return reading_of_several("fleet", request, (source, other))
 
 
 def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Columns:

@@ -9,6 +9,7 @@ from queue import Queue
 from threading import Thread, Timer
 from typing import Any
 
+import numpy as np
 import pytest
 from paretour import Client, Plan
 from typer.testing import CliRunner
@@ -40,6 +41,73 @@ def read_map(path: Path) -> tuple[dict[str, Any], bytes | None]:
 def test_four_columns_are_coordinates(tmp_path: Path, text: str) -> None:
     files = written(tmp_path, ("a.csv", text))
     assert read_request(files, "front")[0] == {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8.5]]}
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["1,2,3,4,5,6\n7,8,9,10,11,12.5\n", "x1,y1,x2,y2,x3,y3\n1,2,3,4,5,6\n7,8,9,10,11,12.5\n"],
+)
+def test_six_columns_are_three_planes(tmp_path: Path, text: str) -> None:
+    files = written(tmp_path, ("a.csv", text))
+    rows = [[1, 2, 3, 4, 5, 6], [7, 8, 9, 10, 11, 12.5]]
+    assert read_request(files, "front")[0] == {"coordinates": rows}
+
+
+def test_eight_columns_with_ids_are_four_objectives(tmp_path: Path) -> None:
+    files = written(
+        tmp_path, ("a.csv", "id,x,y,u,v,x2,y2,x3,y3\na,1,2,3,4,5,6,7,8\nb,0,0,0,0,0,0,0,0\n")
+    )
+    request = read_request(files, "front")[0]
+    assert request["stops"] == [{"id": "a"}, {"id": "b"}]
+    planes = [objective["coordinates"][0] for objective in request["objectives"]]
+    assert planes == [[1, 2], [3, 4], [5, 6], [7, 8]]
+
+
+def test_each_column_of_costs_is_an_objective(tmp_path: Path) -> None:
+    text = "id,lon,lat,risk,co2,noise\na,24.9,60.1,1,2,3\nb,24.8,60.2,3,2,1\nc,24.7,60,1,1,1\n"
+    request = read_request(written(tmp_path, ("a.csv", text)), "front")[0]
+    names = [objective["name"] for objective in request["objectives"]]
+    assert names == ["distance", "risk", "co2", "noise"]
+    ways = np.array([objective["matrix"] for objective in request["objectives"][1:]])
+    # Between a and b a metre costs the mean of both ends, which is 2 in each column.
+    np.testing.assert_allclose(ways[:, 0, 1], ways[0, 0, 1])
+    assert ways[0, 0, 1] > ways[0, 0, 2] > 0
+
+
+@pytest.mark.parametrize(
+    ("texts", "sentence"),
+    [
+        (["a,b,c,d,e,f\n1,2,3,4,5,6\n"], "must have 4, 6 or 8 columns"),
+        (["1,2,3,4,5\n"], "must have 4, 6 or 8 columns"),
+        (["id,lon,lat,risk,co2,noise,cost\na,24.9,60.1,1,2,3,4\n"], "at most 3 columns of costs"),
+        (["1,2\n3,4\n5,6\n"] * 5, "one for each of two to 4 objectives, got 5"),
+        (
+            ["1,2\n3,4\n5,6\n", "1,2\n3,4\n5,6\n", "1,2\n3,4\n5,6\n7,8\n"],
+            "the same number of stops",
+        ),
+        (
+            ["id,x,y\na,1,2\nb,1,3\nc,1,1\n", "1,2\n3,4\n5,6\n", "id,x,y\na,1,2\nc,1,3\nb,1,1\n"],
+            "the same ids",
+        ),
+    ],
+)
+def test_files_that_make_no_front_of_several_objectives_are_refused(
+    tmp_path: Path, texts: list[str], sentence: str
+) -> None:
+    files = written(tmp_path, *((f"{at}.csv", text) for at, text in enumerate(texts)))
+    with pytest.raises(UnreadableFile, match=sentence):
+        read_request(files, "front")
+
+
+def test_three_files_are_an_objective_each(tmp_path: Path) -> None:
+    planes = written(tmp_path, *((f"{name}.csv", "1,2\n5,6\n0,0\n") for name in "abc"))
+    rows = [[1, 2] * 3, [5, 6] * 3, [0, 0] * 3]
+    assert read_request(planes, "front")[0] == {"coordinates": rows}
+    kro = written(tmp_path, *((f"{name}.tsp", EUCLIDEAN) for name in "abc"))
+    assert len(read_request(kro, "front")[0]["matrices"]) == 3
+    mixed = [planes[0], kro[0], planes[1]]
+    names = [each["name"] for each in read_request(mixed, "front")[0]["objectives"]]
+    assert names == ["first length", "second length", "third length"]
 
 
 def test_two_columns_in_two_files_are_a_plane_each(tmp_path: Path) -> None:
@@ -93,7 +161,7 @@ def test_a_map_is_read_by_its_suffix(tmp_path: Path) -> None:
 WRONG = [
     ("a.csv", "", "must have a row for each stop, got none"),
     ("a.csv", "a,b,c,d\n", "must have a row for each stop below its heading"),
-    ("a.csv", "1,2,3\n", "must have 4 columns, x and y in either plane, or"),
+    ("a.csv", "1,2,3\n", "must have 4, 6 or 8 columns, x and y in each plane, or"),
     ("a.csv", "1,2,3,4\n1,2,3\n", "row 2 must have 4 fields, as the first row, got 3"),
     ("a.csv", "1,2,3,4\n1,2,x,4\n", "row 2, column '3' must be a number, got 'x'"),
     ("a.csv", "1,2,3,nan\n", "row 1, column '4' must be a number, got 'nan'"),
@@ -199,14 +267,14 @@ def test_a_file_may_be_standard_input(data: bytes, monkeypatch: pytest.MonkeyPat
     assert read_request([Path("-")], "front")[0] == {"coordinates": [[1, 2, 3, 4]]}
 
 
-def test_one_of_two_files_may_be_standard_input(
+def test_one_of_several_files_may_be_standard_input(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     [file] = written(tmp_path, ("a.csv", "1,2\n3,4\n5,6\n"))
     monkeypatch.setattr(sys, "stdin", Piped(b"0,0\n1,1\n2,2\n"))
     expected = [[1, 2, 0, 0], [3, 4, 1, 1], [5, 6, 2, 2]]
     assert read_request([file, Path("-")], "front")[0] == {"coordinates": expected}
-    with pytest.raises(UnreadableFile, match="only one of the two files can be standard input"):
+    with pytest.raises(UnreadableFile, match="only one of the files can be standard input"):
         read_request([Path("-"), Path("-")], "front")
 
 
@@ -235,12 +303,12 @@ def test_every_command_has_a_service_plan_what_is_piped_into_it(
 def test_a_map_and_its_costs_are_not_both_standard_input() -> None:
     ended = CliRunner().invoke(app, ["coverage", "-", "--cost-layer", "-"], input=b"P5 1 1 255 a")
     assert ended.exit_code == 2
-    assert "only one of the two files can be standard input" in ended.stderr
+    assert "only one of the files can be standard input" in ended.stderr
 
 
 def test_standard_input_is_named_where_it_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Piped(b"1,2,3\n"))
-    with pytest.raises(UnreadableFile, match="standard input: must have 4 columns"):
+    with pytest.raises(UnreadableFile, match="standard input: must have 4, 6 or 8 columns"):
         read_request([Path("-")], "front")
 
 

@@ -13,7 +13,7 @@ from service.cli.plans import plan_cities, plan_map
 def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> None:
     file = tmp_path / "a.json"
     file.write_text('{"coordinates": [[1, 2, 3, 4]], "seed": 3, "size": 5}')
-    plan, _ = plan_cities(file, angles="10,45.5", options={"seed": 4, "size": None})
+    plan, _ = plan_cities([file], angles="10,45.5", options={"seed": 4, "size": None})
     assert plan.path == "/front"
     assert plan.request == {
         "coordinates": [[1, 2, 3, 4]],
@@ -25,7 +25,9 @@ def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> Non
 
 def test_any_start_is_null_in_the_request(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("1,2,3,4\n")
-    plan, _ = plan_cities(tmp_path / "a.csv", options={"start": "any", "closed": False, "end": "2"})
+    plan, _ = plan_cities(
+        [tmp_path / "a.csv"], options={"start": "any", "closed": False, "end": "2"}
+    )
     assert plan.request == {
         "coordinates": [[1, 2, 3, 4]],
         "start": None,
@@ -37,7 +39,7 @@ def test_any_start_is_null_in_the_request(tmp_path: Path) -> None:
 def test_two_files_are_one_plan(tmp_path: Path) -> None:
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_text("0,1,2\n3,0,4\n5,6,0\n")
-    plan, _ = plan_cities(tmp_path / "a.csv", tmp_path / "b.csv", options={})
+    plan, _ = plan_cities([tmp_path / "a.csv", tmp_path / "b.csv"], options={})
     assert plan.file is not None
     assert plan.file.part == "matrices"
 
@@ -45,7 +47,7 @@ def test_two_files_are_one_plan(tmp_path: Path) -> None:
 def test_angles_must_be_numbers(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("1,2,3,4\n")
     with pytest.raises(UsageError, match="--angles must be numbers with commas between, got '1,b'"):
-        plan_cities(tmp_path / "a.csv", angles="1,b", options={})
+        plan_cities([tmp_path / "a.csv"], angles="1,b", options={})
 
 
 def test_a_map_is_a_file_beside_its_options_and_costs(tmp_path: Path) -> None:
@@ -93,7 +95,7 @@ def test_robots_share_a_map_without_a_second_objective(tmp_path: Path) -> None:
 
 def test_ids_of_cities_come_beside_the_plan(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("depot,1,2,3,4\nb,5,6,7,8\n")
-    assert plan_cities(tmp_path / "a.csv", options={})[1] == ("depot", "b")
+    assert plan_cities([tmp_path / "a.csv"], options={})[1] == ("depot", "b")
 
 
 @pytest.mark.parametrize(
@@ -102,13 +104,13 @@ def test_ids_of_cities_come_beside_the_plan(tmp_path: Path) -> None:
 def test_a_start_is_an_index_or_an_id(tmp_path: Path, given: str | None, start: object) -> None:
     file = tmp_path / "a.csv"
     file.write_text("id,x1,y1,x2,y2\n5,1,2,3,4\nb,1,2,3,4\nc,1,2,3,5\n")
-    plan, _ = plan_cities(file, options={"start": given})
+    plan, _ = plan_cities([file], options={"start": given})
     assert plan.request.get("start") == start
 
 
 def test_a_request_with_stops_is_a_plan(tmp_path: Path) -> None:
     request = {"stops": [{"id": "depot"}], "objectives": [{"name": "a"}, {"name": "b"}]}
     (tmp_path / "stops.json").write_text(json.dumps(request))
-    plan, ids = plan_cities(tmp_path / "stops.json", options={"start": "depot"})
+    plan, ids = plan_cities([tmp_path / "stops.json"], options={"start": "depot"})
     assert ids == ("depot",)
     assert json.loads(plan.json) == {**request, "start": 0}
