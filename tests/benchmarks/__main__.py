@@ -31,6 +31,7 @@ _NAMES = (
     "roads",
     "scale",
     "search",
+    "several",
     "shapes",
     "soak",
     "solomon",

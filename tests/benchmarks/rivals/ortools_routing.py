@@ -67,13 +67,15 @@ def improved_routes(costs: Array, hints: NDArray[np.int64], seconds: float) -> N
 
 
 def _tour(cost: Array, parameters: pywrapcp.DefaultRoutingSearchParameters) -> NDArray[np.int64]:
-    """The closed tour that the solver finds from city 0."""
+    """The closed tour that the solver finds from city 0; TimeoutError if it finds none in time."""
     whole = np.rint(cost * (FINENESS / cost.max())).astype(np.int64)
     manager = pywrapcp.RoutingIndexManager(len(cost), 1, 0)
     routing = pywrapcp.RoutingModel(manager)
     callback = routing.RegisterTransitMatrix(whole.tolist())
     routing.SetArcCostEvaluatorOfAllVehicles(callback)
     solution = routing.SolveWithParameters(parameters)
+    if solution is None:
+        raise TimeoutError
     tour, index = [], routing.Start(0)
     while not routing.IsEnd(index):
         tour.append(manager.IndexToNode(index))
