@@ -14,7 +14,8 @@ from typing import Any, get_args
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from google.protobuf.message import DecodeError, Message
 
-from service.instance import MOST_OBJECTIVES, OBJECTIVES, Kind
+from service.instance import Kind
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 
 RELEASED = Path(__file__).parent / "actors"
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")

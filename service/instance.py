@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import InvalidInstance
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 
 Array = NDArray[np.float64]
 Kind = Literal["coordinates", "matrices"]
-OBJECTIVES = 2  # of a request that says nothing else, and of all that knows no more than two
-MOST_OBJECTIVES = 4
 PLANE = 2  # coordinates of a city in the plane of an objective
 MOST_SPREAD = 2.0**-1000  # of a matrix's largest cost; below it a scaled cost would vanish
 OUTLYING = 100.0  # times the typical cost: what is larger does not count for the scale
@@ -30,14 +29,6 @@ class RouteEnds(NamedTuple):
 
 
 CLOSED = RouteEnds()
-
-
-@dataclass(frozen=True)
-class Objective:
-    """The name of an objective, and its unit if the caller said so."""
-
-    name: str
-    unit: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,10 @@ dominate: a number from 0 to 1, without a unit.
 import numpy as np
 from numpy.typing import NDArray
 
+from service.objectives import OBJECTIVES
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-OBJECTIVES = 2  # of a front that can be sorted, so that its neighbours are next to each other
 
 
 def nondominated(points: Array) -> Indices:

@@ -21,8 +21,8 @@ from service.errors import Refusal
 from service.files.reading import Kind
 from service.fleet.fleet import Over
 from service.front import Termination
-from service.instance import MOST_OBJECTIVES, OBJECTIVES
 from service.jobs.record import Status
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.stop_fields import StopItem
 from service.requests.task import KindName
 

@@ -37,7 +37,7 @@ from service.cli.output import (
     uncovered_summary,
 )
 from service.cli.terminal_chart import LABELS, draw_front
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 
 _MORE_TOURS = "--table prints every tour, --csv its cities too"
 _MORE_PLANS = "--csv prints every route"

@@ -25,7 +25,7 @@ from service.cli.data import csv_text
 from service.cli.inputs import Ids, ids_in
 from service.cli.terminal_chart import LABELS
 from service.errors.printable import printable
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 
 Rows = list[tuple[object, ...]]
 FrontOfPlans = FleetFront | RobotFront

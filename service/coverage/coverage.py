@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from service.coverage.frame import Array, Cells, MapFrame, Mask
 from service.errors import InvalidCoverage
-from service.instance import CLOSED, Objective, RouteEnds
+from service.instance import CLOSED, RouteEnds
+from service.objectives import Objective
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,7 +28,8 @@ from service.coverage.shortest_paths import (
     trace_path,
 )
 from service.errors import Cancelled, InvalidCoverage, Refusal
-from service.instance import Instance, Objective, RouteEnds
+from service.instance import Instance, RouteEnds
+from service.objectives import Objective
 
 Indices = NDArray[np.integer]
 

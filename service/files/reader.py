@@ -21,7 +21,7 @@ from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
 from service.files.vehicle_tables import has_vehicles, read_fleet
-from service.instance import MOST_OBJECTIVES, OBJECTIVES
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 
 _BINARY = {
     b"%PDF": "a PDF",

@@ -13,7 +13,7 @@ from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
-from service.instance import MOST_OBJECTIVES
+from service.objectives import MOST_OBJECTIVES
 
 Array = NDArray[np.float64]
 NTH = ("first", "second", "third", "fourth")

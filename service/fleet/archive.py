@@ -8,7 +8,7 @@ import pyvrp
 
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.translation import Translation, Weights
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 
 Point = tuple[float, float]
 _FIRST = itemgetter(0)

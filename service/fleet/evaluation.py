@@ -13,7 +13,7 @@ import numpy as np
 
 from service.fleet.fleet import Array, Fleet, Rules
 from service.fleet.plans import Plan, Route, path_of
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 
 _TOLERANCE = 1e-9  # of the length of a route: sums of floats depend on their order
 _ROUNDING = 2.0**-52  # relative, for each time of a route

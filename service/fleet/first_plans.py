@@ -24,7 +24,8 @@ from service.fleet.optimal_split import (
 )
 from service.fleet.plans import Plan
 from service.fleet.scales import Horizon
-from service.instance import OBJECTIVES, Instance
+from service.instance import Instance
+from service.objectives import OBJECTIVES
 from service.preferences import spread
 
 _TOURS = 21  # the number of evenly spread preferences

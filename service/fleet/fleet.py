@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
-from service.instance import OBJECTIVES, largest_costs, ordinary_costs
+from service.instance import largest_costs, ordinary_costs
+from service.objectives import OBJECTIVES
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]

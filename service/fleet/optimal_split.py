@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from service.fleet.fleet import Array, Fleet, Rules
 from service.fleet.plans import Plan, Route
-from service.instance import OBJECTIVES
 from service.jit import allocating, compiled, inlined
+from service.objectives import OBJECTIVES
 
 Indices = NDArray[np.int64]
 _ROUNDING = 1e-10  # relative, of sums of costs; less than what the check of plans allows

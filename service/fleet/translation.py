@@ -18,7 +18,7 @@ from service.fleet.evaluation import unassigned
 from service.fleet.fleet import Fleet, VehicleType
 from service.fleet.plans import Plan, Route
 from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
 Weights = tuple[int, int]

@@ -9,7 +9,7 @@ from enum import Enum
 
 from service.coverage.coverage import Coverage
 from service.errors import WarmingUp
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 

@@ -19,7 +19,8 @@ from pydantic_core import to_json
 from service.coverage.frame import CoveragePath
 from service.fleet.plans import FleetFront
 from service.front import Front, Termination
-from service.pareto import OBJECTIVES, balances
+from service.objectives import OBJECTIVES
+from service.pareto import balances
 from service.preferences import angles
 from service.requests.task import KindName
 

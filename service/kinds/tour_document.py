@@ -19,7 +19,8 @@ from service.kinds.front_document import (
     split,
     with_member,
 )
-from service.pareto import OBJECTIVES, balances, losses
+from service.objectives import OBJECTIVES
+from service.pareto import balances, losses
 from service.requests.stops import Labels
 
 

@@ -9,7 +9,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Fiel
 
 from service.errors import invalid
 from service.front import PlanOptions
-from service.instance import CLOSED, MOST_OBJECTIVES, OBJECTIVES, RouteEnds
+from service.instance import CLOSED, RouteEnds
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.preferences import from_angles, spread
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.

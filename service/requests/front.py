@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import Refusal, invalid
-from service.instance import MOST_OBJECTIVES, OBJECTIVES, PLANE, Kind
+from service.instance import PLANE, Kind
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.arrays import array_field, check_costs, stack_matrices
 from service.requests.fields import (
     END,

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 from service.requests.coverage import ENDS, OF_ONE_ROBOT, CoverageRequest
 from service.requests.fields import PlanFields
 from service.requests.fleet import FleetRequest

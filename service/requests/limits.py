@@ -6,7 +6,8 @@ from typing import TypeVar
 
 from service.errors import Refusal, invalid
 from service.front import PlanOptions
-from service.instance import OBJECTIVES, Array, Kind
+from service.instance import Array, Kind
+from service.objectives import OBJECTIVES
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
 from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
 

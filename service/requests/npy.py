@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
-from service.instance import MOST_OBJECTIVES, OBJECTIVES
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.validation import shorten, too_many_cities
 
 _MAGIC = b"\x93NUMPY"

@@ -8,7 +8,8 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.front import PlanOptions
-from service.instance import OBJECTIVES, Instance, Kind, least_lengths
+from service.instance import Instance, Kind, least_lengths
+from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import CoverageRequest, parse_coverage_request
 from service.requests.fields import PlanFields

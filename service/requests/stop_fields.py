@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
-from service.instance import Objective
+from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import (
     NO_WAY,

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.errors import CityNames
-from service.instance import CLOSED, Instance, Kind, Objective, RouteEnds
+from service.instance import CLOSED, Instance, Kind, RouteEnds
+from service.objectives import Objective
 from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.fleet.fleet import Fleet, Over, Rules
 from service.front import PlanOptions
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
 from service.requests.stops import Array, Labels, RoadMeasure, Stops, cost_matrices

@@ -19,7 +19,8 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, Robot
 from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
-from service.instance import Objective, RouteEnds
+from service.instance import RouteEnds
+from service.objectives import Objective
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.earlier_versions import parse_rest
 from service.requests.limits import Limits

@@ -9,7 +9,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import Fault, Refusal
-from service.instance import OBJECTIVES
+from service.objectives import OBJECTIVES
 from service.pareto import balances, knee, losses
 from service.requests.fields import GEOMETRY, Angle, Geometry, Share, optional
 from service.requests.validation import show

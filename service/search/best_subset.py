@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, inlined
-from service.pareto import OBJECTIVES, nondominated, shares_of
+from service.objectives import OBJECTIVES
+from service.pareto import nondominated, shares_of
 from service.search.several.volume import choose_greedily, make_sweep
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, least_steps
 from service.jit import compiled, inlined
-from service.pareto import OBJECTIVES
+from service.objectives import OBJECTIVES
 from service.search.archive import ROUNDING, Archive, accepts, insert, make_archive
 from service.search.closing import closing_cost, is_open, opened_tours
 from service.search.costs import Costs, lengths, make_costs, travel_costs

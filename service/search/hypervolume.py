@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service import pareto
+from service.objectives import OBJECTIVES
 from service.search.several.volume import volume
 
 Array = NDArray[np.float64]
@@ -21,7 +22,7 @@ def hypervolume(points: Array, reference_point: Array) -> float:
     Raises:
         ValueError: A component of the reference point is not positive.
     """
-    if len(reference_point) == pareto.OBJECTIVES:
+    if len(reference_point) == OBJECTIVES:
         return pareto.hypervolume(points, reference_point)
     if not (reference_point > 0).all():
         raise ValueError(f"the reference point must be positive, got {reference_point.tolist()}")

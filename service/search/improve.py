@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from service.front import Progress, ReportOf, SearchResult, Termination
 from service.instance import Instance, tour_lengths
-from service.pareto import OBJECTIVES, nondominated
+from service.objectives import OBJECTIVES
+from service.pareto import nondominated
 from service.search.archive import MAX_POINTS
 from service.search.best_subset import best_subset
 from service.search.enumeration import MAX_ENUMERATED, exact_tours

@@ -8,7 +8,8 @@ import numpy as np
 
 from service.actor_info import ActorInfo
 from service.construction.call_estimate import CallEstimate
-from service.instance import MOST_OBJECTIVES, Instance, Kind
+from service.instance import Instance, Kind
+from service.objectives import MOST_OBJECTIVES
 
 
 def info_of(name: str, inputs: Kind, repairs: bool = False) -> ActorInfo:

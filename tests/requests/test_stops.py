@@ -10,7 +10,7 @@ import pytest
 from pydantic_core import to_json
 
 from service.errors import Refusal
-from service.instance import Objective
+from service.objectives import Objective
 from service.requests.front import FrontRequest, parse_front_request
 from service.requests.stops import Measured, Stop
 from service.roads.great_circle import great_circle_matrix

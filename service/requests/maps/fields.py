@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import invalid
-from service.instance import MOST_OBJECTIVES, Objective
+from service.objectives import MOST_OBJECTIVES, Objective
 from service.requests.arrays import Array, array_field, check_grid, rectangular_array
 from service.requests.fields import (
     ArrayRows,

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
-from service.instance import MOST_OBJECTIVES
+from service.objectives import MOST_OBJECTIVES
 from service.requests.coverage import Cell, RobotPose
 from service.requests.fields import (
     GEOMETRY,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
 from service.errors import invalid
-from service.instance import Objective
+from service.objectives import Objective
 from service.requests.arrays import costs_array
 from service.requests.limits import Limits, check_amounts, check_router, lower_defaults
 from service.requests.parser import front_task

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
 from service.errors import Refusal, invalid
-from service.instance import CLOSED, OBJECTIVES, Objective, RouteEnds
+from service.instance import CLOSED, RouteEnds
+from service.objectives import OBJECTIVES, Objective
 from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
-from service.pareto import OBJECTIVES
+from service.objectives import OBJECTIVES
 from service.search.bound.assignment import augment, make_assignment, price_bound
 from service.search.bound.one_tree import ascend, make_ascent
 from service.search.bound.several import bound_of_several

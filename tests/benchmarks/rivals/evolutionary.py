@@ -8,7 +8,6 @@ seven points at 40 cities.
 
 import time
 
-import moocore
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.algorithms.moo.moead import MOEAD
@@ -25,6 +24,7 @@ from pymoo.optimize import minimize
 from pymoo.termination.max_time import TimeBasedTermination
 
 from service.instance import Instance, tour_lengths
+from service.pareto import nondominated
 from service.preferences import spread
 from tests.benchmarks.rivals.construction import spread_weights
 
@@ -126,6 +126,6 @@ class _Watch(Callback):
             return
         found = algorithm.pop.get("F")
         points = found if self.front is None else np.concatenate((self.front, found))
-        self.front = moocore.filter_dominated(points)
+        self.front = points[nondominated(points)]
         self.snapshots.append((now - self.began, self.front))
         self.due = self.began + APART * (now - self.began)
