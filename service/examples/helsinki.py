@@ -1,4 +1,4 @@
-"""Deliveries in central Helsinki by road: the time of driving beside the people met, or by vans.
+"""Deliveries in central Helsinki by road: time, people met and side streets; or by several vans.
 
 Times and streets are those of a Valhalla whose tiles are built of OpenStreetMap's data,
 (c) OpenStreetMap contributors, under the Open Database License (ODbL).
@@ -6,7 +6,7 @@ Times and streets are those of a Valhalla whose tiles are built of OpenStreetMap
 
 import asyncio
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
@@ -34,6 +34,8 @@ CROWDS = np.array(
     ]
 )
 USUAL = 0.004  # people on a metre of any other street
+DEGREE = np.array([55_400.0, 111_200.0])  # metres of one to the east and to the north
+ALONG = 4.0  # metres from a main street within which a way is on it
 VANS = 6
 CAPACITY = 24  # parcels
 OPENS, CLOSES = 8 * 3600, 12 * 3600  # when the first van may leave, and the last must be back
@@ -112,6 +114,35 @@ def people_along(line: Array) -> float:
         squared = great_circle_distances(middles, crowd) ** 2
         people += most * np.exp(-squared / (2 * reach**2))
     return float(people @ great_circle_distances(line[:-1], line[1:]))
+
+
+def three_costs(
+    one_van: dict[str, Any], lines: Mapping[Leg, Line], main: Sequence[Array]
+) -> dict[str, Any]:
+    """Return the request for one van with a third cost: the metres beside the main streets.
+
+    Args:
+        one_van: The request under time and people met.
+        lines: The line of each leg.
+        main: The lines of the main streets, each of shape (p, 2), longitude and latitude.
+    """
+    beside = np.zeros((STOPS, STOPS), dtype=np.int64)
+    segments = np.concatenate([np.stack((line[:-1], line[1:]), axis=1) for line in main])
+    for leg, line in lines.items():
+        beside[leg] = round(metres_beside(np.array(line), segments))
+    third = {"name": "side streets", "unit": "m", "matrix": beside.tolist()}
+    return {**one_van, "objectives": [*one_van["objectives"], third]}
+
+
+def metres_beside(line: Array, segments: Array) -> float:
+    """Return the metres of a line, shape (p, 2), that are on no segment of others, (k, 2, 2)."""
+    middles = (line[:-1] + line[1:]) / 2
+    begin, step = segments[:, 0] * DEGREE, (segments[:, 1] - segments[:, 0]) * DEGREE
+    off = middles[:, np.newaxis] * DEGREE - begin  # shape (p - 1, k, 2)
+    length = np.maximum((step**2).sum(axis=1), 1e-12)
+    share = np.clip((off * step).sum(axis=2) / length, 0.0, 1.0)
+    nearest = np.hypot(*np.moveaxis(off - share[..., np.newaxis] * step, 2, 0)).min(axis=1)
+    return float((nearest > ALONG) @ great_circle_distances(line[:-1], line[1:]))
 
 
 def vans(one_van: dict[str, Any]) -> dict[str, Any]:

@@ -44,6 +44,14 @@ def streets(router_url: str) -> dict[str, Any]:
     return {"credit": CREDIT, "origin": list(ORIGIN), "step": STEP, **drawn}
 
 
+def lines_of(drawn: Mapping[str, Any], kind: str) -> list[Array]:
+    """Return the lines of a kind in what `streets` returns, each of longitude and latitude."""
+    return [
+        np.cumsum(np.reshape(row, (-1, 2)), axis=0) * drawn["step"] + drawn["origin"]
+        for row in drawn[kind]
+    ]
+
+
 def _edges(router_url: str) -> Iterator[tuple[str | None, NDArray[np.int64]]]:
     """Return the kind and the line, in steps, of every edge of the road network."""
     grid = _grid()

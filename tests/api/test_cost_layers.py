@@ -122,6 +122,12 @@ def test_the_rest_is_planned_with_a_layer_anew(client: httpx.Client) -> None:
         ({"cost_layers": [{"layer": GRID}]}, "/cost_layers/0/name", "is required"),
         ({"cost_layers": [{"name": "a", "layer": [[1]]}]}, "/cost_layers/0/layer", "as large as"),
         (
+            {"cost_layers": [{"name": "a", "layer": [[1, 2], [1]]}]},
+            "/cost_layers/0/layer/1",
+            "must have 2 numbers, as the first, got 1",
+        ),
+        ({"cost_layers": [{"name": "a", "layer": []}]}, "/cost_layers/0/layer", "a row of numbers"),
+        (
             {"cost_layers": [*layers(1), {"name": "a", "layer": [[1]]}]},
             "/cost_layers/1/layer",
             "as large as the first, 5 x 6 cells, got 1 x 1",

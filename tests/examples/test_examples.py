@@ -17,7 +17,7 @@ import pytest
 from service.construction.call_estimate import CallEstimate
 from service.coverage.survey import survey
 from service.examples.deliveries import BLACK_SPOTS
-from service.examples.helsinki import CROWDS, people_along
+from service.examples.helsinki import CROWDS, metres_beside, people_along
 from service.examples.streets import KINDS
 from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
@@ -181,6 +181,29 @@ def test_the_ways_between_stops_meet_as_many_people_as_their_costs_say() -> None
         for i in stops
     ]
     np.testing.assert_allclose(met, people, rtol=0.02, atol=3)
+
+
+def test_metres_are_counted_where_a_way_leaves_the_main_streets() -> None:
+    main = np.array([[24.94, 60.17], [24.95, 60.17]])
+    segments = main[np.newaxis]
+    way = np.array([[24.942, 60.17], [24.944, 60.17], [24.944, 60.171], [24.946, 60.171]])
+    up_and_along = great_circle_distances(way[1:-1], way[2:]).sum()
+    assert metres_beside(way, segments) == pytest.approx(up_and_along)
+    assert metres_beside(main, segments) == 0
+
+
+def test_of_three_costs_each_has_its_own_best_tour() -> None:
+    request = json.loads((EXAMPLES / "helsinki-three-costs.json").read_text())
+    one_van = json.loads((EXAMPLES / "helsinki-deliveries.json").read_text())
+    assert request["objectives"][:2] == one_van["objectives"]
+    instance = Instance(
+        matrices=np.array([each["matrix"] for each in request["objectives"]], float)
+    )
+    options = PlanOptions(directions=spread(1, 3), size=1000, time_limit=4.0, seed=1)
+    points = plan(Shuffler(), instance, options).points
+    # The guide gives these: least and greatest of time, people met and metres in side streets.
+    np.testing.assert_allclose(points.min(axis=0), (1945, 2460, 5274), rtol=0.01)
+    assert (points.max(axis=0) > 1.1 * points.min(axis=0)).all()
 
 
 def _way(legs: dict[str, Any], start: int, end: int) -> list[int]:

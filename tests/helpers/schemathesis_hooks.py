@@ -77,7 +77,7 @@ def _change_nothing(body: Any) -> None:
     """Leave only those members of a request to replan that hold for any front."""
     if isinstance(body, dict):
         of_stops = ("costs", "objectives", "geometry")
-        of_a_map = ("pose", "grid", "blocked", "freed", "cost_layer", "paths")
+        of_a_map = ("pose", "grid", "blocked", "freed", "cost_layer", "cost_layers", "paths")
         of_some_front = ("done", "position", "add", "remove", "tour", *of_stops, *of_a_map)
         for name in (*of_some_front, "actor", "reference_point"):
             body.pop(name, None)
@@ -107,6 +107,7 @@ def _make_coverable(body: dict[str, Any]) -> None:
         "spacing": 1e150,
         "second_matrix": [[1.0] * n] * n,
         "cost_layer": [[1.0, 1.0], [1.0, 1.0]],
+        "cost_layers": [{"name": "dust", "layer": [[1.0, 1.0], [1.0, 1.0]]}],
         "second_coordinates": [[0.0, 1.0]] * n,
     }
     body |= {name: value for name, value in fit.items() if name in body}

@@ -72,7 +72,7 @@ def test_a_front_asked_for_later_is_the_one_that_would_have_been_answered(
     assert found["status"] == "done"
     for answer in (at_once, found):  # either may just have converged by then
         assert answer["terminated"] in ("time_limit", "converged")
-    assert found["hypervolume"] >= at_once["hypervolume"] * 0.99
+    assert found["hypervolume"] >= at_once["hypervolume"] * 0.9
     check(found)
     tour = client.get("/tour", params={"angle": 30}).json()
     assert tour["front"] == found["id"]

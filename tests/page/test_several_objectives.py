@@ -176,7 +176,7 @@ def test_what_is_taken_along_has_all_three(page: Page) -> None:
 
 
 def test_the_next_front_of_two_has_its_own_chart(page: Page) -> None:
-    page.get_by_label("Example", exact=True).select_option(index=1)
+    page.get_by_label("Example", exact=True).select_option("City deliveries")
     wait_until_planned(page)
     expect(page.locator("#several")).to_be_hidden()
     expect(page.locator("#balance")).to_be_visible()

@@ -56,12 +56,20 @@ class LayerItem(StrictModel):
 
     name: Text = Field(description="comes back with the objective; no two layers share one")
     unit: Text | None = Field(default=None, description="comes back with the objective")
-    layer: Layer = Field(description="the cost of a metre on each cell of the grid")
+    layer: ArrayRows = Field(description="the cost of a metre on each cell of the grid")
 
     @property
     def objective(self) -> Objective:
         """Its name and its unit."""
         return Objective(self.name, self.unit)
+
+    def array(self, index: int) -> Array:
+        """Return its costs, shape (rows, columns); it is the layer of this index in its request.
+
+        Raises:
+            Refusal: There are no costs, or rows differ in length.
+        """
+        return rectangular_array(self.layer, f"cost_layers/{index}/layer")
 
 
 def stacked(items: Sequence[LayerItem]) -> Array | None:
@@ -70,13 +78,14 @@ def stacked(items: Sequence[LayerItem]) -> Array | None:
     Raises:
         Refusal: They differ in size.
     """
-    for index, item in enumerate(items):
-        rows, columns = items[0].layer.shape
-        if item.layer.shape != (rows, columns):
-            came = " x ".join(map(str, item.layer.shape))
+    layers = [item.array(index) for index, item in enumerate(items)]
+    for index, layer in enumerate(layers):
+        rows, columns = layers[0].shape
+        if layer.shape != (rows, columns):
+            came = " x ".join(map(str, layer.shape))
             demand = f"must be as large as the first, {rows} x {columns} cells, got {came}"
             raise invalid(f"cost_layers/{index}/layer", demand)
-    return np.stack([item.layer for item in items]) if items else None
+    return np.stack(layers) if layers else None
 
 
 CostLayers = Annotated[

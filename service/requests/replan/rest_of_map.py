@@ -94,8 +94,9 @@ def _layers(coverage: Coverage, request: ReplanRequest) -> Array:
         if item.name not in names:
             known = ", ".join(names)
             raise invalid(f"{part}/name", f"must be one of {known}, got {show(item.name)}")
-        check_layer(item.layer, f"{part}/layer", coverage.blocked)
-        layers[names.index(item.name)] = item.layer
+        layer = item.array(index)
+        check_layer(layer, f"{part}/layer", coverage.blocked)
+        layers[names.index(item.name)] = layer
     return layers
 
 
