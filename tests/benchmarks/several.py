@@ -87,7 +87,8 @@ def _measured_drawn(
 def _measured(find: Find, seconds: float, instance: Instance) -> dict[str, Any]:
     """Hypervolume in per cent, the number of points, and the seconds that a method took."""
     began = time.monotonic()
-    points = moocore.filter_dominated(find(instance, seconds))
+    found = find(instance, seconds)
+    points = moocore.filter_dominated(found) if len(found) else found
     took = time.monotonic() - began
     corner = instance.reference_point
     share = moocore.hypervolume(points, ref=corner) / corner.prod()
@@ -135,7 +136,7 @@ def _under_weights(
         summed = np.tensordot(weights / weights.sum(), costs, axes=1)
         with suppress(TimeoutError):
             tours.append(solve(summed, max(left, 0.002)))
-    return tour_lengths(instance, np.array(tours))
+    return tour_lengths(instance, np.array(tours, np.int64).reshape(-1, instance.n))
 
 
 METHODS: dict[str, Find] = {
