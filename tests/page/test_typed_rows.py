@@ -74,6 +74,7 @@ def test_names_before_the_numbers_are_the_stops(opened: Page) -> None:
         ("1, 2, 3, 4\n\n1, 2, x, 4\n", "x₂ of stop 2 must be a number, got 'x'", "1, 2, x, 4"),
         ("1, 2, 3, 4\n5, , 7, 8", "y₁ of stop 2 must be a number, got ''", "5, , 7, 8"),
         ("1, 2, 3\n4, 5, 6", "Each stop must have 4 items", None),
+        ("1, 2, 3, 4, 5, 6\n6, 5, 4, 3, 2, 1", "Each stop must have 4 items", None),
         ("lon,lat\n1,2\n3,4", "Each stop must have 4 items", None),
     ],
 )

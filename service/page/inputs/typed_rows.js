@@ -55,7 +55,8 @@ export class TypedRows {
       throw ABOUT_TEXT.includes(error.code) ? aboutRow(error) : error;
     });
     const found = inRows(request);
-    if (!found.coordinates) throw refusal(FOUR);
+    // More planes are opened as a file: the table beside the box has two.
+    if (!found.coordinates || found.coordinates[0]?.length > 4) throw refusal(FOUR);
     return found;
   }
 }
@@ -65,7 +66,7 @@ const prepared = (text) => text.replace(/^\s*\n/gm, "").replace(/^\s*(?=\d)/, "+
 
 /** The same refusal, of the stop and the number that it is about. */
 function aboutRow({ message }) {
-  const detail = message.replace(/^rows: /, "").replace(/^must have 4 columns.*/s, FOUR).replace(/(?<=must have \d+ )fields/, "items");
+  const detail = message.replace(/^rows: /, "").replace(/^must have 4, 6 or 8 columns.*/s, FOUR).replace(/(?<=must have \d+ )fields/, "items");
   const [place, row, column] = /^row (\d+)(?:, column '([1-4])')?/.exec(detail) ?? [];
   if (!place) return refusal(detail);
   return refusal(detail.replace(place, `coordinates/${row - 1}${column ? `/${column - 1}` : ""}`), row - 1);
