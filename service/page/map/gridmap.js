@@ -128,7 +128,7 @@ export class GridMap {
 }
 
 /** The costs that a request's map is tinted by, those of its second objective; undefined without a layer. */
-export const shadeOf = ({ cost_layer: layer, cost_layers: layers }) => layer ?? layers?.[0].layer;
+export const shadeOf = ({ cost_layer: layer, cost_layers: layers }) => layer ?? layers?.[0]?.layer;
 
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];
