@@ -10,15 +10,9 @@ import numpy as np
 import pytest
 from paretour import Client
 
+from tests.api.test_plan_coverage import GRID
 from tests.helpers.serving import app_of, problem, serving
 
-GRID = [
-    [0, 0, 0, 0, 0, 0],
-    [0, 0, 0, 0, 0, 0],
-    [1, 1, 1, 1, 0, 0],
-    [0, 0, 0, 0, 0, 0],
-    [0, 0, 0, 0, 0, 0],
-]
 PLACES = [[0, 0], [4, 0], [4, 5], [0, 5], [3, 2], [1, 2]]
 NAMES = ["noise", "people", "wear"]
 

@@ -7,6 +7,7 @@ seven points at 40 cities.
 """
 
 import time
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,51 +38,43 @@ APART = 1.05  # a snapshot is taken when this many times as long has passed as a
 
 def nsga2(instance: Instance, population: int, evaluations: int, seed: int = 0) -> Snapshots:
     """The fronts after more and more processor seconds, until enough tours were evaluated."""
-    algorithm = NSGA2(
-        pop_size=population,
-        sampling=PermutationRandomSampling(),
-        crossover=OrderCrossover(),
-        mutation=InversionMutation(),
-    )
+    algorithm = NSGA2(pop_size=population, **_operators())
     return _snapshots(instance, algorithm, evaluations, seed)
 
 
 def moead(instance: Instance, population: int, evaluations: int, seed: int = 0) -> Snapshots:
     """As `nsga2`; each member of the population stands for one of as many weights."""
-    algorithm = MOEAD(
-        ref_dirs=spread_weights(population),
-        n_neighbors=min(20, population),
-        decomposition=WeightedSum(),
-        sampling=PermutationRandomSampling(),
-        crossover=OrderCrossover(),
-        mutation=InversionMutation(),
-    )
-    return _snapshots(instance, algorithm, evaluations, seed)
+    return _snapshots(instance, _moead(spread_weights(population)), evaluations, seed)
 
 
 def nsga3(instance: Instance, seconds: float) -> Array:
     """The front after these seconds, of any number of objectives; 105 directions and members."""
-    algorithm = NSGA3(
-        ref_dirs=spread(MEMBERS, len(instance.scale)),
-        sampling=PermutationRandomSampling(),
-        crossover=OrderCrossover(),
-        mutation=InversionMutation(),
-    )
+    algorithm = NSGA3(ref_dirs=spread(MEMBERS, len(instance.scale)), **_operators())
     return _after(instance, algorithm, seconds)
 
 
 def moead_for(instance: Instance, seconds: float) -> Array:
     """As `nsga3`, by MOEA/D under as many weights."""
     directions = spread(MEMBERS, len(instance.scale))
-    algorithm = MOEAD(
-        ref_dirs=directions / directions.sum(axis=1, keepdims=True),
-        n_neighbors=20,
+    weights = directions / directions.sum(axis=1, keepdims=True)
+    return _after(instance, _moead(weights), seconds)
+
+
+def _moead(weights: Array) -> Algorithm:
+    return MOEAD(
+        ref_dirs=weights,
+        n_neighbors=min(20, len(weights)),
         decomposition=WeightedSum(),
-        sampling=PermutationRandomSampling(),
-        crossover=OrderCrossover(),
-        mutation=InversionMutation(),
+        **_operators(),
     )
-    return _after(instance, algorithm, seconds)
+
+
+def _operators() -> dict[str, Any]:
+    return {
+        "sampling": PermutationRandomSampling(),
+        "crossover": OrderCrossover(),
+        "mutation": InversionMutation(),
+    }
 
 
 def _after(instance: Instance, algorithm: Algorithm, seconds: float) -> Array:
