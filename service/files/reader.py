@@ -16,12 +16,12 @@ from service.files.reading import (
     reading_of_several,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
-from service.files.stop_tables import NTH, Part, part_of, reading_of
+from service.files.stop_tables import Part, part_of, reading_of
 from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
 from service.files.vehicle_tables import has_vehicles, read_fleet
-from service.objectives import MOST_OBJECTIVES, OBJECTIVES
+from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
 _BINARY = {
     b"%PDF": "a PDF",

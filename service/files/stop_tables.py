@@ -13,10 +13,9 @@ from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
-from service.objectives import MOST_OBJECTIVES
+from service.objectives import MOST_OBJECTIVES, NTH
 
 Array = NDArray[np.float64]
-NTH = ("first", "second", "third", "fourth")
 _IN_PLANES = ("x", "y", *(f"{nth} {axis}" for nth in NTH[1:] for axis in "xy"))
 _NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none", "x", "∞"}
 

@@ -9,7 +9,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import Fault, Refusal
-from service.objectives import OBJECTIVES
+from service.objectives import NTH, OBJECTIVES
 from service.pareto import balances, knee, losses
 from service.requests.fields import GEOMETRY, Angle, Geometry, Share, optional
 from service.requests.validation import show
@@ -18,7 +18,6 @@ Array = NDArray[np.float64]
 _BUDGETS = ("first_at_most", "second_at_most")  # of objectives 0 and 1
 _OF_TWO = ("angle", "balance", *_BUDGETS)  # objectives
 _WAYS = (*_OF_TWO, "weights", "at_most", "knee")
-_NTH = ("first", "second", "third", "fourth")
 _MOST_PARTS = 8  # of a list in the query
 _Length = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 _Parts = Annotated[list[str], Field(max_length=_MOST_PARTS)]
@@ -208,5 +207,5 @@ def _within(points: Array, budgets: dict[int, float], preferred: int) -> int:
         least = float(lengths[within].min())
         within &= lengths <= budget
         if not within.any():
-            raise Refusal("no-such-tour", which=_NTH[objective], limit=budget, actual=least)
+            raise Refusal("no-such-tour", which=NTH[objective], limit=budget, actual=least)
     return int(np.where(within, points[:, preferred], np.inf).argmin())

@@ -3,6 +3,9 @@
 /** The name of an objective that has none. */
 export const unnamed = (axis) => ({ name: `length ${axis + 1}`, unit: "" });
 
+/** The first objective on a map. */
+export const DISTANCE = { name: "distance", unit: "m" };
+
 export const UNNAMED = [unnamed(0), unnamed(1)];
 
 /** The names in a request or an answer; where it has none, UNNAMED, or as many as its scale has numbers. */

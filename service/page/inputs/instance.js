@@ -5,7 +5,7 @@ import { rounded } from "./distances.js";
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
-import { UNNAMED, namesIn, unnamed } from "../common/objectives.js";
+import { DISTANCE, UNNAMED, namesIn, unnamed } from "../common/objectives.js";
 import { nameOf } from "./names.js";
 import { Problem } from "../planning/service.js";
 
@@ -48,7 +48,7 @@ export function requestFor({ rounded: whole, ids, names, ...body }) {
 
 /** The names of the objectives of more than two matrices or of cost layers; undefined for any other request. */
 export function ownNames({ matrices, cost_layers: layers }) {
-  if (layers) return [{ name: "distance", unit: "m" }, ...layers.map(({ name, unit = "" }) => ({ name, unit }))];
+  if (layers) return namesIn({ objectives: [DISTANCE, ...layers] });
   return matrices?.length > 2 ? matrices.map((_, axis) => unnamed(axis)) : undefined;
 }
 

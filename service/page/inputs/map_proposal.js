@@ -1,13 +1,11 @@
 /** Propose what to plan on a robot's map that only shows its walls. */
 
 import { nearness } from "./nearness.js";
+import { DISTANCE } from "../common/objectives.js";
 
 const PLACES_ACROSS = 12; // places along the longer side
 const OF_MAP = ["grid", "cell_size", "origin"];
-const OBJECTIVES = [
-  { name: "distance", unit: "m" },
-  { name: "nearness to walls", unit: "" },
-];
+const OBJECTIVES = [DISTANCE, { name: "nearness to walls", unit: "" }];
 
 /** The request itself; for a map alone, a request to visit places all over it: short against far from walls. */
 export function proposed(request) {

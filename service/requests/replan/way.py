@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from service.coverage.coverage import Coverage
 from service.errors import Refusal, invalid
 from service.instance import CLOSED, RouteEnds
-from service.objectives import OBJECTIVES, Objective
+from service.objectives import NTH, OBJECTIVES, Objective
 from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest
@@ -24,7 +24,6 @@ from service.search.open_routes import rotated
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
-_NAMES = ("first", "second", "third", "fourth")  # of objectives that the request did not name
 _OF_FRONT = "a stop of the front"
 
 
@@ -159,7 +158,7 @@ def _from_stop(stop: int, tours: Indices) -> Indices:
 def _numbered(n: int) -> Labels:
     """Return labels for stops and objectives without names."""
     stops = tuple(Stop(str(index)) for index in range(n))
-    return Labels(stops, tuple(Objective(name) for name in _NAMES))
+    return Labels(stops, tuple(Objective(name) for name in NTH))
 
 
 @dataclass(frozen=True, eq=False)
