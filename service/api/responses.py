@@ -19,7 +19,7 @@ from starlette.responses import Response
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
 from service.files.reading import Kind
-from service.fleet.fleet import Over
+from service.fleet.rules import Over
 from service.front import Termination
 from service.jobs.record import Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES

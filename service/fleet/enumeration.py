@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.evaluation import route_lengths, route_violations, violations
-from service.fleet.fleet import Fleet, Rules
+from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
+from service.fleet.rules import Rules
 from service.pareto import nondominated
 
 MOST_STOPS = 6  # stops to visit

@@ -11,8 +11,9 @@ from math import inf
 
 import numpy as np
 
-from service.fleet.fleet import Array, Fleet, Rules
+from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route, path_of
+from service.fleet.rules import Rules
 from service.objectives import OBJECTIVES
 
 _TOLERANCE = 1e-9  # of the length of a route: sums of floats depend on their order

@@ -9,7 +9,7 @@ import numpy as np
 from service.construction.first_tours import MIN_CONSTRUCTED, Constructor, construct
 from service.errors import Refusal
 from service.fleet.evaluation import plan_lengths
-from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
+from service.fleet.fleet import Array, Fleet
 from service.fleet.optimal_split import (
     FleetArrays,
     Indices,
@@ -23,6 +23,7 @@ from service.fleet.optimal_split import (
     stock_of,
 )
 from service.fleet.plans import Plan
+from service.fleet.rules import Rules, VehicleType, Visit
 from service.fleet.scales import Horizon
 from service.instance import Instance
 from service.objectives import OBJECTIVES

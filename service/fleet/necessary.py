@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import route_violations
-from service.fleet.fleet import Array, Fleet, Rules, least_paths
+from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.plans import Route
+from service.fleet.rules import Rules
 
 NAMES = CityNames("stop")
 

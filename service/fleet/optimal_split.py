@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.fleet.fleet import Array, Fleet, Rules
+from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route
+from service.fleet.rules import Rules
 from service.jit import allocating, compiled, inlined
 from service.objectives import OBJECTIVES
 

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from service.fleet.fleet import Array, Fleet, Rules
+from service.fleet.fleet import Array, Fleet
+from service.fleet.rules import Rules
 
 
 @dataclass(frozen=True)

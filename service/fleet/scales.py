@@ -8,7 +8,8 @@ from math import inf
 import numpy as np
 
 from service.errors import Refusal
-from service.fleet.fleet import Array, Fleet, Rules, Span
+from service.fleet.fleet import Array, Fleet
+from service.fleet.rules import Rules, Span
 from service.instance import OUTLYING
 
 _LARGEST = 2.0**61  # the largest penalty of all routes together: PyVRP's integers have 64 bits

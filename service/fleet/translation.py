@@ -15,8 +15,9 @@ import pyvrp
 from numpy.typing import NDArray
 
 from service.fleet.evaluation import unassigned
-from service.fleet.fleet import Fleet, VehicleType
+from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
+from service.fleet.rules import VehicleType
 from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
 from service.objectives import OBJECTIVES
 

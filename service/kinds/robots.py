@@ -20,8 +20,9 @@ from service.coverage.coverage import Robot
 from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.fleet.evaluation import route_lengths
-from service.fleet.fleet import Fleet, Over, Rules, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, Route, path_of
+from service.fleet.rules import Over, Rules, VehicleType, Visit
 from service.front import reporting
 from service.kinds.fleet import document_of_plans, plan_front
 from service.kinds.front_document import FrontDocument, encode_path, with_member

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from service.coverage.coverage import Coverage, Robot
 from service.errors import invalid
-from service.fleet.fleet import Over
+from service.fleet.rules import Over
 from service.instance import CLOSED, RouteEnds
 from service.requests.arrays import Array, array_field, check_costs, cost_matrix
 from service.requests.fields import (

@@ -8,7 +8,7 @@ from pydantic import Field
 from pydantic_core import to_json
 
 from service.errors import invalid
-from service.fleet.fleet import ALWAYS, Over, Rules, Shipment, Span, VehicleType, Visit
+from service.fleet.rules import ALWAYS, Over, Rules, Shipment, Span, VehicleType, Visit
 from service.requests.fields import (
     GEOMETRY,
     AsInteger,

@@ -7,7 +7,8 @@ from typing import Any, Literal
 from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
-from service.fleet.fleet import Fleet, Over, Rules
+from service.fleet.fleet import Fleet
+from service.fleet.rules import Over, Rules
 from service.front import PlanOptions
 from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours

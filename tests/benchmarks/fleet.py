@@ -28,9 +28,10 @@ from pyvrp.stop import MaxRuntime
 import service
 from service.actor import OnnxActor, load_actors
 from service.fleet.evaluation import points_of, violations
-from service.fleet.fleet import Fleet, Rules, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
+from service.fleet.rules import Rules, VehicleType, Visit
 from service.fleet.scales import UNBOUNDED
 from service.fleet.translation import Goal, Translation
 from service.pareto import hypervolume, nondominated

@@ -19,9 +19,10 @@ import numpy as np
 import vrplib
 
 from service.fleet.evaluation import points_of, violations
-from service.fleet.fleet import Fleet, Rules, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
+from service.fleet.rules import Rules, VehicleType, Visit
 from service.fleet.translation import Translation
 from service.pareto import nondominated
 from tests.benchmarks.fleet import Find, swept

@@ -13,8 +13,9 @@ from service.fleet.evaluation import (
     unassigned,
     violations,
 )
-from service.fleet.fleet import Fleet, Rules, Shipment, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
+from service.fleet.rules import Rules, Shipment, VehicleType, Visit
 from tests.helpers.fleets import best_times, every_plan, random_fleet
 
 LINE = np.abs(np.subtract.outer([0.0, 1, 2, 3, 4], [0.0, 1, 2, 3, 4]))

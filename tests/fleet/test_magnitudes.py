@@ -9,10 +9,11 @@ import pytest
 from service.errors import NoTour, Refusal
 from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, route_lengths, violations
-from service.fleet.fleet import ALWAYS, Fleet, Over, Rules, Shipment, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.necessary import check_necessary
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route
+from service.fleet.rules import ALWAYS, Over, Rules, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.fleet.test_outliers import AnyOrder
 

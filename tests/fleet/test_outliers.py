@@ -13,9 +13,10 @@ from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, InvalidInstance, Refusal
 from service.fleet.enumeration import exact_plans
 from service.fleet.evaluation import points_of, schedule, violations
-from service.fleet.fleet import ALWAYS, Fleet, Rules, Shipment, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet, reference_point_of
 from service.fleet.plans import FleetFront, path_of
+from service.fleet.rules import ALWAYS, Rules, Shipment, VehicleType, Visit
 from service.instance import Instance
 from service.pareto import nondominated
 from tests.helpers.fleets import exact_front, random_fleet

@@ -13,10 +13,11 @@ from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.evaluation import plan_lengths, violations
-from service.fleet.fleet import Fleet, Over, Rules, Shipment, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront
+from service.fleet.rules import Over, Rules, Shipment, VehicleType, Visit
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
 from service.fleet.translation import Translation

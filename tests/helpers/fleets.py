@@ -7,8 +7,9 @@ from math import inf
 import numpy as np
 
 from service.fleet.evaluation import plan_lengths, violations
-from service.fleet.fleet import ALWAYS, Fleet, Rules, Shipment, VehicleType, Visit
+from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
+from service.fleet.rules import ALWAYS, Rules, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 
 Point = tuple[float, float]
