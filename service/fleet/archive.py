@@ -7,8 +7,8 @@ from operator import itemgetter
 import pyvrp
 
 from service.fleet.evaluation import plan_lengths, violations
-from service.fleet.translation import Translation, Weights
-from service.objectives import OBJECTIVES
+from service.fleet.plans import Plan
+from service.fleet.translation import Goal, Translation
 
 Point = tuple[float, float]
 _FIRST = itemgetter(0)
@@ -34,13 +34,19 @@ class SolutionArchive:
         swept = rules.maximum is not None and all(each.longest == inf for each in rules.vehicles)
         self._any_distance = swept and rules.maximum == translation.distance
         self._any_time = swept and rules.maximum != translation.distance and not rules.spans
+        # Their limits in a search are no rules.
+        self._any_time |= rules.measure in ("overtime", "lateness")
         visits = len(rules.clients) + 1
         self._slack = [_ROUNDED * visits / scale for scale in translation.scales]
+        if rules.measure is not None:
+            self._slack[1] = 0.0
         self.points: list[Point] = []
         self.guides: list[Point] = []
         self._compared: set[Point] = set()  # guides of solutions whose true lengths are known
         self.solutions: list[pyvrp.Solution] = []
         self.version = 0
+        timed = rules.measure in ("overtime", "lateness")
+        self._guides_decide = not timed and not translation.squeezed.changed
 
     def __len__(self) -> int:
         return len(self.solutions)
@@ -53,25 +59,26 @@ class SolutionArchive:
         within = [index for index, guide in enumerate(self.guides) if guide[objective] <= length]
         return min(within, key=lambda index: self.guides[index][1 - objective], default=None)
 
-    def offer(self, solution: pyvrp.Solution, weights: Weights) -> None:
+    def offer(self, solution: pyvrp.Solution, goal: Goal) -> None:
         """Add a solution, unless it breaks a rule or another one is at least as good.
 
-        `weights` are those of the goal under which it was found. They multiply its prizes.
+        The weights of the goal, under which it was found, multiply its prizes.
         """
         if not self._keeps_rules(solution):
             return
-        translation, weight = self._translation, weights[self._translation.distance]
-        guide = self._guide(solution, weight)
+        translation, weight = self._translation, goal.weights[self._translation.distance]
+        if goal.vehicles is not None:
+            weight = 0  # vehicles that must not leave have a huge cost
+        guide = self._guide(solution, weight, goal.prizes)
         # PyVRP's lengths are at most the true lengths, up to rounding.
         if self._is_dominated((guide[0] - self._slack[0], guide[1] - self._slack[1])):
             return
-        if guide in self._compared and not translation.squeezed.changed:
+        if guide in self._compared and self._guides_decide:
             return
         self._compared.add(guide)
         plan = translation.plan(solution)
-        if not weight:  # then prizes have no weight either
-            guide = guide[0] + translation.extras(plan), guide[1]
         point = plan_lengths(translation.fleet, plan)
+        guide = self._completed(guide, plan, point, bool(weight))
         if self._is_dominated(point):
             return
         if translation.is_rounded and violations(translation.fleet, plan):
@@ -83,6 +90,18 @@ class SolutionArchive:
         self.guides[begin:end] = [guide]
         self.solutions[begin:end] = [solution]
         self.version += 1
+
+    def _completed(self, guide: Point, plan: Plan, point: Point, weighed: bool) -> Point:
+        """Return the lengths that `_guide` returned, with what had no weight in them."""
+        first, second = guide
+        translation, measure = self._translation, self._translation.fleet.rules.measure
+        if not weighed:  # then prizes have no weight either
+            first += translation.extras(plan)
+        if measure == "unassigned":
+            second = translation.lost(plan)
+        elif measure is not None:
+            second = point[1]
+        return first, second
 
     def _is_dominated(self, point: Point) -> bool:
         """Return whether a solution is at least as good as a point in both lengths."""
@@ -97,12 +116,28 @@ class SolutionArchive:
             and (self._any_time or not solution.has_time_warp())
         )
 
-    def _guide(self, solution: pyvrp.Solution, weight: int) -> Point:
-        """Return both lengths of a solution as PyVRP has them; `weight` multiplies its prizes."""
-        first, second = (self._length(solution, objective) for objective in range(OBJECTIVES))
-        extras = solution.fixed_vehicle_cost() + solution.uncollected_prizes()
-        scale = self._translation.scales[0]
-        return first + extras / (weight * scale) if extras else first, second
+    def _guide(self, solution: pyvrp.Solution, weight: int, prizes: int) -> Point:
+        """Return both lengths of a solution as PyVRP has them, or less.
+
+        `weight` multiplies what is added to the first; `prizes` multiplies prizes that are the
+        second. Extras that have no weight count as 0, and so do overtime and lateness.
+        """
+        measure = self._translation.fleet.rules.measure
+        first = self._length(solution, 0)
+        extras, scale = solution.fixed_vehicle_cost(), self._translation.scales[0]
+        match measure:
+            case None:
+                second = self._length(solution, 1)
+            case "vehicles":
+                second = float(solution.num_routes())
+            case "unassigned":
+                lost = solution.uncollected_prizes()
+                second = lost / (prizes * self._translation.prize_scale) if prizes else 0.0
+            case _:
+                second = 0.0
+        if measure != "unassigned":
+            extras += solution.uncollected_prizes()
+        return first + extras / (weight * scale) if extras and weight else first, second
 
     def _length(self, solution: pyvrp.Solution, objective: int) -> float:
         is_duration = objective == self._translation.duration

@@ -5,8 +5,8 @@ none. Among the partial plans that visit the same stops, dominated ones are drop
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping
-from itertools import permutations
+from collections.abc import Callable, Iterator, Mapping
+from itertools import permutations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -68,14 +68,23 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
     fixed = rules.vehicles[vehicle].fixed
     found: dict[Stops, list[_Partial]] = defaultdict(list)
     for most in range(1, len(rules.clients) + 1):
-        for stops in permutations(rules.clients, most):
+        orders = permutations(rules.clients, most)
+        for route in (route for stops in orders for route in _trips(rules, vehicle, stops)):
+            stops = tuple(stop for stop in route.stops if stop not in rules.depots)
             if ended():
                 raise _Ended
-            route = Route(vehicle, stops)
             if _ships_in_order(rules, stops) and not any(route_violations(fleet, route)):
                 first, second = route_lengths(fleet, route)
                 found[frozenset(stops)].append(_Partial(first + fixed, second, (route,)))
     return _undominated(found)
+
+
+def _trips(rules: Rules, vehicle: int, stops: tuple[int, ...]) -> Iterator[Route]:
+    """Yield the routes of a vehicle that visit these stops in order, with any stops to reload."""
+    reloads = [(), *((stop,) for stop in rules.vehicles[vehicle].reload)]
+    for between in product(reloads, repeat=len(stops) - 1):
+        trips = zip(stops, (*between, ()), strict=True)
+        yield Route(vehicle, tuple(each for stop, reload in trips for each in (stop, *reload)))
 
 
 def _ships_in_order(rules: Rules, stops: tuple[int, ...]) -> bool:

@@ -1,114 +1,58 @@
-"""The lengths of plans, the times of their routes, and the rules that they break.
+"""The lengths of plans, and the rules that they break.
 
 Every plan is checked with this code, which shares nothing with the engine that finds plans.
 """
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from math import inf
 
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
-from service.fleet.plans import Plan, Route, path_of
+from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
+from service.fleet.schedule import Schedule, legs, schedule, trips_of
 from service.objectives import OBJECTIVES
 
 _TOLERANCE = 1e-9  # of the length of a route: sums of floats depend on their order
 _ROUNDING = 2.0**-52  # relative, for each time of a route
 
 
-@dataclass(frozen=True)
-class Schedule:
-    """The times of a route: when the vehicle reaches each stop, and when it is done.
-
-    Attributes:
-        arrivals: The arrival at each stop of `path_of`; at the first stop, the departure. The
-            vehicle may wait at a stop until its window opens.
-        end: The end of the route.
-        late: The largest delay at a window or at the end of the shift.
-        waiting: The time that the vehicle waits.
-        slack: How much later it may leave without being late, if it is never late.
-    """
-
-    arrivals: tuple[float, ...]
-    end: float
-    late: float
-    waiting: float
-    slack: float
-
-    @property
-    def duration(self) -> float:
-        """The time from the departure to the end."""
-        return self.end - self.arrivals[0]
-
-
-def schedule(fleet: Fleet, route: Route) -> Schedule:
-    """Return the times of a route whose vehicle leaves as late as does not delay its end.
-
-    Raises:
-        ValueError: The fleet has no clock.
-    """
-    if fleet.rules.clock is None:
-        raise ValueError("a fleet without a clock has no times")
-    driven = legs(fleet, route, fleet.rules.clock)
-    begin, last = fleet.rules.vehicles[route.vehicle].shift
-    early = _drive(fleet.rules, route, driven, begin, last)
-    # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
-    # delay the end of the route.
-    delay = 0.0 if early.late else min(early.waiting, early.slack)
-    if not delay:
-        return early
-    return replace(_drive(fleet.rules, route, driven, begin + delay, last), late=early.late)
-
-
-def _drive(
-    rules: Rules, route: Route, driven: Sequence[float], departure: float, last: float
-) -> Schedule:
-    """Return the times of a route with legs of these times, from a departure on."""
-    time, waiting, slack, late = departure, 0.0, inf, 0.0
-    arrivals = []
-    for stop, leg in zip(path_of(rules, route), [*driven, 0.0], strict=True):
-        visit = rules.visits[stop]
-        opens, closes = visit.window
-        arrivals.append(time)
-        waiting += max(0.0, opens - time)
-        begin = max(time, opens)
-        slack = min(slack, closes - begin + waiting)
-        late = max(late, begin - closes)
-        end = begin + visit.service
-        time = end + leg
-    slack = min(slack, last - end + waiting)
-    return Schedule(tuple(arrivals), end, max(late, end - last), waiting, slack)
-
-
-def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
-    """Return the costs of the legs of a route in one objective."""
-    costs = fleet.costs[objective]
-    return [float(costs[a, b]) for a, b in pairwise(path_of(fleet.rules, route))]
-
-
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, float]:
-    """Return the lengths of a route: its duration in the clock's objective, else its costs."""
+    """Return what a route adds to the lengths of its plan, before prizes and fixed costs.
+
+    In the clock's objective that is its duration, in others the costs of its legs.
+    """
     return _length(fleet, route, 0), _length(fleet, route, 1)
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, float]:
-    """Return the lengths of a plan. The first one includes lost prizes and fixed costs."""
+    """Return the lengths of a plan. The first one includes fixed costs and lost prizes.
+
+    If the prizes of what is left out are the second objective, the first does not include them.
+    """
+    rules = fleet.rules
     routes = np.reshape([route_lengths(fleet, each) for each in plan.routes], (-1, OBJECTIVES))
     first, second = (
         float(lengths.max(initial=0.0) if over == "max" else lengths.sum())
-        for lengths, over in zip(routes.T, fleet.rules.over, strict=True)
+        for lengths, over in zip(routes.T, rules.over, strict=True)
     )
-    return first + extras(fleet.rules, plan), second
+    fixed, lost = fixed_costs(rules, plan), lost_prizes(rules, plan)
+    if rules.measure == "unassigned":
+        return first + fixed, second + lost
+    return first + fixed + lost, second
 
 
-def extras(rules: Rules, plan: Plan) -> float:
-    """Return the prizes that a plan loses, and the fixed costs of the vehicles that it uses."""
-    fixed = sum(rules.vehicles[route.vehicle].fixed for route in plan.routes)
-    return fixed + sum(rules.visits[stop].prize or 0.0 for stop in unassigned(rules, plan))
+def fixed_costs(rules: Rules, plan: Plan) -> float:
+    """Return the fixed costs of the vehicles that a plan uses."""
+    return sum(rules.vehicles[route.vehicle].fixed for route in plan.routes)
+
+
+def lost_prizes(rules: Rules, plan: Plan) -> float:
+    """Return the prizes of the stops that a plan leaves out."""
+    return sum(rules.visits[stop].prize or 0.0 for stop in unassigned(rules, plan))
 
 
 def unassigned(rules: Rules, plan: Plan) -> list[int]:
@@ -132,14 +76,36 @@ def violations(fleet: Fleet, plan: Plan) -> list[str]:
 
 
 def _length(fleet: Fleet, route: Route, objective: int) -> float:
+    match fleet.rules.over[objective]:
+        case "vehicles":
+            return 1.0
+        case "unassigned":
+            return 0.0
+        case "overtime":
+            return overtime(fleet.rules, route, schedule(fleet, route))
+        case "lateness":
+            return schedule(fleet, route).lateness
+    return cost_length(fleet, route, objective)
+
+
+def cost_length(fleet: Fleet, route: Route, objective: int) -> float:
+    """Return the length of a route in costs: by the clock its duration, else that of its legs."""
     if objective == fleet.rules.clock:
         return schedule(fleet, route).duration
     return sum(legs(fleet, route, objective))
 
 
+def overtime(rules: Rules, route: Route, times: Schedule) -> float:
+    """Return how much later than its shift a route ends."""
+    return max(0.0, times.end - rules.vehicles[route.vehicle].shift[1])
+
+
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
     visits = Counter(plan.visited())
+    reloads = {stop for route in plan.routes for stop in rules.vehicles[route.vehicle].reload}
     for stop, times in visits.items():
+        if stop in reloads:
+            continue
         if stop not in rules.clients:
             yield f"stop {stop} is not a stop to visit"
         elif times > 1:
@@ -178,9 +144,8 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
     if fleet.forbids and inf in legs(fleet, route, 0):
         yield f"a vehicle of type {route.vehicle} takes a forbidden leg"
         return
-    for dimension, capacity in enumerate(vehicle.capacity):
-        if (most := max(_loads(rules, route, dimension))) > capacity:
-            yield f"a vehicle of type {route.vehicle} holds {most} of {capacity}"
+    yield from _service_broken(rules, route)
+    yield from _trips_broken(rules, route)
     if rules.clock is not None:
         times = schedule(fleet, route)
         rounding = 2 * _ROUNDING * len(times.arrivals) * times.end
@@ -188,14 +153,45 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
             yield f"a vehicle of type {route.vehicle} is late by {times.late:g}"
     if vehicle.longest != inf:
         assert rules.limited is not None
-        if (length := _length(fleet, route, rules.limited)) * (1 - _TOLERANCE) > vehicle.longest:
+        if (length := cost_length(fleet, route, rules.limited)) * (
+            1 - _TOLERANCE
+        ) > vehicle.longest:
             yield f"a route of length {length:g} is longer than {vehicle.longest:g}"
 
 
-def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:
-    """Return the load of a vehicle in one dimension, at its start and after each visit.
+def _service_broken(rules: Rules, route: Route) -> Iterator[str]:
+    """Yield a sentence for each stop that the vehicle may not visit, and if there are too many."""
+    vehicle = rules.vehicles[route.vehicle]
+    visited = [stop for trip in trips_of(rules, route) for stop in trip]
+    for stop in visited:
+        visit = rules.visits[stop]
+        if missing := set(visit.skills) - set(vehicle.skills):
+            yield f"a vehicle of type {route.vehicle} visits stop {stop} without {min(missing)}"
+        if visit.vehicles and route.vehicle not in visit.vehicles:
+            yield f"a vehicle of type {route.vehicle} visits stop {stop}, which is for others"
+    if vehicle.max_stops is not None and len(visited) > vehicle.max_stops:
+        yield f"a route has {len(visited)} stops, and may have {vehicle.max_stops}"
 
-    At the start it holds the demands of all stops that are not in shipments.
+
+def _trips_broken(rules: Rules, route: Route) -> Iterator[str]:
+    """Yield a sentence for each rule about trips and loads that a route breaks."""
+    vehicle, trips = rules.vehicles[route.vehicle], trips_of(rules, route)
+    if len(trips) > 1 and not all(trips):
+        yield f"a trip of a vehicle of type {route.vehicle} visits no stop"
+    if vehicle.max_trips is not None and len(trips) > vehicle.max_trips:
+        yield f"a route has {len(trips)} trips, and may have {vehicle.max_trips}"
+    for dimension, capacity in enumerate(vehicle.capacity):
+        for number, trip in enumerate(trips):
+            first = vehicle.initial_load and number == 0
+            on_board = vehicle.initial_load[dimension] if first else 0
+            if (most := on_board + max(_loads(rules, trip, dimension))) > capacity:
+                yield f"a vehicle of type {route.vehicle} holds {most} of {capacity}"
+
+
+def _loads(rules: Rules, trip: Sequence[int], dimension: int) -> Iterator[int]:
+    """Return the load for a trip in one dimension, at its start and after each visit.
+
+    At the start it is the demand of all stops that are not in shipments.
     """
     pickups = {each.delivery: each.pickup for each in rules.shipments}
 
@@ -204,5 +200,5 @@ def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:
         load = demand[dimension] if demand else 0
         return load if stop in rules.shipped and stop not in pickups else -load
 
-    brought = -sum(change(stop) for stop in route.stops if stop not in rules.shipped)
-    return accumulate(map(change, route.stops), initial=brought)
+    brought = -sum(change(stop) for stop in trip if stop not in rules.shipped)
+    return accumulate(map(change, trip), initial=brought)

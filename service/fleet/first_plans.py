@@ -97,7 +97,8 @@ class Cutter:
         stop: Called often; once it returns True, no further cuts are made.
 
     Raises:
-        Refusal: The fleet has shipments, or too many types and numbers of vehicles.
+        Refusal: The fleet has shipments, stops with several windows, or too many types and numbers
+            of vehicles.
     """
 
     def __init__(
@@ -105,6 +106,9 @@ class Cutter:
     ) -> None:
         if fleet.rules.shipments:
             reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
+            raise Refusal("no-plan", reason=reason)
+        if any(len(visit.windows) > 1 for visit in fleet.rules.visits):
+            reason = "stops with several windows need a time_limit over 0"
             raise Refusal("no-plan", reason=reason)
         self._fleet = fleet
         self._stop = stop
@@ -146,7 +150,9 @@ class Cutter:
 
     def _under_weights(self) -> Iterator[Plan]:
         """Yield the plans at both ends, and those on the hull between (Aneja and Nair, 1979)."""
-        scale = self._fleet.largest_legs
+        scale = self._fleet.largest_legs.copy()
+        if self._fleet.rules.measure is not None:
+            scale[1] = self._fleet.scale[1]
         scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
         steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale
         ends = [cut[0] for weights in steepest if (cut := self._best(self._costs(weights)))]
@@ -203,8 +209,11 @@ class Cutter:
         for table, sequence in zip(self._tables, self._sequences, strict=True):
             feasible = np.isfinite(table[..., 0])
             lengths = np.where(feasible[..., np.newaxis], table, 0.0)
+            if rules.measure is not None:  # overtime and lateness have no weight
+                lengths[..., 1] = rules.measure == "vehicles"
             prizes = (rules.visits[stop].prize for stop in sequence)
-            skipping = [inf if prize is None else weights[0] * prize for prize in prizes]
+            lost = weights[1 if rules.measure == "unassigned" else 0]
+            skipping = [inf if prize is None else lost * prize for prize in prizes]
             bounded = np.zeros(feasible.shape) if limited is None else lengths[..., limited]
             cost = np.where(feasible, lengths @ weights + weights[0] * fixed, inf)
             # The compiled code expects this layout.
@@ -220,8 +229,10 @@ def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
     if fleet.rules.clock is None:
         return arrays
     begin = Horizon.of(fleet.rules, float(fleet.largest_legs[fleet.rules.clock])).begin
-    window, shift = (np.maximum(0.0, spans - begin) for spans in (arrays.window, arrays.shift))
-    return arrays._replace(window=window, shift=shift)
+    window, shift, release = (
+        np.maximum(0.0, times - begin) for times in (arrays.window, arrays.shift, arrays.release)
+    )
+    return arrays._replace(window=window, shift=shift, release=release)
 
 
 def warm_up() -> None:

@@ -19,8 +19,9 @@ Array = NDArray[np.float64]
 class Fleet:
     """Rules, and under each of two objectives the costs between the stops, shape (2, n, n).
 
-    The costs are copied, with a diagonal of 0, and made read-only. A leg that has an infinite cost
-    in one objective is forbidden, and gets infinite costs in both.
+    Where the second objective is a measure, the second costs are those of the clock, or a copy of
+    the first. Costs get a diagonal of 0, and are read-only. A leg that has an infinite cost in one
+    objective is forbidden, and gets infinite costs in both.
     """
 
     rules: Rules
@@ -65,8 +66,22 @@ class Fleet:
 
     @property
     def scale(self) -> Array:
-        """The unit of each objective, shape (2,): its largest leg, 1 if that is 0."""
-        return np.where(self.largest_legs > 0, self.largest_legs, 1.0)
+        """The unit of each objective, shape (2,), 1 if that would be 0.
+
+        It is the largest leg; of a measure one vehicle, the largest prize, the most overtime of a
+        vehicle, or for lateness the largest leg by the clock.
+        """
+        units, rules = self.largest_legs.copy(), self.rules
+        match rules.measure:
+            case "vehicles":
+                units[1] = 1.0
+            case "unassigned":
+                units[1] = max(visit.prize or 0.0 for visit in rules.visits)
+            case "overtime":
+                units[1] = max(vehicle.max_overtime for vehicle in rules.vehicles)
+            case "lateness":
+                units[1] = units[rules.clock or 0]
+        return np.where(units > 0, units, 1.0)
 
 
 def least_paths(costs: Array, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, partial
+from math import inf
 from operator import le
 
 import numpy as np
@@ -12,7 +13,7 @@ from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import route_violations
 from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.plans import Route
-from service.fleet.rules import Rules
+from service.fleet.rules import Rules, VehicleType
 
 NAMES = CityNames("stop")
 
@@ -28,6 +29,7 @@ def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> 
             exist.
     """
     rules = fleet.rules
+    _refuse(_unserved(rules))
     _refuse(_too_heavy(rules))
     _check_totals(rules)
     _refuse(_without_ways(fleet))
@@ -57,6 +59,8 @@ def least_lengths(fleet: Fleet) -> Array:
             of_stops = legs[:, required]
             total = np.where(longest, of_stops.max(axis=1), of_stops.sum(axis=1))
             least = np.maximum(least, total)
+    if rules.measure is not None:
+        least[1] = 0.0
     return least
 
 
@@ -70,12 +74,23 @@ def _required(rules: Rules) -> list[int]:
     ]
 
 
+def _unserved(rules: Rules) -> Iterator[Obstacle]:
+    """Yield the stops that no vehicle may visit."""
+    for stop in _required(rules):
+        if not rules.servers(stop):
+            sentence = "{cities} cannot be visited: no vehicle that may do so has all of the skills"
+            yield Obstacle(sentence, (stop,))
+
+
 def _too_heavy(rules: Rules) -> Iterator[Obstacle]:
     """Yield the stops whose demand exceeds the capacity of every vehicle."""
     for stop in _required(rules):
         demand = rules.visits[stop].demand  # of every dimension, or empty
-        if not any(all(map(le, demand, vehicle.capacity)) for vehicle in rules.vehicles):
-            yield Obstacle("the demand of {cities} is over the capacity of every vehicle", (stop,))
+        vehicles = [rules.vehicles[each] for each in rules.servers(stop)]
+        if not any(all(map(le, demand, vehicle.capacity)) for vehicle in vehicles):
+            every = "that may visit it" if len(vehicles) < len(rules.vehicles) else ""
+            sentence = f"the demand of {{cities}} is over the capacity of every vehicle {every}"
+            yield Obstacle(sentence.strip(), (stop,))
 
 
 def _check_totals(rules: Rules) -> None:
@@ -84,10 +99,22 @@ def _check_totals(rules: Rules) -> None:
     for dimension in range(rules.dimensions):
         demands = (rules.visits[stop].demand for stop in brought)
         total = sum(demand[dimension] for demand in demands if demand)
-        most = sum(vehicle.count * vehicle.capacity[dimension] for vehicle in rules.vehicles)
+        most = sum(_holds(vehicle, dimension) for vehicle in rules.vehicles)
         if total > most:
             sums = f"the demands sum to {total} in dimension {dimension}"
-            raise Refusal("no-plan", reason=f"{sums}, and all vehicles together hold {most}")
+            raise Refusal("no-plan", reason=f"{sums}, and all vehicles together hold {int(most)}")
+    stops = [vehicle.count * (vehicle.max_stops or inf) for vehicle in rules.vehicles]
+    if len(_required(rules)) > sum(stops):
+        many = f"{len(_required(rules))} stops must be visited"
+        raise Refusal("no-plan", reason=f"{many}, and all vehicles together may visit {sum(stops)}")
+
+
+def _holds(vehicle: VehicleType, dimension: int) -> float:
+    """Return the load that all vehicles of a type can bring on all of their trips."""
+    capacity = vehicle.capacity[dimension]
+    initial = vehicle.initial_load[dimension] if vehicle.initial_load else 0
+    trips = 1.0 if not vehicle.reload else inf if vehicle.max_trips is None else vehicle.max_trips
+    return vehicle.count * (capacity * trips - initial) if capacity else 0.0
 
 
 def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
@@ -100,7 +127,11 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
         return
     triangle = cache(partial(_triangle_holds, fleet, ended))
     deliveries = {each.pickup: (each.delivery,) for each in rules.shipments}
-    different = {replace(each, count=1, fixed=0.0): i for i, each in enumerate(rules.vehicles)}
+    pinned = any(visit.vehicles for visit in rules.visits)
+    different = {
+        (replace(each, count=1, fixed=0.0), pinned and i): i
+        for i, each in enumerate(rules.vehicles)
+    }
     for stop in _required(rules):
         stops = (stop, *deliveries.get(stop, ()))
         routes = (Route(vehicle, stops) for vehicle in different.values())
@@ -108,7 +139,7 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
         if not served and triangle():
             sentence = (
                 "{cities} cannot be reached within its window, the shift and the longest route of"
-                " any vehicle, even on a route of its own"
+                " any vehicle that may visit it, even on a route of its own"
             )
             yield Obstacle(sentence, (stop,))
 
@@ -144,7 +175,8 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
     """Yield the shipments that must be delivered before they can be picked up."""
     for each in rules.shipments:
         pickup, delivery = rules.visits[each.pickup], rules.visits[each.delivery]
-        if pickup.prize is None and delivery.window[1] < pickup.window[0] + pickup.service:
+        opens, closes = pickup.windows[0][0], delivery.windows[0][1]
+        if pickup.prize is None and closes < opens + pickup.service:
             sentence = (
                 "the window of {cities}, where a shipment is delivered, closes before it can be"
                 " picked up at {others}"

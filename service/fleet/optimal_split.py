@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.fleet.fleet import Array, Fleet
+from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
 from service.jit import allocating, compiled, inlined
@@ -22,13 +23,17 @@ _ROUNDING = 1e-10  # relative, of sums of costs; less than what the check of pla
 
 
 class FleetArrays(NamedTuple):
-    """A fleet without shipments as arrays: n stops, v types of vehicles and d dimensions."""
+    """A fleet as arrays: n stops, v types of vehicles and d dimensions of loads.
+
+    It has no shipments, and each stop has one window. No vehicle loads again.
+    """
 
     costs: Array  # (2, n, n)
     clock: int  # -1 for none
     limited: int  # the objective that `longest` bounds; -1 for none
     demand: Indices  # (n, d)
     service: Array  # (n,)
+    release: Array  # (n,)
     window: Array  # (n, 2)
     ends: Indices  # (v, 2), start and end of each type; -1 for none
     capacity: Indices  # (v, d)
@@ -39,24 +44,21 @@ class FleetArrays(NamedTuple):
 def arrays_of(fleet: Fleet) -> FleetArrays:
     """Return a fleet as arrays, in the types and layouts for which the code is compiled."""
     rules = fleet.rules
-    none = (0,) * rules.dimensions
+    loads = loads_of(rules)
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in rules.vehicles]
     return FleetArrays(
         costs=np.array(fleet.costs, order="C"),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
-        demand=_whole([visit.demand or none for visit in rules.visits], rules.dimensions),
+        demand=loads.demand,
         service=np.array([visit.service for visit in rules.visits]),
-        window=np.array([visit.window for visit in rules.visits], np.float64),
+        release=np.array([visit.release for visit in rules.visits]),
+        window=np.array([visit.windows[0] for visit in rules.visits], np.float64),
         ends=np.array(ends, np.int64),
-        capacity=_whole([vehicle.capacity for vehicle in rules.vehicles], rules.dimensions),
-        shift=np.array([vehicle.shift for vehicle in rules.vehicles], np.float64),
+        capacity=loads.capacity - loads.initial,
+        shift=np.array([vehicle.way for vehicle in rules.vehicles], np.float64),
         longest=np.array([vehicle.longest for vehicle in rules.vehicles]),
     )
-
-
-def _whole(rows: list[tuple[int, ...]], dimensions: int) -> Indices:
-    return np.array(rows, np.int64).reshape(len(rows), dimensions)
 
 
 @allocating
@@ -130,6 +132,7 @@ def _write_lengths(
     for count in range(len(lengths)):
         stop = sequence[(place + count) % len(sequence)]
         opens, closes = fleet.window[stop]
+        begun = _released(begun, fleet.release[stop])
         begun = _extended(fleet, begun, stop, opens, closes, fleet.service[stop])
         if not begun.in_time or _limited(fleet, begun) > longest:
             return
@@ -137,6 +140,14 @@ def _write_lengths(
         if route.in_time and _limited(fleet, route) <= longest:
             lengths[count, 0] = route.time if fleet.clock == 0 else route.first
             lengths[count, 1] = route.time if fleet.clock == 1 else route.second
+
+
+@inlined
+def _released(begun: _Begun, release: float) -> _Begun:
+    """Return a route that departs no earlier than what it brings to a stop is released."""
+    early = max(begun.early, release)
+    in_time = begun.in_time and early <= begun.late * (1 + _ROUNDING)
+    return _Begun(begun.first, begun.second, begun.time, early, begun.late, begun.stop, in_time)
 
 
 @inlined
@@ -165,7 +176,7 @@ def _extended(
         max(begun.early, opens - until) - waiting,
         min(begun.late, closes - until),
         stop,
-        arrival <= closes + _ROUNDING * arrival,
+        begun.in_time and arrival <= closes + _ROUNDING * arrival,
     )
 
 

@@ -16,8 +16,10 @@ from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
 from service.fleet.first_plans import Cutter, network_sequences
 from service.fleet.fleet import Array, Fleet
+from service.fleet.measure_sweep import MeasureSweep
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan, Route
+from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
@@ -231,14 +233,16 @@ class _Search:
         data = self._translation.data(FREE)
         for plan in cutter.plans():
             self._constructed += 1
-            self.archive.offer(self._translation.solution(data, plan), FREE.weights)
+            self.archive.offer(self._translation.solution(data, plan), FREE)
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or `stop` returns True."""
         options, archive = self._options, self.archive
         solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
         random = np.random.default_rng(options.seed)
-        for step in Sweep(self._translation, archive, random, self._left).steps():
+        swept = self._fleet.rules.measure in (None, "unassigned")
+        sweep = Sweep if swept else MeasureSweep
+        for step in sweep(self._translation, archive, random, self._left).steps():
             if self._left() < 1 or self._ended():
                 return "cancelled" if self._cancelled else "time_limit"
             iterations = min(step.iterations, options.iterations - self._iterations)
@@ -335,20 +339,26 @@ def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
     """Return the requested reference point; by default lengths above those of sensible plans.
 
     The default is the number of stops times the scale, plus what else can add to a length. In the
-    first objective these are all prizes and fixed costs. In the clock's objective they are all
-    services, and the time from the first shift or window to the end of the last, in which a vehicle
-    may wait: once, or for each vehicle if times are summed.
+    first objective these are all prizes and fixed costs. In the clock's objective, and in lateness,
+    they are all services, and the time from the first shift or window to the end of the last, in
+    which a vehicle may wait: once, or for each vehicle if times are summed.
     """
     if options.reference_point is not None:
         return options.reference_point
     rules = fleet.rules
     point = rules.n * fleet.scale
-    point[0] += sum(visit.prize or 0.0 for visit in rules.visits)
+    prizes = sum(visit.prize or 0.0 for visit in rules.visits)
+    point[0] += 0.0 if rules.measure == "unassigned" else prizes
     point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
-    if rules.clock is not None:
-        point[rules.clock] += sum(visit.service for visit in rules.visits)
-        vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
-        bounds = [time for span in rules.spans for time in span if time < inf]
-        waiting = max(bounds, default=0.0) - min(bounds, default=0.0)
-        point[rules.clock] += waiting * (vehicles if rules.over[rules.clock] == "sum" else 1)
+    for objective, over in enumerate(rules.over):
+        if over == "lateness" or (over in ("sum", "max") and objective == rules.clock):
+            vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+            point[objective] += sum(visit.service for visit in rules.visits)
+            point[objective] += _waiting(rules) * (1 if over == "max" else vehicles)
     return point
+
+
+def _waiting(rules: Rules) -> float:
+    """Return the longest time that a vehicle may wait between two bounds of times."""
+    bounds = [time for span in rules.spans for time in span if time < inf]
+    return max(bounds, default=0.0) - min(bounds, default=0.0)

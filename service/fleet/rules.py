@@ -1,9 +1,9 @@
-"""The values of a fleet: stops, vehicles, rules, and the costs between the stops."""
+"""The rules of a fleet: what its stops and vehicles ask for, and what a plan is measured by."""
 
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,8 @@ from service.errors import invalid
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
+Measure = Literal["vehicles", "unassigned", "overtime", "lateness"]
+MEASURES: tuple[Measure, ...] = get_args(Measure)
 Span = tuple[float, float]
 ALWAYS: Span = (0.0, inf)
 _UNSUMMED = "is added to the first objective, so that must be over sum, got max"
@@ -26,14 +28,23 @@ class Visit:
         demand: The load brought there, or at a pick-up the load taken on, in each dimension of the
             vehicles' capacity.
         service: How long the visit takes.
-        window: When the visit may begin.
+        windows: When the visit may begin: in any of these, by ascending begin.
         prize: The cost of leaving the stop out; None if it must be visited.
+        due: The time at which the visit should have begun. If it begins later, the plan is late by
+            the difference.
+        release: The earliest time at which a vehicle can load what it brings there.
+        skills: The skills of which its vehicle must have all.
+        vehicles: The types of vehicles that may visit it; empty for any.
     """
 
     demand: tuple[int, ...] = ()
     service: float = 0.0
-    window: Span = ALWAYS
+    windows: tuple[Span, ...] = (ALWAYS,)
     prize: float | None = None
+    due: float = inf
+    release: float = 0.0
+    skills: tuple[str, ...] = ()
+    vehicles: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -57,6 +68,13 @@ class VehicleType:
         longest: The limit on the time of a route; without a clock, on its length in the objective
             that is a maximum.
         fixed: The cost of using one vehicle.
+        skills: What they are able to do.
+        max_stops: The most stops of a route; None for any number.
+        reload: The stops at which they may load again on their way.
+        max_trips: The most trips of a route, each from one loading to the next; None for any.
+        initial_load: The load on board at the start, in each dimension, or empty. It is unloaded at
+            the first stop for reloading, or at the end.
+        max_overtime: How much later than its shift a route may end.
     """
 
     start: int | None = None
@@ -66,6 +84,17 @@ class VehicleType:
     shift: Span = ALWAYS
     longest: float = inf
     fixed: float = 0.0
+    skills: tuple[str, ...] = ()
+    max_stops: int | None = None
+    reload: tuple[int, ...] = ()
+    max_trips: int | None = None
+    initial_load: tuple[int, ...] = ()
+    max_overtime: float = 0.0
+
+    @property
+    def way(self) -> Span:
+        """The earliest departure, and the latest end with overtime."""
+        return self.shift[0], self.shift[1] + self.max_overtime
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +105,8 @@ class Rules:
         visits: The demands of each of the n stops. Starts and ends of vehicles have none.
         vehicles: The types of vehicles.
         shipments: The pairs of stops that one vehicle must visit in order.
-        over: How each objective measures a plan: by the sum over its routes, or by the longest.
+        over: How each objective measures a plan: by the costs of its legs, of which it takes the
+            sum over the routes, or the longest route; or by another measure. The first is of costs.
         clock: The objective that is time. Service, windows and shifts are in its unit.
 
     Raises:
@@ -86,13 +116,14 @@ class Rules:
     visits: tuple[Visit, ...]
     vehicles: tuple[VehicleType, ...]
     shipments: tuple[Shipment, ...] = ()
-    over: tuple[Over, Over] = ("sum", "sum")
+    over: tuple[Over | Measure, Over | Measure] = ("sum", "sum")
     clock: int | None = None
 
     def __post_init__(self) -> None:
         if self.over == ("max", "max"):
             demand = "must be sum, as that of objectives/0 is max, got max"
             raise invalid("objectives/1/over", demand)
+        _check_measure(self)
         for index, vehicle in enumerate(self.vehicles):
             _check_vehicle(self, vehicle, f"vehicles/{index}")
         for index, visit in enumerate(self.visits):
@@ -111,8 +142,8 @@ class Rules:
 
     @cached_property
     def depots(self) -> frozenset[int]:
-        """The stops at which vehicles start or end."""
-        ends = (end for vehicle in self.vehicles for end in (vehicle.start, vehicle.end))
+        """The stops at which vehicles start, end or load again."""
+        ends = (end for each in self.vehicles for end in (each.start, each.end, *each.reload))
         return frozenset(end for end in ends if end is not None)
 
     @cached_property
@@ -135,11 +166,46 @@ class Rules:
         """The objective that `longest` limits, if there is one."""
         return self.maximum if self.clock is None else self.clock
 
+    @property
+    def measure(self) -> Measure | None:
+        """The measure that is the second objective, if it is none of costs."""
+        second = self.over[1]
+        return None if second == "sum" or second == "max" else second
+
+    @property
+    def limits_routes(self) -> bool:
+        """Whether the search minimises a sum under limits on routes or visits."""
+        return self.maximum is not None or self.measure in ("overtime", "lateness")
+
     @cached_property
     def spans(self) -> tuple[Span, ...]:
-        """All windows and shifts that bound any time."""
-        spans = (*(visit.window for visit in self.visits), *(each.shift for each in self.vehicles))
+        """All windows, releases, due times and shifts that bound any time."""
+        visits = self.visits
+        windows = (window for visit in visits for window in visit.windows)
+        released = ((visit.release, inf) for visit in visits)
+        due = ((0.0, visit.due) for visit in visits)
+        spans = (*windows, *released, *due, *(vehicle.way for vehicle in self.vehicles))
         return tuple(span for span in spans if span != ALWAYS)
+
+    def servers(self, stop: int) -> frozenset[int]:
+        """Return the types of vehicles that may visit a stop: by its skills, and if it names some.
+
+        For a stop of a shipment these are the types that may visit both of its stops.
+        """
+        return self._servers[stop]
+
+    @cached_property
+    def _servers(self) -> tuple[frozenset[int], ...]:
+        alone = [self._servers_alone(visit) for visit in self.visits]
+        for each in self.shipments:
+            both = alone[each.pickup] & alone[each.delivery]
+            alone[each.pickup] = alone[each.delivery] = both
+        return tuple(alone)
+
+    def _servers_alone(self, visit: Visit) -> frozenset[int]:
+        named = visit.vehicles or range(len(self.vehicles))
+        needed = set(visit.skills)
+        return frozenset(each for each in named if needed <= set(self.vehicles[each].skills))
 
     @property
     def has_bounds(self) -> bool:
@@ -152,6 +218,9 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
         demand = f"must have {rules.dimensions} numbers, as that of vehicles/0"
         raise invalid(f"{part}/capacity", f"{demand}, got {len(vehicle.capacity)}")
     _check_span(rules, vehicle.shift, f"{part}/shift")
+    if vehicle.max_overtime and vehicle.shift[1] == inf:
+        raise invalid(f"{part}/max_overtime", "needs a shift that ends")
+    _check_trips(rules, vehicle, part)
     if vehicle.fixed and rules.over[0] == "max":
         raise invalid(f"{part}/fixed", _UNSUMMED)
     if rules.limited is None and vehicle.longest != inf:
@@ -159,13 +228,53 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
         raise invalid(f"{part}/longest", demand)
 
 
+def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
+    load = vehicle.initial_load
+    if load and len(load) != rules.dimensions:
+        demand = f"must have {rules.dimensions} numbers, as capacity, got {len(load)}"
+        raise invalid(f"{part}/initial_load", demand)
+    for dimension, (loaded, most) in enumerate(zip(load, vehicle.capacity, strict=False)):
+        if loaded > most:
+            demand = f"must be at most the capacity, {most}, got {loaded}"
+            raise invalid(f"{part}/initial_load/{dimension}", demand)
+    if vehicle.max_trips is not None and not vehicle.reload:
+        raise invalid(f"{part}/max_trips", "needs stops for loading again, in reload")
+    if rules.shipments:
+        for name, given in (("reload", vehicle.reload), ("max_stops", vehicle.max_stops)):
+            if given:
+                raise invalid(f"{part}/{name}", "must not be given beside shipments")
+
+
+def _check_measure(rules: Rules) -> None:
+    """Raise a refusal unless the data have what the second objective measures."""
+    if rules.over[0] not in ("sum", "max"):
+        raise invalid("objectives/0/measure", "must be given for the second objective alone")
+    part = "objectives/1/measure"
+    if rules.measure is not None and rules.over[0] == "max":
+        raise invalid(part, "needs a first objective over sum, got max")
+    match rules.measure:
+        case "unassigned" if all(visit.prize is None for visit in rules.visits):
+            raise invalid(part, "unassigned needs stops with a prize, which may be left out")
+        case "overtime" if not any(vehicle.max_overtime for vehicle in rules.vehicles):
+            raise invalid(part, "overtime needs vehicles with max_overtime")
+        case "lateness" if all(visit.due == inf for visit in rules.visits):
+            raise invalid(part, "lateness needs stops with due")
+
+
 def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
     part = f"stops/{index}"
     if index in rules.depots:
         _check_depot(visit, part)
-    if rules.clock is None and visit.service:
-        raise invalid(f"{part}/service", _UNTIMED)
-    _check_span(rules, visit.window, f"{part}/window")
+    for name, timed in (
+        ("service", visit.service),
+        ("due", visit.due < inf),
+        ("release", visit.release),
+    ):
+        if timed and rules.clock is None:
+            raise invalid(f"{part}/{name}", _UNTIMED)
+    for number, window in enumerate(visit.windows):
+        alone = len(visit.windows) == 1
+        _check_span(rules, window, f"{part}/window" if alone else f"{part}/windows/{number}")
     if visit.demand and len(visit.demand) != rules.dimensions:
         demand = f"must have {rules.dimensions} numbers, as each capacity has"
         raise invalid(f"{part}/demand", f"{demand}, got {len(visit.demand)}")
@@ -174,13 +283,17 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
 
 
 def _check_depot(visit: Visit, part: str) -> None:
-    demand = "must not be given for a stop at which vehicles start or end"
-    if visit.window != ALWAYS:
+    demand = "must not be given for a stop at which vehicles start, end or load again"
+    if visit.windows != (ALWAYS,):
         raise invalid(f"{part}/window", f"{demand}: say in their shift when they may be on the way")
     for name, given in (
         ("demand", any(visit.demand)),
         ("service", visit.service),
         ("prize", visit.prize is not None),
+        ("due", visit.due < inf),
+        ("release", visit.release),
+        ("skills", visit.skills),
+        ("vehicle", visit.vehicles),
     ):
         if given:
             raise invalid(f"{part}/{name}", demand)
@@ -199,10 +312,20 @@ def _check_shipments(rules: Rules) -> None:
         for name, stop in (("pickup", shipment.pickup), ("delivery", shipment.delivery)):
             part = f"shipments/{index}/{name}"
             if stop in rules.depots:
-                raise invalid(part, "must not be a start or end of vehicles")
+                raise invalid(part, "must not be a stop at which vehicles start, end or load again")
             if parts.setdefault(stop, part) != part:
                 raise invalid(part, f"must be in one shipment, and is {parts[stop]}, too")
+            _check_shipped(rules.visits[stop], stop)
         delivery = rules.visits[shipment.delivery]
         if any(delivery.demand) or delivery.prize is not None:
             demand = "must have no demand and no prize: those of the pick-up hold for both"
             raise invalid(f"shipments/{index}/delivery", demand)
+
+
+def _check_shipped(visit: Visit, stop: int) -> None:
+    """Raise a refusal where a stop of a shipment asks for what only other stops can."""
+    if len(visit.windows) > 1:
+        raise invalid(f"stops/{stop}/windows", "must be one for a stop of a shipment")
+    if visit.release:
+        demand = "must not be given for a stop of a shipment: it is not loaded at a start"
+        raise invalid(f"stops/{stop}/release", demand)

@@ -9,6 +9,7 @@ import numpy as np
 
 from service.errors import Refusal
 from service.fleet.fleet import Array, Fleet
+from service.fleet.loads import loads_of
 from service.fleet.rules import Rules, Span
 from service.instance import OUTLYING
 
@@ -88,7 +89,9 @@ class Units:
             replace(
                 visit,
                 service=_scaled(visit.service, time),
-                window=_scaled_span(visit.window, time),
+                windows=tuple(_scaled_span(window, time) for window in visit.windows),
+                due=_scaled_bound(visit.due, time),
+                release=_scaled(visit.release, time),
                 prize=None if visit.prize is None else _scaled(visit.prize, extra),
             )
             for visit in rules.visits
@@ -99,6 +102,7 @@ class Units:
                 shift=_scaled_span(vehicle.shift, time),
                 longest=_scaled_bound(vehicle.longest, time),
                 fixed=_scaled(vehicle.fixed, extra),
+                max_overtime=_scaled(vehicle.max_overtime, time),
             )
             for vehicle in rules.vehicles
         )
@@ -258,7 +262,7 @@ def _first_and_last(rules: Rules) -> tuple[float, float]:
 def _most_legs(rules: Rules) -> float:
     """Return how many ordinary legs a squeezed leg may cost, so that these have enough units."""
     room = _LARGEST / (8 * rules.n * _heaviest(rules) * _FINE**2)
-    return room / _HARDEST if rules.maximum is None else math.sqrt(room / 2)
+    return math.sqrt(room / 2) if rules.limits_routes else room / _HARDEST
 
 
 @dataclass(frozen=True)
@@ -283,9 +287,9 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
     most = max(1.0, *(total / leg for total, leg in zip(totals, largest, strict=True)))
     heaviest = _heaviest(fleet.rules)
     highest = max(_HARDEST, 2 * float((squeezed.highest / squeezed.largest).max()))
-    hardest = _HARDEST if fleet.rules.maximum is None else highest
+    hardest = highest if fleet.rules.limits_routes else _HARDEST
     finest = min(_FINEST, UNBOUNDED / (2 * most))
-    if fleet.rules.has_bounds or fleet.rules.maximum is not None:
+    if fleet.rules.has_bounds or fleet.rules.limits_routes:
         finest = math.sqrt(_LARGEST / (hardest * heaviest)) / math.sqrt(most)
     if finest < _COARSEST:
         reason = "times must be at most {:.1e} costs of a leg apart, got {:.1e}"
@@ -294,15 +298,14 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
     digits = [math.floor(math.log10(finest) - math.log10(leg)) for leg in largest]
     scales = [float(f"1e{each}") for each in digits]
     leg = max(scale * leg for scale, leg in zip(scales, largest, strict=True))
-    demands = [visit.demand for visit in fleet.rules.visits if visit.demand]
-    largest_load = max(1, *map(sum, zip(*demands, strict=True)), 1)
+    largest_load = int(loads_of(fleet.rules).demand.sum(axis=0).max(initial=1))
     most_load = _LARGEST / (heaviest * largest_load)
     return scales, Penalties(load=min(highest * leg, most_load), limit=hardest * leg)
 
 
 def _heaviest(rules: Rules) -> int:
     """Return the largest weight of a goal. Weights multiply penalties as they multiply costs."""
-    return STEEPEST if rules.maximum is None else 1
+    return 1 if rules.limits_routes or rules.measure == "vehicles" else STEEPEST
 
 
 def _largest_total(fleet: Fleet, squeezed: Squeezed, objective: int, horizon: Horizon) -> float:

@@ -22,7 +22,7 @@ from service.fleet.translation import Goal, Translation, Weights
 _FEW = 100  # stops: a search of their whole neighbourhood takes at most about 50 ms
 _EXHAUSTIVE = 5e-6  # seconds per pair of stops, more than a 2.5 GHz Xeon needs
 Neighbours = dict[pyvrp.Activity, list[pyvrp.Activity]]
-Offer = Callable[[pyvrp.Solution, Weights], None]
+Offer = Callable[[pyvrp.Solution, Goal], None]
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,7 @@ class Solver:
     Args:
         translation: The translation of the fleet.
         seed: The seed of all random choices.
-        offer: Called with each solution that a search visits, feasible or not, and the weights of
-            its goal.
+        offer: Called with each solution that a search visits, feasible or not, and its goal.
         stop: Called after each iteration; True ends the search.
         deadline: The time, by time.monotonic(), after which nothing slow is started.
     """
@@ -72,13 +71,13 @@ class Solver:
         goal = step.goal
         data = self._translation.data(goal)
         local_search = self._local_search(data, goal)
-        manager = _Penalties(data, self._translation.penalties, max(goal.weights))
+        manager = _Penalties(data, self._translation.penalties, max(*goal.weights, goal.prizes))
         if step.start is None:
             initial = self._initial(data, local_search, manager)
         else:
             initial = self._translation.moved(step.start, data)
-        self._offer(initial, goal.weights)
-        watcher = _Watcher(self._offer, self._stop, goal.weights, step.iterations)
+        self._offer(initial, goal)
+        watcher = _Watcher(self._offer, self._stop, goal, step.iterations)
         small = len(self._translation.fleet.rules.clients) <= _FEW
         settings = IteratedLocalSearchParams(callbacks=watcher, exhaustive_on_best=small)
         with warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning):
@@ -139,7 +138,7 @@ class _Watcher(IteratedLocalSearchCallbacks):
 
     offer: Offer
     stop: Callable[[], bool]
-    weights: Weights
+    goal: Goal
     most: int  # iterations
     iterations: int = 0
 
@@ -152,11 +151,11 @@ class _Watcher(IteratedLocalSearchCallbacks):
     ) -> None:
         """Offer the candidate."""
         self.iterations += 1
-        self.offer(candidate, self.weights)
+        self.offer(candidate, self.goal)
 
     def on_best(self, best: pyvrp.Solution) -> None:
         """Offer a new best solution, which may be better than the candidate."""
-        self.offer(best, self.weights)
+        self.offer(best, self.goal)
 
     def __call__(self, best_cost: float) -> bool:  # noqa: ARG002
         """Return whether to end the search."""

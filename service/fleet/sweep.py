@@ -76,7 +76,9 @@ class Sweep:
 
         The first search shows how long iterations take.
         """
-        free = Goal(weights=(1, 1) if self._two_sums else self._translation.sum_weights)
+        both = self._translation.fleet.rules.measure is None
+        weights = (1, 1) if self._two_sums and both else self._translation.sum_weights
+        free = Goal(weights=weights, prizes=0 if both else 1)
         iterations = _FIRST_ITERATIONS
         yield Step(free, self._least_sum(), iterations)
         while not len(self._archive):
@@ -194,12 +196,18 @@ class Sweep:
         """Return a search with these weights, from the solution that is best under them."""
         index = int((np.array(self._points()) @ np.array(weights)).argmin())
         first, second = (_whole(each / max(weights)) for each in weights)
+        prizes = 0
+        if self._translation.fleet.rules.measure == "unassigned":
+            prizes, second = second, 0
         whole = (first, second) if self._translation.distance == 0 else (second, first)
-        return Step(Goal(weights=whole), self._archive.solutions[index], iterations)
+        goal = Goal(weights=whole, prizes=prizes)
+        return Step(goal, self._archive.solutions[index], iterations)
 
     def _points(self) -> list[Point]:
         """Return the lengths of all solutions in PyVRP's units: their products fit a double."""
         first, second = self._translation.scales
+        if self._translation.fleet.rules.measure == "unassigned":
+            second = self._translation.prize_scale
         return [(x * first, y * second) for x, y in self._archive.guides]
 
 

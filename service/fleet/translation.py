@@ -6,9 +6,11 @@ on each route. Costs are scaled by powers of ten, so that decimals of a few digi
 numbers are rounded against the plan, so that a plan of PyVRP breaks no rule.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 import numpy as np
 import pyvrp
@@ -16,21 +18,38 @@ from numpy.typing import NDArray
 
 from service.fleet.evaluation import unassigned
 from service.fleet.fleet import Fleet
+from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import VehicleType
 from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
 from service.objectives import OBJECTIVES
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
+_PRIZE_DIGITS = 6  # the digits of the largest prize where prizes are an objective
+_MANY = 2**30  # reloads of a vehicle without a limit
 Weights = tuple[int, int]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """The goal of a search: minimise weighted distance and duration, with a limit on each route."""
+    """The goal of a search: a weighted sum to minimise, and limits.
+
+    Args:
+        weights: The weights of distance and duration. That of the first objective is also the
+            weight of fixed costs, and of prizes if they belong to it.
+        prizes: The weight of prizes if they are the second objective.
+        limit: The limit on the length of each route in the objective that is a maximum.
+        vehicles: The most vehicles of each type; None for all.
+        overtime: The limit on the overtime of each route.
+        lateness: The limit on how much later than due a visit begins.
+    """
 
     weights: Weights
+    prizes: int = 0
     limit: int = UNBOUNDED
+    vehicles: tuple[int, ...] | None = None
+    overtime: float = inf
+    lateness: float = inf
 
 
 FREE = Goal(weights=(1, 1))  # the goal of solutions that were not found by a search
@@ -48,7 +67,8 @@ class Translation:
         distance: The objective that is PyVRP's distance.
         duration: The objective that is its duration; None if a maximum and a sum have equal costs,
             since the distance then serves both.
-        scales: The factor of lengths in each objective.
+        scales: The factor of costs in each objective.
+        prize_scale: The factor of prizes.
         penalties: The greatest penalties.
     """
 
@@ -64,35 +84,61 @@ class Translation:
         self.duration = None if same else duration
         # A location for each stop, and one more for "anywhere": open routes start or end there.
         self._depots = [*sorted(rules.depots), rules.n]
-        self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
+        self._loads = loads_of(rules)
+        # A client for each window of a stop.
+        self._clients = [
+            (stop, number)
+            for stop in rules.clients
+            if stop not in rules.shipped
+            for number in range(len(rules.visits[stop].windows))
+        ]
         self.squeezed = Squeezed.of(fleet)
         self._horizon = Horizon.of(rules, float(self.squeezed.largest[rules.clock or 0]))
         scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
         self.scales = [scales[self.distance]] * OBJECTIVES if same else scales
-        self._unlimited: tuple[Weights, pyvrp.ProblemData] | None = None  # the latest
+        self.prize_scale = self.scales[0]
+        if rules.measure == "unassigned":
+            largest = float(self.squeezed.prizes.max())
+            self.prize_scale = float(f"1e{math.floor(_PRIZE_DIGITS - math.log10(largest or 1.0))}")
+        self._unlimited: tuple[Goal, pyvrp.ProblemData] | None = None  # the latest
 
     @property
     def sum_weights(self) -> Weights:
-        """The weights of distance and duration with which the sum is minimised."""
-        return (0, 1) if self.fleet.rules.maximum == self.distance else (1, 0)
+        """The weights of distance and duration with which the first sum is minimised."""
+        rules = self.fleet.rules
+        first = 0 if rules.maximum is None else 1 - rules.maximum
+        return (1, 0) if first == self.distance else (0, 1)
 
     @cached_property
     def is_rounded(self) -> bool:
         """Whether a solution that keeps PyVRP's rules may break a rule of the fleet."""
         rules = self.fleet.rules
         pairs = ((rules.visits[s.pickup], rules.visits[s.delivery]) for s in rules.shipments)
-        too_late = any(later.window[1] < earlier.window[0] for earlier, later in pairs)
+        too_late = any(later.windows[0][1] < earlier.windows[0][0] for earlier, later in pairs)
         changed = self.fleet.forbids or self.squeezed.changed
-        return self._slack > 0 or changed or too_late
+        trips = any(vehicle.reload for vehicle in rules.vehicles)
+        several = any(len(visit.windows) > 1 for visit in rules.visits)
+        timed = rules.measure in ("overtime", "lateness")
+        return self._slack > 0 or changed or too_late or trips or several or timed
 
     def plan(self, solution: pyvrp.Solution) -> Plan:
         """Return the plan of a solution."""
-        stops = self._stops
         routes = (
-            Route(route.vehicle_type(), tuple(stops[each] for each in _visits(route)))
+            Route(route.vehicle_type(), self._without_empty_trips(_visits(route)))
             for route in solution.routes()
         )
         return Plan(tuple(route for route in routes if route.stops))
+
+    def _without_empty_trips(self, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
+        """Return the stops of a route, without loading again before nothing is brought."""
+        stops: list[int] = []
+        loaded = True
+        for activity in activities:
+            if activity.is_depot() and loaded:
+                continue
+            loaded = activity.is_depot()
+            stops.append(self._depots[activity.idx] if loaded else self._stops[activity])
+        return tuple(stops[:-1] if loaded and stops else stops)
 
     def moved(self, solution: pyvrp.Solution, data: pyvrp.ProblemData) -> pyvrp.Solution:
         """Return a solution of other data of this fleet as a solution of these data."""
@@ -101,35 +147,50 @@ class Translation:
 
     def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
         """Return a plan as a solution of data that `data` returned."""
-        activities = {stop: activity for activity, stop in self._stops.items()}
         routes = [
-            pyvrp.Route(data, [activities[stop] for stop in route.stops], route.vehicle)
+            pyvrp.Route(data, [self._activities[stop] for stop in route.stops], route.vehicle)
             for route in plan.routes
         ]
         return pyvrp.Solution(data, routes)
 
     def extras(self, plan: Plan) -> float:
-        """Return the prizes that a plan loses and its fixed costs, all squeezed."""
-        lost = self.squeezed.prizes[unassigned(self.fleet.rules, plan)]
+        """Return what a plan adds to its first length, squeezed: fixed costs, and lost prizes."""
         used = self.squeezed.fixed[[route.vehicle for route in plan.routes]]
-        return float(lost.sum() + used.sum())
+        if self.fleet.rules.measure == "unassigned":
+            return float(used.sum())
+        return float(used.sum() + self.lost(plan))
+
+    def lost(self, plan: Plan) -> float:
+        """Return the prizes of the stops that a plan leaves out, squeezed."""
+        return float(self.squeezed.prizes[unassigned(self.fleet.rules, plan)].sum())
 
     def data(self, goal: Goal) -> pyvrp.ProblemData:
         """Return PyVRP's data for a goal."""
-        if self._unlimited is None or self._unlimited[0] != goal.weights:
-            self._unlimited = goal.weights, self._unlimited_data(Goal(weights=goal.weights))
+        unlimited = Goal(weights=goal.weights, prizes=goal.prizes, lateness=goal.lateness)
+        if self._unlimited is None or self._unlimited[0] != unlimited:
+            self._unlimited = unlimited, self._unlimited_data(unlimited)
         return self._unlimited[1].replace(vehicle_types=self._vehicles(goal))
 
     def _unlimited_data(self, goal: Goal) -> pyvrp.ProblemData:
         distances, durations = self._matrices
+        groups: dict[int, list[int]] = {}
+        for client, (stop, _) in enumerate(self._clients):
+            groups.setdefault(stop, []).append(client)
+        several = [stop for stop, clients in groups.items() if len(clients) > 1]
         return pyvrp.ProblemData(
             [pyvrp.Location(0, 0)] * len(distances),
-            [self._client(stop, goal) for stop in self._singles],
+            [
+                self._client(stop, number, goal, several.index(stop) if stop in several else None)
+                for stop, number in self._clients
+            ],
             [pyvrp.Depot(location) for location in self._depots],
             self._vehicles(goal),
             [distances],  # type: ignore[list-item]  # PyVRP's stub means arrays of integers
             [durations],  # type: ignore[list-item]
-            [],
+            [
+                pyvrp.ClientGroup(groups[stop], self.fleet.rules.visits[stop].prize is None)
+                for stop in several
+            ],
             self._shipments(goal),
         )
 
@@ -145,23 +206,34 @@ class Translation:
     @cached_property
     def _stops(self) -> dict[pyvrp.Activity, int]:
         kinds = pyvrp.ActivityType
-        found = {pyvrp.Activity(kinds.CLIENT, i): stop for i, stop in enumerate(self._singles)}
+        found = {pyvrp.Activity(kinds.CLIENT, i): stop for i, (stop, _) in enumerate(self._clients)}
         for index, each in enumerate(self.fleet.rules.shipments):
             found[pyvrp.Activity(kinds.PICKUP, index)] = each.pickup
             found[pyvrp.Activity(kinds.DELIVERY, index)] = each.delivery
         return found
 
-    def _client(self, stop: int, goal: Goal) -> pyvrp.Client:
+    @cached_property
+    def _activities(self) -> dict[int, pyvrp.Activity]:
+        """The activity of each stop of the plans that cutting makes: they have one window."""
+        depots = {
+            stop: pyvrp.Activity(pyvrp.ActivityType.DEPOT, index)
+            for index, stop in enumerate(self._depots)
+        }
+        return depots | {stop: activity for activity, stop in self._stops.items()}
+
+    def _client(self, stop: int, number: int, goal: Goal, group: int | None) -> pyvrp.Client:
         visit = self.fleet.rules.visits[stop]
-        early, late, service = self._times(stop)
+        early, late, service = self._times(stop, number, goal)
         return pyvrp.Client(
             stop,
-            delivery=self._load(visit.demand),
+            delivery=self._loads.demand[stop].tolist(),
             service_duration=service,
             tw_early=early,
             tw_late=late,
-            prize=self._extra(self.squeezed.prizes[stop], goal),
-            required=visit.prize is None,
+            release_time=self._early(visit.release),
+            prize=self._prize(stop, goal),
+            required=visit.prize is None and group is None,
+            group=group,
         )
 
     def _shipments(self, goal: Goal) -> list[pyvrp.Shipment]:
@@ -170,36 +242,46 @@ class Translation:
             pyvrp.Shipment(
                 each.pickup,
                 each.delivery,
-                *self._times(each.pickup),
+                *self._times(each.pickup, 0, goal),
                 # In PyVRP a delivery may not end before its pick-up opens.
-                *self._times(each.delivery, least_late=self._times(each.pickup)[0]),
-                self._load(visits[each.pickup].demand),
-                self._extra(self.squeezed.prizes[each.pickup], goal),
+                *self._times(each.delivery, 0, goal, self._times(each.pickup, 0, goal)[0]),
+                self._loads.demand[each.pickup].tolist(),
+                self._prize(each.pickup, goal),
                 visits[each.pickup].prize is None,
             )
             for each in self.fleet.rules.shipments
         ]
 
     def _vehicles(self, goal: Goal) -> list[pyvrp.VehicleType]:
-        vehicles = zip(self.fleet.rules.vehicles, self.squeezed.fixed, strict=True)
-        return [self._vehicle(vehicle, fixed, goal) for vehicle, fixed in vehicles]
+        return [self._vehicle(index, goal) for index in range(len(self.fleet.rules.vehicles))]
 
-    def _vehicle(self, vehicle: VehicleType, fixed: float, goal: Goal) -> pyvrp.VehicleType:
+    def _vehicle(self, index: int, goal: Goal) -> pyvrp.VehicleType:
+        vehicle = self.fleet.rules.vehicles[index]
+        count = min(vehicle.count, max(1, len(self.fleet.rules.clients)))
+        if goal.vehicles is not None:
+            count = min(count, goal.vehicles[index])
+        fixed = self._extra(float(self.squeezed.fixed[index]), goal)
         distance, duration = goal.weights
         longest_distance, longest_duration = self._longest(vehicle, goal.limit)
         early = self._early(vehicle.shift[0])
         return pyvrp.VehicleType(
-            min(vehicle.count, max(1, len(self.fleet.rules.clients))),
-            list(vehicle.capacity),
+            # PyVRP needs a vehicle of each type: one that must not leave costs very much.
+            max(1, count),
+            self._loads.capacity[index].tolist(),
             self._depot(vehicle.start),
             self._depot(vehicle.end),
-            fixed_cost=self._extra(fixed, goal),
+            fixed_cost=fixed if count else _MOST_EXTRA,
             tw_early=early,
-            tw_late=max(early, self._late(vehicle.shift[1])),
+            tw_late=max(
+                early, self._late(vehicle.shift[1] + min(vehicle.max_overtime, goal.overtime))
+            ),
             shift_duration=longest_duration,
             max_distance=longest_distance,
             unit_distance_cost=distance,
             unit_duration_cost=duration,
+            initial_load=self._loads.initial[index].tolist(),
+            reload_depots=[self._depot(stop) for stop in vehicle.reload],
+            max_reloads=_most_reloads(vehicle),
         )
 
     def _longest(self, vehicle: VehicleType, limit: int) -> tuple[int, int]:
@@ -220,16 +302,23 @@ class Translation:
         scaled = round(min(cost * self.scales[0], _MOST_EXTRA))
         return min(scaled * goal.weights[self.distance], _MOST_EXTRA)
 
-    def _load(self, demand: Sequence[int]) -> list[int]:
-        return list(demand or (0,) * self.fleet.rules.dimensions)
+    def _prize(self, stop: int, goal: Goal) -> int:
+        """Return the cost of leaving a stop out under a goal."""
+        prize = float(self.squeezed.prizes[stop])
+        if self.fleet.rules.measure != "unassigned":
+            return self._extra(prize, goal)
+        return min(round(min(prize * self.prize_scale, _MOST_EXTRA)) * goal.prizes, _MOST_EXTRA)
 
     def _depot(self, stop: int | None) -> int:
         return self._depots.index(self.fleet.rules.n if stop is None else stop)
 
-    def _times(self, stop: int, least_late: int = 0) -> tuple[int, int, int]:
-        """Return the earliest and latest begin of a visit, and how long it takes."""
+    def _times(
+        self, stop: int, number: int, goal: Goal, least_late: int = 0
+    ) -> tuple[int, int, int]:
+        """Return the earliest and latest begin of a visit in a window, and how long it takes."""
         visit = self.fleet.rules.visits[stop]
-        early, late = self._early(visit.window[0]), self._late(visit.window[1])
+        opens, closes = visit.windows[number]
+        early, late = self._early(opens), self._late(min(closes, visit.due + goal.lateness))
         service = int(round_up(visit.service * self._time_scale))
         return early, max(early, late, least_late), service
 
@@ -250,4 +339,11 @@ class Translation:
 
 
 def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
-    return [each for each in route.schedule() if not each.is_depot()]
+    """Return the visits of a route, and where it loads again, but not its start and its end."""
+    return list(route.schedule()[1:-1])
+
+
+def _most_reloads(vehicle: VehicleType) -> int:
+    if not vehicle.reload:
+        return 0
+    return _MANY if vehicle.max_trips is None else vehicle.max_trips - 1

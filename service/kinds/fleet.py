@@ -9,10 +9,11 @@ from typing import Any
 from pydantic_core import to_json
 
 from service.errors import NoTour
-from service.fleet.evaluation import route_lengths, schedule, unassigned
+from service.fleet.evaluation import route_lengths, unassigned
 from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, path_of
+from service.fleet.schedule import schedule
 from service.front import ReportOf, reporting
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Report, Tools

@@ -8,7 +8,7 @@ from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.fleet.fleet import Fleet
-from service.fleet.rules import Over, Rules
+from service.fleet.rules import Measure, Over, Rules
 from service.front import PlanOptions
 from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
@@ -38,7 +38,7 @@ class UnmeasuredFleet:
         """Return the members of an answer that name the stops and objectives, ready for JSON."""
         members = labels.members
         objectives = zip(members["objectives"], self.rules.over, strict=True)
-        return {**members, "objectives": [{**each, "over": over} for each, over in objectives]}
+        return {**members, "objectives": [_objective(each, over) for each, over in objectives]}
 
     def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredFleet":
         """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""
@@ -47,6 +47,12 @@ class UnmeasuredFleet:
     def fleet(self) -> Fleet:
         """Return the fleet with its costs. O(n^2)."""
         return Fleet(rules=self.rules, costs=cost_matrices(self.stops))
+
+
+def _objective(members: dict[str, Any], over: Over | Measure) -> dict[str, Any]:
+    if over in ("sum", "max"):
+        return {**members, "over": over}
+    return {**members, "over": "sum", "measure": over}
 
 
 @dataclass(frozen=True, eq=False)

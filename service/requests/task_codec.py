@@ -36,7 +36,7 @@ from service.requests.stops import (
 )
 from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet
 
-_FIRST_LINE = b"paretour task 3\n"
+_FIRST_LINE = b"paretour task 4\n"
 _LENGTH = struct.Struct("!Q")
 _TYPES: Mapping[str, type[Any]] = {
     each.__name__: each
@@ -159,7 +159,7 @@ def _decoded(value: Any, arrays: Sequence[NDArray[Any]]) -> Any:
 
 
 def _tuples(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
 def _arrays(content: bytes, begin: int) -> Iterator[NDArray[Any]]:

@@ -9,8 +9,9 @@ from typing import Any
 import httpx
 import pytest
 
-from service.fleet.evaluation import plan_lengths, schedule, violations
+from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.plans import Plan, Route
+from service.fleet.schedule import schedule
 from tests.helpers.fleet_requests import fleet_of, fleet_request
 from tests.helpers.serving import app_of, problem, serving
 

@@ -62,7 +62,7 @@ def read_solomon(path: Path) -> Solomon:
     costs = np.floor(10 * distances + 1e-9) / 10
     customers = zip(read["demand"], read["service_time"], read["time_window"], strict=True)
     depot, *visits = [
-        Visit(demand=(int(demand),), service=float(service), window=(float(opens), float(closes)))
+        Visit(demand=(int(demand),), service=float(service), windows=((opens, closes),))
         for demand, service, (opens, closes) in customers
     ]
     vehicle = VehicleType(

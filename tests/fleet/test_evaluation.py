@@ -1,6 +1,7 @@
 """The lengths and times of plans, and the rules that they break."""
 
 import dataclasses
+from itertools import islice
 from math import inf
 
 import numpy as np
@@ -9,14 +10,14 @@ import pytest
 from service.fleet.evaluation import (
     plan_lengths,
     route_lengths,
-    schedule,
     unassigned,
     violations,
 )
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules, Shipment, VehicleType, Visit
-from tests.helpers.fleets import best_times, every_plan, random_fleet
+from service.fleet.schedule import schedule
+from tests.helpers.fleets import best_times, bounded_fleet, every_plan, random_fleet
 
 LINE = np.abs(np.subtract.outer([0.0, 1, 2, 3, 4], [0.0, 1, 2, 3, 4]))
 
@@ -54,7 +55,7 @@ def test_prizes_lost_and_vehicles_used_are_added_to_the_first_length() -> None:
 
 
 def test_a_vehicle_leaves_as_late_as_its_end_allows() -> None:
-    visits = (Visit(), Visit(service=2, window=(10, 12)), *(Visit(),) * 3)
+    visits = (Visit(), Visit(service=2, windows=((10, 12),)), *(Visit(),) * 3)
     fleet = fleet_of(visits=visits, clock=0)
     times = schedule(fleet, Route(0, (1, 2)))
     assert times.arrivals == (9, 10, 13, 15)
@@ -72,7 +73,19 @@ def test_times_agree_with_trying_every_departure(seed: int) -> None:
         times, expected = schedule(fleet, route), best_times(fleet, route)
         assert (times.late == 0) == (expected is not None)
         if expected is not None:
-            assert (times.end, times.arrivals[0]) == expected
+            assert (times.end, times.lateness, times.arrivals[0]) == expected
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_times_with_all_bounds_agree_with_trying_every_departure_and_window(seed: int) -> None:
+    fleet = bounded_fleet(seed)
+    plans = list(islice(every_plan(fleet.rules), 3000))
+    plan = plans[(seed * 997) % len(plans)]
+    for route in plan.routes:
+        times, expected = schedule(fleet, route), best_times(fleet, route)
+        assert (times.late == 0) == (expected is not None)
+        if expected is not None:
+            assert (times.end, times.lateness, times.arrivals[0]) == expected
 
 
 FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))
@@ -103,7 +116,7 @@ BROKEN = [
         "only half of the shipment",
     ),
     (
-        {"visits": (Visit(), Visit(window=(0, 3)), *(Visit(),) * 3), "clock": 0},
+        {"visits": (Visit(), Visit(windows=((0, 3),)), *(Visit(),) * 3), "clock": 0},
         [(4, 1, 2, 3)],
         "late by 4",
     ),

@@ -75,7 +75,7 @@ def timed_fleet(begin: float) -> Fleet:
     costs = rng.integers(60, 1800, (2, 13, 13)).astype(float)
     opens = begin + rng.integers(0, 8000, 13).astype(float)
     windows = [(float(a), float(a) + 9000.0) for a in opens]
-    visits = (Visit(), *(Visit(demand=(1,), service=300, window=w) for w in windows[1:]))
+    visits = (Visit(), *(Visit(demand=(1,), service=300, windows=(w,)) for w in windows[1:]))
     vehicles = (van(count=3, shift=(begin, begin + 28_800.0)),)
     return Fleet(rules=Rules(visits=visits, vehicles=vehicles, clock=1), costs=costs)
 
@@ -88,7 +88,7 @@ def test_times_since_1970_are_planned_like_times_of_day(time_limit: float) -> No
 
 
 def test_a_second_late_is_late_in_times_since_1970() -> None:
-    visits = (Visit(), Visit(window=(1.7e9, 1.7e9 + 99.0)))
+    visits = (Visit(), Visit(windows=((1.7e9, 1.7e9 + 99.0),)))
     rules = Rules(visits=visits, vehicles=(van(shift=(1.7e9, inf), capacity=()),), clock=0)
     plan = Plan((Route(0, (1,)),))
     for leg, late in ((99.0 + 1e-7, False), (99.01, True), (100.0, True)):
@@ -141,7 +141,7 @@ def spread_fleet(seed: int) -> Fleet:
         prized = extras and rng.random() < 0.3
         return Visit(
             demand=(int(rng.integers(1, 4)),),
-            window=(opens, closes) if timed else ALWAYS,
+            windows=((opens, closes),) if timed else (ALWAYS,),
             prize=float(10.0 ** rng.integers(13)) if prized else None,
         )
 

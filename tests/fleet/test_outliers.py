@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, InvalidInstance, Refusal
 from service.fleet.enumeration import exact_plans
-from service.fleet.evaluation import points_of, schedule, violations
+from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet, reference_point_of
 from service.fleet.plans import FleetFront, path_of
 from service.fleet.rules import ALWAYS, Rules, Shipment, VehicleType, Visit
+from service.fleet.schedule import schedule
 from service.instance import Instance
 from service.pareto import nondominated
 from tests.helpers.fleets import exact_front, random_fleet
@@ -151,7 +152,9 @@ def test_what_was_answered_is_accepted_as_windows(seed: int) -> None:
         times = schedule(fleet, route)
         windows |= dict(zip(path_of(rules, route)[1:-1], times.arrivals[1:-1], strict=True))
     visits = tuple(
-        dataclasses.replace(visit, window=(windows[i], windows[i]) if i in windows else ALWAYS)
+        dataclasses.replace(
+            visit, windows=((windows[i], windows[i]),) if i in windows else (ALWAYS,)
+        )
         for i, visit in enumerate(rules.visits)
     )
     tight = Fleet(rules=dataclasses.replace(rules, visits=visits), costs=costs)
@@ -161,7 +164,7 @@ def test_what_was_answered_is_accepted_as_windows(seed: int) -> None:
 
 def test_the_default_reference_point_leaves_room_for_waiting() -> None:
     costs = np.random.default_rng(1).random((2, 6, 6))
-    visits = (Visit(), *(Visit(window=(7200.0 * i, 7200.0 * i + 60)) for i in range(5)))
+    visits = (Visit(), *(Visit(windows=((7200.0 * i, 7200.0 * i + 60),)) for i in range(5)))
     rules = Rules(visits=visits, vehicles=(VehicleType(start=0, end=0),), clock=1)
     front = plan_fleet(Fleet(rules=rules, costs=costs), FleetOptions(time_limit=1))
     assert front.hypervolume > 0
@@ -181,7 +184,7 @@ def test_enumeration_leaves_the_search_its_time_and_stops_when_told(limit: float
 
 
 def test_a_shipment_that_closes_before_it_opens_is_no_plan() -> None:
-    visits = (Visit(), Visit(window=(100, 200)), Visit(window=(0, 50)), *(Visit(),) * 6)
+    visits = (Visit(), Visit(windows=((100, 200),)), Visit(windows=((0, 50),)), *(Visit(),) * 6)
     for prize in (None, 5.0):
         given = (visits[0], dataclasses.replace(visits[1], prize=prize), *visits[2:])
         rules = Rules(
@@ -220,7 +223,7 @@ def test_what_no_engine_would_take_is_refused_and_never_an_error(
         visit
         if i in rules.depots or not timed or draw(st.booleans())
         else dataclasses.replace(
-            visit, window=span(), service=draw(TIMES.filter(lambda time: time < inf))
+            visit, windows=(span(),), service=draw(TIMES.filter(lambda time: time < inf))
         )
         for i, visit in enumerate(rules.visits)
     )

@@ -24,7 +24,7 @@ from service.fleet.translation import Translation
 from service.front import Progress
 from service.pareto import nondominated
 from tests.helpers.actors import Shuffler, info_of
-from tests.helpers.fleets import Point, exact_front, hull_corners, random_fleet
+from tests.helpers.fleets import Point, bounded_fleet, exact_front, hull_corners, random_fleet
 
 ENOUGH = FleetOptions(time_limit=inf, iterations=20_000)
 
@@ -39,7 +39,7 @@ def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> 
     places = random.random((n + 1, 2))
     costs = np.linalg.norm(places[:, np.newaxis] - places, axis=2)
     begins = random.random(n) * 5
-    visits = [Visit(demand=(1,), window=(begin, begin + 5), service=0.1) for begin in begins]
+    visits = [Visit(demand=(1,), windows=((begin, begin + 5),), service=0.1) for begin in begins]
     rules = Rules(
         visits=(Visit(), *visits),
         vehicles=(VehicleType(start=0, end=0, count=n // 5 + 1, capacity=(10,), shift=(0, 12)),),
@@ -52,6 +52,19 @@ def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> 
 @pytest.mark.parametrize("seed", range(60))
 def test_a_handful_of_stops_has_the_front_of_brute_force(seed: int) -> None:
     fleet = random_fleet(seed)
+    if expected := exact_front(fleet):
+        front = plan_fleet(fleet, FleetOptions(time_limit=inf))
+        assert points_of(front) == expected
+        assert front.terminated == "converged"
+    else:
+        with pytest.raises(Refusal) as refused:
+            plan_fleet(fleet, FleetOptions(time_limit=inf))
+        assert refused.value.code == "no-plan"
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_handful_of_stops_under_all_bounds_has_the_front_of_brute_force(seed: int) -> None:
+    fleet = bounded_fleet(seed)
     if expected := exact_front(fleet):
         front = plan_fleet(fleet, FleetOptions(time_limit=inf))
         assert points_of(front) == expected
@@ -139,7 +152,7 @@ NEAR = Visit(demand=(2,))
 IMPOSSIBLE = [
     ({"visits": (Visit(), Visit(demand=(9,)), NEAR)}, "the demand of stop 1"),
     ({"visits": (Visit(), *(Visit(demand=(3,)),) * 3)}, "the demands sum to 9 in dimension 0"),
-    ({"visits": (Visit(), Visit(window=(0, 1)), NEAR), "clock": 0}, "stop 1 cannot be reached"),
+    ({"visits": (Visit(), Visit(windows=((0, 1),)), NEAR), "clock": 0}, "stop 1 cannot be reached"),
 ]
 
 
@@ -244,9 +257,9 @@ def test_tiny_costs_and_times_are_planned_like_common_ones() -> None:
     unit = 2.0**-1040
     common = deliveries(8)
     visits = tuple(
-        replace(visit, service=visit.service * unit, window=(begin * unit, end * unit))
+        replace(visit, service=visit.service * unit, windows=((begin * unit, end * unit),))
         for visit in common.rules.visits
-        for begin, end in [visit.window]
+        for begin, end in visit.windows
     )
     vehicles = (replace(common.rules.vehicles[0], shift=(0, 12 * unit)),)
     rules = replace(common.rules, visits=visits, vehicles=vehicles)
@@ -260,7 +273,7 @@ def test_tiny_costs_and_times_are_planned_like_common_ones() -> None:
 
 def test_times_that_tiny_costs_leave_no_double_for_are_refused() -> None:
     fleet = deliveries(8)
-    visits = (Visit(), *(Visit(window=(1e150, inf)),) * 8)
+    visits = (Visit(), *(Visit(windows=((1e150, inf),)),) * 8)
     rules = replace(fleet.rules, visits=visits, vehicles=(OPEN,))
     with pytest.raises(Refusal, match="too far apart"):
         plan_fleet(Fleet(rules=rules, costs=fleet.costs * 1e-310), FleetOptions(time_limit=1))
@@ -309,7 +322,7 @@ def test_what_is_too_large_to_be_cut_is_searched_all_the_same() -> None:
 def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
     options = FleetOptions(time_limit=0)
     fleet = deliveries(20)
-    narrow = [replace(visit, window=(1.0, 1.2)) for visit in fleet.rules.visits[1:]]
+    narrow = [replace(visit, windows=((1.0, 1.2),)) for visit in fleet.rules.visits[1:]]
     rules = replace(fleet.rules, visits=(Visit(), *narrow))
     fleet = Fleet(
         rules=replace(rules, vehicles=(replace(rules.vehicles[0], count=3),)), costs=fleet.costs

@@ -1,6 +1,7 @@
 """Small random fleets, all their plans, and the times of a route by trying every departure."""
 
-from collections.abc import Iterator
+import dataclasses
+from collections.abc import Iterator, Sequence
 from itertools import permutations, product
 from math import inf
 
@@ -30,7 +31,7 @@ def random_fleet(seed: int, over: tuple[str, str] | None = None) -> Fleet:
     shipments = ()
     if n >= 4 and random.random() < 0.4:
         shipments = (Shipment(1, 2),)
-        visits[2] = Visit(service=visits[2].service, window=visits[2].window)
+        visits[2] = Visit(service=visits[2].service, windows=visits[2].windows)
     rules = Rules(
         visits=tuple(visits),
         vehicles=_vehicles(random, clock, over, extras),
@@ -47,7 +48,7 @@ def _visit(random: np.random.Generator, clock: int | None, extras: bool) -> Visi
     return Visit(
         demand=(int(random.integers(0, 5)),),
         service=float(random.integers(0, 4)) if timed else 0.0,
-        window=(begin, begin + int(random.integers(5, 60))) if timed else ALWAYS,
+        windows=((begin, begin + int(random.integers(5, 60))),) if timed else (ALWAYS,),
         prize=float(random.integers(1, 40)) if extras and random.random() < 0.5 else None,
     )
 
@@ -70,6 +71,65 @@ def _vehicles(
     return (vehicle(2),) if random.random() < 0.5 else (vehicle(1), vehicle(1))
 
 
+def bounded_fleet(seed: int) -> Fleet:
+    """Return a fleet of up to four stops to visit with some of all bounds, against any measure."""
+    random = np.random.default_rng(seed)
+    n = int(random.integers(2, 4))
+    measure = (None, "vehicles", "unassigned", "overtime", "lateness")[seed % 5]
+    costs = random.integers(1, 20, (2, n + 2, n + 2)).astype(float)
+
+    def likely(share: float = 0.4) -> bool:
+        return bool(random.random() < share)
+
+    def whole(least: int, most: int) -> int:
+        return int(random.integers(least, most))
+
+    def windows() -> tuple[tuple[float, float], ...]:
+        begin, between = whole(0, 40), whole(5, 25)
+        first = (float(begin), float(begin + whole(3, 20)))
+        second = (first[1] + between, first[1] + between + whole(3, 60))
+        return (first, second) if likely(0.6) else ((first[0], second[1]),)
+
+    def visit() -> Visit:
+        return Visit(
+            demand=(whole(1, 5),),
+            service=float(whole(0, 4)),
+            windows=windows() if likely() else (ALWAYS,),
+            prize=float(whole(1, 40)) if measure == "unassigned" or likely() else None,
+            due=float(whole(5, 50)) if measure == "lateness" or likely() else inf,
+            release=float(whole(0, 30)) if likely(0.3) else 0.0,
+            skills=("cold",) if likely(0.2) else (),
+            vehicles=(whole(0, 2),) if likely(0.15) else (),
+        )
+
+    def vehicle() -> VehicleType:
+        begin, capacity = whole(0, 10), whole(5, 13)
+        return VehicleType(
+            start=0,
+            end=[0, n + 1, None][whole(0, 3)],
+            capacity=(capacity,),
+            shift=(float(begin), float(begin + whole(40, 90))),
+            longest=float(whole(40, 90)) if likely(0.2) else inf,
+            fixed=float(whole(0, 10)),
+            skills=("cold", "lift") if likely(0.7) else (),
+            max_stops=whole(1, 4) if likely(0.3) else None,
+            reload=((0,), (n + 1,), (0, n + 1))[whole(0, 3)] if likely(0.5) else (),
+            initial_load=(whole(0, capacity),) if likely(0.2) else (),
+            max_overtime=float(whole(1, 30)) if measure == "overtime" or likely(0.2) else 0.0,
+        )
+
+    over = ("sum", ["sum", "max"][whole(0, 2)] if measure is None else measure)
+    ends = (vehicle(), vehicle())
+    types = tuple(
+        dataclasses.replace(each, max_trips=2) if each.reload and likely() else each
+        for each in ends
+    )
+    depots = {end for each in types for end in (0, each.end, *each.reload) if end is not None}
+    visits = tuple(Visit() if stop in depots else visit() for stop in range(n + 2))
+    rules = Rules(visits=visits, vehicles=types, over=over, clock=whole(0, 2))
+    return Fleet(rules=rules, costs=costs)
+
+
 def every_plan(rules: Rules) -> Iterator[Plan]:
     """Yield every plan that leaves out none but optional stops, with at most two vehicles."""
     types = [index for index, each in enumerate(rules.vehicles) for _ in range(each.count)]
@@ -77,15 +137,26 @@ def every_plan(rules: Rules) -> Iterator[Plan]:
     optional = [s for s in rules.clients if rules.visits[deliveries.get(s, s)].prize is not None]
     for left_out in product((False, True), repeat=len(optional)):
         without = {stop for stop, out in zip(optional, left_out, strict=True) if out}
-        yield from _plans([stop for stop in rules.clients if stop not in without], types)
+        yield from _plans(rules, [stop for stop in rules.clients if stop not in without], types)
 
 
-def _plans(stops: list[int], types: list[int]) -> Iterator[Plan]:
+def _plans(rules: Rules, stops: list[int], types: list[int]) -> Iterator[Plan]:
     first, second = types
     for order in permutations(stops):
         for cut in range(len(order) + 1):
-            routes = (Route(first, order[:cut]), Route(second, order[cut:]))
-            yield Plan(tuple(route for route in routes if route.stops))
+            for one in _trips(rules, first, order[:cut]):
+                for other in _trips(rules, second, order[cut:]):
+                    yield Plan(tuple(route for route in (one, other) if route.stops))
+
+
+def _trips(rules: Rules, vehicle: int, stops: tuple[int, ...]) -> Iterator[Route]:
+    """Yield the routes through these stops, which may load again before each but the first."""
+    reload = rules.vehicles[vehicle].reload
+    routes = [stops[:1]]
+    for stop in stops[1:]:
+        loaded = [(*route, depot, stop) for route in routes for depot in reload]
+        routes = [*((*route, stop) for route in routes), *loaded]
+    yield from (Route(vehicle, route) for route in routes)
 
 
 def exact_front(fleet: Fleet) -> list[Point]:
@@ -110,31 +181,59 @@ def hull_corners(points: list[Point]) -> list[Point]:
     return corners
 
 
-def best_times(fleet: Fleet, route: Route) -> tuple[float, float] | None:
-    """Return the earliest end of a route and then its latest departure, by trying each in turn.
+def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
+    """Return the earliest end of a route, its least lateness then, and its latest departure then.
 
-    None where no departure keeps the windows and the shift. All times must be whole.
+    All departures are tried, and all windows. None where none of them is in time. All times must be
+    whole.
     """
     assert fleet.rules.clock is not None
-    begins, ends = fleet.rules.vehicles[route.vehicle].shift
+    begins, ends = fleet.rules.vehicles[route.vehicle].way
+    path = path_of(fleet.rules, route)
+    numbers = [range(len(fleet.rules.visits[stop].windows)) for stop in path]
     found = []
     for departure in range(int(begins), 200):
-        end = _driven(fleet, route, float(departure))
-        if end is not None and end <= ends:
-            found.append((end, -departure))
-    return (min(found)[0], -float(min(found)[1])) if found else None
+        for windows in product(*numbers):
+            driven = _driven(fleet, route, windows, float(departure))
+            if driven is not None and driven[0] <= ends:
+                found.append((*driven, -departure))
+    if not found:
+        return None
+    end, lateness, departure = min(found)
+    return end, lateness, -float(departure)
 
 
-def _driven(fleet: Fleet, route: Route, departure: float) -> float | None:
-    """Return when a route is done that begins at a time; None where it misses a window."""
-    time, before = departure, None
-    for stop in path_of(fleet.rules, route):
-        visit = fleet.rules.visits[stop]
-        if before is not None:
-            time += fleet.costs[fleet.rules.clock, before, stop]
-        time = max(time, visit.window[0])
-        if time > visit.window[1]:
+def _driven(
+    fleet: Fleet, route: Route, windows: Sequence[int], departure: float
+) -> tuple[float, float] | None:
+    """Return when a route is done that begins at a time, and its lateness.
+
+    None where it misses one of these windows, or leaves before its load is released.
+    """
+    rules = fleet.rules
+    path, reload = path_of(rules, route), rules.vehicles[route.vehicle].reload
+    time, lateness = departure, 0.0
+    if time < _released(rules, route.stops, reload):
+        return None
+    for place, stop in enumerate(path):
+        visit, (opens, closes) = rules.visits[stop], rules.visits[stop].windows[windows[place]]
+        if place:
+            time += fleet.costs[rules.clock, path[place - 1], stop]
+        if stop in reload and 0 < place < len(path) - 1:
+            time = max(time, _released(rules, path[place + 1 :], reload))
+        time = max(time, opens)
+        if time > closes:
             return None
+        lateness += max(0.0, time - visit.due)
         time += visit.service
-        before = stop
-    return float(time)
+    return float(time), float(lateness)
+
+
+def _released(rules: Rules, stops: Sequence[int], reload: Sequence[int]) -> float:
+    """Return when all is released that is brought to these stops before loading again."""
+    released = 0.0
+    for stop in stops:
+        if stop in reload:
+            break
+        released = max(released, rules.visits[stop].release)
+    return released

@@ -20,7 +20,7 @@ from tests.helpers.fleet_requests import LIMITS, fleet_of, fleet_request
 
 def test_a_request_becomes_a_fleet() -> None:
     rules = fleet_of(fleet_request()).rules
-    assert rules.visits[1] == Visit(demand=(2,), service=3, window=(480, 600))
+    assert rules.visits[1] == Visit(demand=(2,), service=3, windows=((480, 600),))
     assert rules.visits[2] == Visit(demand=(1,), prize=4000)
     assert rules.visits[5] == Visit()
     assert rules.vehicles == (

@@ -1,0 +1,163 @@
+"""The times of a route: when its vehicle leaves, arrives and waits, and how late it is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
+from math import inf
+from typing import NamedTuple
+
+from service.fleet.fleet import Fleet
+from service.fleet.plans import Route, path_of
+from service.fleet.rules import ALWAYS, Rules, Span, Visit
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """The times of a route: when the vehicle reaches each stop, and when it is done.
+
+    Attributes:
+        arrivals: The arrival at each stop of `path_of`; at the first stop, the departure. The
+            vehicle may wait at a stop until its window opens.
+        end: The end of the route.
+        late: The largest delay at a window, or at the end of the shift with its overtime.
+        waiting: The time that the vehicle waits.
+        slack: How much later it may leave without being late, if it is never late.
+        lateness: The sum of the times by which visits begin after they are due.
+        windows: The number of the window used at each stop of `path_of`.
+        tightest: The place in `path_of` of the stop that limits the slack by a window that is not
+            its last; -1 if something else does.
+    """
+
+    arrivals: tuple[float, ...]
+    end: float
+    late: float
+    waiting: float
+    slack: float
+    lateness: float
+    windows: tuple[int, ...]
+    tightest: int
+
+    @property
+    def duration(self) -> float:
+        """The time from the departure to the end."""
+        return self.end - self.arrivals[0]
+
+
+class _Stay(NamedTuple):
+    """What a route asks of its vehicle at a stop."""
+
+    windows: tuple[Span, ...]
+    service: float
+    due: float
+
+
+def schedule(fleet: Fleet, route: Route) -> Schedule:
+    """Return the times of a route whose vehicle is done as early as possible.
+
+    It leaves as late as neither delays its end nor makes a visit later than due.
+
+    Raises:
+        ValueError: The fleet has no clock.
+    """
+    if fleet.rules.clock is None:
+        raise ValueError("a fleet without a clock has no times")
+    driven = legs(fleet, route, fleet.rules.clock)
+    begin, last = fleet.rules.vehicles[route.vehicle].way
+    trips = trips_of(fleet.rules, route)
+    begin = max(begin, _released(fleet.rules, trips[0]))
+    drive = partial(_drive, _stays(fleet.rules, route, trips), driven, last=last)
+    best = drive([0] * len(path_of(fleet.rules, route)), begin)
+    if best.late:
+        return best
+    # A later window at the stop that keeps the vehicle from leaving later may not delay the end.
+    while best.slack <= best.waiting and best.tightest >= 0:
+        allowed = list(best.windows)
+        allowed[best.tightest] += 1
+        later = drive(allowed, begin)
+        if later.late or later.end > best.end or later.lateness > best.lateness:
+            break
+        best = later
+    # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
+    # delay the end of the route.
+    delay = min(best.waiting, best.slack)
+    return drive(best.windows, begin + delay) if delay else best
+
+
+def _drive(
+    stays: Sequence[_Stay],
+    driven: Sequence[float],
+    allowed: Sequence[int],
+    departure: float,
+    last: float,
+) -> Schedule:
+    """Return the times of a route with legs of these times, from a departure on.
+
+    At each stop the vehicle takes the first window that is not over, of those from a number in
+    `allowed` on; else the last one.
+    """
+    time, waiting, slack, late, lateness, tightest = departure, 0.0, inf, 0.0, 0.0, -1
+    arrivals, used = [], []
+    for place, (stay, leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
+        numbers = range(allowed[place], len(stay.windows))
+        number = next((i for i in numbers if stay.windows[i][1] >= time), numbers[-1])
+        opens, closes = stay.windows[number]
+        arrivals.append(time)
+        used.append(number)
+        waiting += max(0.0, opens - time)
+        begin = max(time, opens)
+        if closes - begin + waiting < slack:
+            slack = closes - begin + waiting
+            tightest = place if number < numbers[-1] else -1
+        if max(0.0, stay.due - begin) + waiting < slack:
+            slack, tightest = max(0.0, stay.due - begin) + waiting, -1
+        late = max(late, begin - closes)
+        lateness += max(0.0, begin - stay.due)
+        end = begin + stay.service
+        time = end + leg
+    if last - end + waiting < slack:
+        slack, tightest = last - end + waiting, -1
+    late = max(late, end - last)
+    return Schedule(tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest)
+
+
+def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[_Stay]:
+    """Return what is asked for at each stop of `path_of`.
+
+    A trip begins when all that it brings is released.
+    """
+    released = iter([_released(rules, trip) for trip in trips[1:]])
+    reloads = rules.vehicles[route.vehicle].reload
+    ends = path_of(rules, replace(route, stops=()))
+    inner = [
+        _Stay(((next(released), inf),), 0.0, inf) if stop in reloads else _stay(rules.visits[stop])
+        for stop in route.stops
+    ]
+    starts = 0 if rules.vehicles[route.vehicle].start is None else 1
+    free = [_Stay((ALWAYS,), 0.0, inf)] * len(ends)
+    return [*free[:starts], *inner, *free[starts:]]
+
+
+def _stay(visit: Visit) -> _Stay:
+    return _Stay(visit.windows, visit.service, visit.due)
+
+
+def _released(rules: Rules, trip: Sequence[int]) -> float:
+    return max((rules.visits[stop].release for stop in trip), default=0.0)
+
+
+def trips_of(rules: Rules, route: Route) -> list[list[int]]:
+    """Return the visits of each trip of a route; a trip ends where the vehicle loads again."""
+    trips: list[list[int]] = [[]]
+    for stop in route.stops:
+        if stop in rules.vehicles[route.vehicle].reload:
+            trips.append([])
+        else:
+            trips[-1].append(stop)
+    return trips
+
+
+def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
+    """Return the costs of the legs of a route in one objective."""
+    costs = fleet.costs[objective]
+    return [float(costs[a, b]) for a, b in pairwise(path_of(fleet.rules, route))]

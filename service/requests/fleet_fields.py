@@ -1,0 +1,247 @@
+"""The fields of stops, shipments, vehicles and objectives in requests of `POST /fleet`."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import Annotated
+
+from pydantic import Discriminator, Field, Tag
+
+from service.errors import invalid
+from service.fleet.rules import (
+    ALWAYS,
+    Measure,
+    Over,
+    Shipment,
+    Span,
+    VehicleType,
+    Visit,
+)
+from service.requests.fields import (
+    AsInteger,
+    Cost,
+    Pair,
+    PositiveInteger,
+    PositiveNumber,
+    StrictModel,
+    Text,
+    optional,
+)
+from service.requests.stop_fields import (
+    ObjectiveItem,
+    StopItem,
+    StopReference,
+    find_index,
+)
+from service.requests.validation import nearest, show
+
+_MOST_LOAD = 10**9
+_MOST_DIMENSIONS = 8
+_MOST_COUNT = 10**6
+_MOST_WINDOWS = 20
+_MOST_SHIFTS = 31
+_MOST_RELOADS = 20
+_MOST_SKILLS = 50
+Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
+Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
+Skills = Annotated[list[Text], Field(max_length=_MOST_SKILLS, fail_fast=True)]
+# A pair in JSON, and a list so that OpenAPI has its length.
+TimeSpan = Pair[Cost]
+
+
+class FleetStopItem(StopItem):
+    """A stop, and its demands on the vehicle that visits it."""
+
+    demand: Loads = Field(
+        default_factory=list,
+        description="whole numbers, one for each dimension of the vehicle's capacity: what it"
+        " delivers, or what it takes on where the stop is the pick-up of a shipment",
+    )
+    service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
+    window: TimeSpan | None = optional("when a visit may begin, from and to")
+    windows: Annotated[list[TimeSpan], Field(max_length=_MOST_WINDOWS, fail_fast=True)] = Field(
+        default_factory=list,
+        description="when a visit may begin, from and to: in one of up to 20, by ascending time",
+    )
+    due: Cost | None = optional(
+        "when the visit should begin at the latest; after that the plan has lateness"
+    )
+    release: Cost = Field(
+        default=0.0,
+        description="a vehicle that brings something here leaves its start, or the stop where it"
+        " loads again, no earlier",
+    )
+    skills: Skills = Field(
+        default_factory=list, description="the skills of which its vehicle must have all"
+    )
+    vehicle: Text | None = optional("the id of the type of vehicles that must visit it")
+    prize: Cost | None = optional(
+        "added to the first length if the stop is left out; a stop without a prize is"
+        " always visited"
+    )
+
+    def visit(self, part: str, types: Mapping[str, tuple[int, ...]]) -> Visit:
+        """Return the stop, whose part of the request is `part`, as a visit of a vehicle.
+
+        `types` are the types of vehicles by their id: one for each shift.
+
+        Raises:
+            Refusal: There is no vehicle of that id, or windows are not in order.
+        """
+        if self.vehicle is not None and self.vehicle not in types:
+            meant = nearest(self.vehicle, types)
+            hint = f"; did you mean {show(meant)}?" if meant else ""
+            demand = f"must be the id of a type of vehicles, got {show(self.vehicle)}{hint}"
+            raise invalid(f"{part}/vehicle", demand)
+        return Visit(
+            demand=tuple(self.demand),
+            service=self.service,
+            windows=tuple(_spans(self.window, self.windows, f"{part}/window")),
+            prize=self.prize,
+            due=inf if self.due is None else self.due,
+            release=self.release,
+            skills=tuple(self.skills),
+            vehicles=() if self.vehicle is None else types[self.vehicle],
+        )
+
+
+class ShipmentItem(StrictModel):
+    """Two stops that one vehicle visits: the pick-up, and later the delivery."""
+
+    pickup: StopReference = Field(
+        description="by index or id; its demand and prize count for both stops"
+    )
+    delivery: StopReference = Field(description="by index or id")
+
+    def shipment(self, part: str, ids: Mapping[str, int]) -> Shipment:
+        """Return the shipment, whose part of the request is `part`, as shipments/0.
+
+        Raises:
+            Refusal: One of both is not a stop.
+        """
+        pickup = find_index(self.pickup, ids, f"{part}/pickup", len(ids))
+        return Shipment(pickup, find_index(self.delivery, ids, f"{part}/delivery", len(ids)))
+
+
+class VehicleItem(StrictModel):
+    """A type of vehicle, and how many of it there are."""
+
+    id: Text = Field(description="comes back with every route; no two types share one")
+    count: Annotated[int, Field(ge=1, le=_MOST_COUNT), AsInteger] = Field(
+        default=1, description="how many there are"
+    )
+    start: StopReference | None = optional(
+        "the stop at which they start, by index or id; null: each at its first visit"
+    )
+    end: StopReference | None = optional(
+        "the stop at which they end, by index or id; null: each at its last visit"
+    )
+    capacity: Loads = Field(
+        default_factory=list, description="the most that one holds, in up to 8 dimensions"
+    )
+    shift: TimeSpan | None = optional("when one may leave, and must be back")
+    shifts: Annotated[list[TimeSpan], Field(max_length=_MOST_SHIFTS, fail_fast=True)] = Field(
+        default_factory=list,
+        description="up to 31 shifts, by ascending time: each vehicle has a route in each",
+    )
+    max_overtime: Cost = Field(
+        default=0.0, description="how much later than its shift a route may end"
+    )
+    skills: Skills = Field(default_factory=list, description="what it is able to do")
+    max_stops: PositiveInteger | None = optional("the most stops of a route")
+    reload: Annotated[list[StopReference], Field(max_length=_MOST_RELOADS, fail_fast=True)] = Field(
+        default_factory=list,
+        description="the stops, by index or id, at which one may load again on its way",
+    )
+    max_trips: PositiveInteger | None = optional(
+        "the most trips of a route, each from one loading to the next; null for any number"
+    )
+    initial_load: Loads = Field(
+        default_factory=list,
+        description="the load on board at the start; it is unloaded at the first stop for loading"
+        " again, or at the end",
+    )
+    longest: PositiveNumber | None = optional(
+        "the limit on each route: on its time if there is a clock, else on its length in"
+        " the objective whose `over` is max"
+    )
+    fixed: Cost = Field(default=0.0, description="added to the first length if one is used")
+
+    def vehicle_types(self, part: str, ids: Mapping[str, int]) -> list[VehicleType]:
+        """Return the type of vehicles, whose part of the request is `part`: once for each shift.
+
+        Raises:
+            Refusal: A stop that it names does not exist, or shifts are not in order.
+        """
+        start, end = (
+            None if stop is None else find_index(stop, ids, f"{part}/{name}", len(ids))
+            for name, stop in (("start", self.start), ("end", self.end))
+        )
+        reload = [
+            find_index(stop, ids, f"{part}/reload/{i}", len(ids))
+            for i, stop in enumerate(self.reload)
+        ]
+        return [
+            VehicleType(
+                start=start,
+                end=end,
+                count=self.count,
+                capacity=tuple(self.capacity),
+                shift=shift,
+                longest=inf if self.longest is None else self.longest,
+                fixed=self.fixed,
+                skills=tuple(self.skills),
+                max_stops=self.max_stops,
+                reload=tuple(reload),
+                max_trips=self.max_trips,
+                initial_load=tuple(self.initial_load),
+                max_overtime=self.max_overtime,
+            )
+            for shift in _spans(self.shift, self.shifts, f"{part}/shift")
+        ]
+
+
+class ClockItem(ObjectiveItem):
+    """Travel times that are no objective, by their source."""
+
+    name: Text = Field(default="time", description="of the times, which are no objective")
+
+
+Clock = Annotated[
+    Annotated[Text, Tag("[name]")] | Annotated[ClockItem, Tag("[times]")],
+    Discriminator(lambda value: "[name]" if isinstance(value, str) else "[times]"),
+]
+
+
+class FleetObjectiveItem(ObjectiveItem):
+    """An objective by its name: costs with their source, or another measure of plans."""
+
+    of_plan: Measure | None = Field(
+        default=None,
+        alias="measure",
+        description="in place of a source of costs, for the second objective: the number of"
+        " vehicles that are used, the prizes of the stops that are left out, the overtime beyond"
+        " shifts, or the lateness after stops are due, each summed up over the plan",
+    )
+    over: Over = Field(
+        default="sum",
+        description="whether the length of a plan is the sum over its routes or the longest route;"
+        " max for one objective at most",
+    )
+
+
+def _spans(one: list[float] | None, several: list[list[float]], part: str) -> list[Span]:
+    """Return the windows or shifts of which one or several were given; always, without any.
+
+    Raises:
+        Refusal: Both were given, or they overlap or are not in order.
+    """
+    if one is not None and several:
+        raise invalid(part, f"must not be given beside {part.rpartition('/')[2]}s")
+    last = -inf
+    for index, (begin, end) in enumerate(several):
+        if end < begin or begin <= last:
+            demand = "must begin after the one before has ended, and not end before it begins"
+            raise invalid(f"{part}s/{index}", f"{demand}, got {begin:g} to {end:g}")
+        last = end
+    spans = several or ([] if one is None else [one])
+    return [(begin, end) for begin, end in spans] or [ALWAYS]
