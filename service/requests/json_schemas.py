@@ -25,6 +25,8 @@ JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
 FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
 _CITIES = (*FORMS, "objectives")
 _SOURCES = ("matrix", "coordinates", "from")
+# A speed is an option of one measure.
+_OF_A_SPEED: Schema = {"speed": {"properties": {"from": {"const": "great_circle"}}}}
 _SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
 # The schemas of an objective by its source of costs; those of fleets have names of their own.
 _Described = Mapping[str, tuple[str, Sequence[str]]]  # description and source, by name
@@ -265,8 +267,11 @@ def _objectives(schema: Schema, limits: Limits, kinds: _Described) -> list[Schem
         measures = schema["properties"]["from"]["enum"]
         known = [measure for measure in measures if measure not in ROAD_MEASURES]
         schema = _with(schema, **{"from": {**schema["properties"]["from"], "enum": known}})
+    measured = {**schema, "dependentSchemas": _OF_A_SPEED}
     return [
-        _variant(schema, name, description, _SOURCES, source)
+        _variant(measured, name, description, _SOURCES, source)
+        if "from" in source
+        else _variant(schema, name, description, (*_SOURCES, "speed"), source)
         for name, (description, source) in kinds.items()
     ]
 

@@ -17,6 +17,7 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    optional,
 )
 from service.requests.stops import UNITS, Matrix, Measure, Measured, Plane, Source, Stop
 from service.requests.validation import nearest, show
@@ -25,6 +26,8 @@ StopReference = Annotated[
     Annotated[NonNegativeInteger, Tag("[index]")] | Annotated[Text, Tag("[id]")],
     Discriminator(lambda value: "[id]" if isinstance(value, str) else "[index]"),
 ]
+# In km/h. The least is a metre in an hour, which keeps times finite.
+Speed = Annotated[float, Field(ge=0.001, le=1000, allow_inf_nan=False)]
 Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 
@@ -57,6 +60,10 @@ class ObjectiveItem(StrictModel):
         description="the measure between the locations of stops: metres along a great circle, or"
         " seconds or metres by road",
     )
+    speed: Speed | None = optional(
+        "km/h; with `from` great_circle, the costs are the seconds that its metres take at this"
+        " speed"
+    )
 
     @property
     def sources(self) -> list[str]:
@@ -68,15 +75,26 @@ class ObjectiveItem(StrictModel):
         """Return the objective, in its measure's unit where it has one.
 
         Raises:
-            Refusal: The unit is not that of the measure.
+            Refusal: The unit is not that of the measure, or the measure has no speed.
         """
+        self._check_speed(part)
         if "measure" not in self.model_fields_set:
             return Objective(self.name, self.unit)
-        unit = UNITS[self.measure]
+        at_a_speed = self.speed is not None
+        unit = "s" if at_a_speed else UNITS[self.measure]
         if self.unit not in (None, unit):
-            demand = f"must be {unit}, the unit of {self.measure}, got {show(self.unit)}"
+            measure = f"{self.measure} at a speed" if at_a_speed else self.measure
+            demand = f"must be {unit}, the unit of {measure}, got {show(self.unit)}"
             raise invalid(f"{part}/unit", demand)
         return Objective(self.name, unit)
+
+    def _check_speed(self, part: str) -> None:
+        """Raise a refusal of a speed without great_circle as the source of costs."""
+        sources = self.sources
+        if self.speed is None or ("from" in sources and self.measure == "great_circle"):
+            return
+        came = f"from {self.measure}" if "from" in sources else " and ".join(sources) or "no source"
+        raise invalid(f"{part}/speed", f"needs from great_circle, got {came}")
 
     def source(self, part: str, stops: Sequence[Stop]) -> Source:
         """Return the source of the costs between these stops.
@@ -92,7 +110,7 @@ class ObjectiveItem(StrictModel):
                 return Plane(np.array(self.coordinates, dtype=np.float64))
             case ["from"]:
                 _check_located(f"{part}/from", self.measure, stops)
-                return Measured(self.measure)
+                return Measured(self.measure, self.speed)
             case sources:
                 came = " and ".join(sources) or "none"
                 raise invalid(part, f"must have one of matrix, coordinates and from, got {came}")

@@ -19,6 +19,7 @@ Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
 Measure = Literal["great_circle", "road_time", "road_distance"]
 RoadMeasure = Literal["road_time", "road_distance"]
 UNITS: Mapping[Measure, str] = {"great_circle": "m", "road_time": "s", "road_distance": "m"}
+_KMH = 3.6  # km/h that are one metre per second
 ROAD_MEASURES: tuple[RoadMeasure, ...] = ("road_time", "road_distance")
 
 
@@ -72,9 +73,15 @@ class Plane:
 
 @dataclass(frozen=True)
 class Measured:
-    """A source of costs: a measure of the way between the locations of stops."""
+    """A source of costs: a measure of the way between the locations of stops.
+
+    Args:
+        measure: The measure.
+        speed: The km/h at which metres along great circles become seconds; None leaves metres.
+    """
 
     measure: Measure
+    speed: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,8 +214,9 @@ def _costs(source: Source, locations: Array) -> Array:
         case Plane(points):
             steps = points[:, np.newaxis] - points
             return np.hypot(steps[..., 0], steps[..., 1])
-        case Measured("great_circle"):
-            return great_circle_matrix(locations)
+        case Measured("great_circle", speed):
+            metres = great_circle_matrix(locations)
+            return metres if speed is None else metres / (speed / _KMH)
         case Changed(base):
             return changed_costs(_costs(base, locations), source.steps, source.costs)
         case Measured(measure):

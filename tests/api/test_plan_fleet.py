@@ -14,6 +14,7 @@ from service.fleet.plans import Plan, Route
 from service.fleet.schedule import schedule
 from tests.helpers.fleet_requests import fleet_of, fleet_request
 from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.straight_lines import metres_between, seconds_between
 
 GEOJSON = {"Accept": "application/geo+json"}
 
@@ -157,3 +158,77 @@ def test_without_time_the_tours_of_the_network_are_cut(client: httpx.Client) -> 
     assert front["terminated"] == "converged"
     assert front["actor"]["name"] == "pa-one-matrix"
     assert front["front"]
+
+
+HOUR, SPEED = 3600, 36
+PLACES = {
+    "depot": [24.94, 60.17],
+    "near": [24.96, 60.17],
+    "north": [24.94, 60.2],
+    "far": [25.1, 60.17],
+}
+# The van would visit "near" first; its window makes it the last stop.
+TIMED: dict[str, Any] = {
+    "stops": [
+        {"id": "depot", "location": PLACES["depot"]},
+        {"id": "near", "location": PLACES["near"], "window": [11 * HOUR, 12 * HOUR]},
+        {"id": "north", "location": PLACES["north"], "service": 300},
+        {"id": "far", "location": PLACES["far"], "window": [9 * HOUR, 9 * HOUR + 900]},
+    ],
+    "vehicles": [{"id": "van", "start": "depot", "end": "depot", "shift": [8 * HOUR, 18 * HOUR]}],
+    "objectives": [
+        {"name": "distance", "from": "great_circle"},
+        {"name": "time", "from": "great_circle", "speed": SPEED, "over": "max"},
+    ],
+    "clock": "time",
+    "time_limit": 0.2,
+}
+
+
+def test_windows_are_kept_along_straight_lines_without_a_routing_engine(
+    client: httpx.Client,
+) -> None:
+    front = client.post("/fleet", json=TIMED)
+    assert front.status_code == 200, front.text
+    assert [each["unit"] for each in front.json()["objectives"]] == ["m", "s"]
+    stops = {stop["id"]: stop for stop in TIMED["stops"]}
+    assert front.json()["front"]
+    for plan in front.json()["front"]:
+        [route] = plan["routes"]
+        clock = route["arrivals"][0]
+        for here, there, arrival in zip(
+            route["stops"], route["stops"][1:], route["arrivals"][1:], strict=False
+        ):
+            # The window of a stop is for when its visit begins.
+            begins = max(clock, stops[here].get("window", [0])[0])
+            assert begins <= stops[here].get("window", [0, HOUR * 24])[1]
+            way = seconds_between(PLACES[here], PLACES[there], SPEED)
+            clock = begins + stops[here].get("service", 0) + way
+            assert arrival == pytest.approx(clock)
+        assert plan["lengths"][1] == pytest.approx(clock - route["arrivals"][0])
+        metres = [
+            metres_between(PLACES[here], PLACES[there]) for here, there in pairwise(route["stops"])
+        ]
+        assert plan["lengths"][0] == pytest.approx(sum(metres))
+
+
+def test_a_window_that_a_speed_is_too_slow_for_has_no_plan(client: httpx.Client) -> None:
+    way, objectives = TIMED["objectives"][0], TIMED["objectives"]
+    slow = {**TIMED, "objectives": [way, {**objectives[1], "speed": 5}]}
+    slow["vehicles"] = [{**TIMED["vehicles"][0], "shift": [8 * HOUR, 10 * HOUR]}]
+    slow["stops"] = [TIMED["stops"][0], TIMED["stops"][3]]
+    refused = problem(client.post("/fleet", json=slow), 422, "no-plan")
+    assert "far" in refused["detail"]
+
+
+def test_a_speed_by_road_is_pointed_at(client: httpx.Client) -> None:
+    way, time = TIMED["objectives"]
+    body = {**TIMED, "objectives": [way, {**time, "from": "road_time"}]}
+    refused = problem(client.post("/fleet", json=body), 422, "invalid-request")
+    assert refused["errors"][0]["pointer"] == "/objectives/1/speed"
+
+
+def test_the_routes_of_a_fleet_at_a_speed_are_geojson(client: httpx.Client) -> None:
+    answer = client.post("/fleet", json=TIMED, headers=GEOJSON).json()
+    properties = answer["features"][0]["properties"]
+    assert properties["units"] == ["m", "s"]

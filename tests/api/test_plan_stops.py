@@ -15,6 +15,7 @@ import pytest
 from service.instance import Instance, tour_lengths
 from service.roads.great_circle import great_circle_matrix
 from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.straight_lines import matrix_of
 
 IDS = ["depot", *(f"order-{i}" for i in range(1, 9))]
 LOCATIONS = np.random.default_rng(1).uniform((24.9, 60.15), (25.0, 60.2), (9, 2))
@@ -63,6 +64,19 @@ def test_ids_names_and_units_come_back(client: httpx.Client) -> None:
     check(answer.json())
     assert answer.json()["timings_ms"]["costs"] > 0
     check(client.get(f"/front/{answer.json()['id']}").json())
+
+
+def test_times_at_a_speed_come_back_in_seconds(client: httpx.Client) -> None:
+    timed = {"name": "time", "from": "great_circle", "speed": 18}
+    front = client.post("/front", json={**REQUEST, "objectives": [timed, OBJECTIVES[1]]}).json()
+    assert front["objectives"] == [{"name": "time", "unit": "s"}, NAMES[1]]
+    seconds = np.array(matrix_of(LOCATIONS.tolist(), 18))
+    for item in front["front"]:
+        tour = item["tour"]
+        assert item["lengths"][0] == pytest.approx(seconds[tour, np.roll(tour, -1)].sum())
+    path, headers = f"/front/{front['id']}", {"Accept": "application/geo+json"}
+    line = client.get(path, headers=headers).json()["features"][0]["properties"]
+    assert (line["lengths"], line["units"]) == (front["front"][0]["lengths"], ["s", "%"])
 
 
 def test_a_tour_has_the_ids_of_its_stops(client: httpx.Client) -> None:

@@ -16,6 +16,7 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.changes import random_change
 from tests.helpers.serving import app_of, serving
 from tests.helpers.stores import job, record
+from tests.helpers.straight_lines import matrix_of
 
 CITIES = np.random.default_rng(1).random((12, 4))
 SHORT = {"coordinates": CITIES.tolist(), "time_limit": 0.1}
@@ -299,3 +300,50 @@ def test_fronts_of_every_form_are_replanned(client: httpx.Client) -> None:
         stops = {stop["id"] for stop in rest.json()["stops"]}
         ends = [stop for stop in (change.start, change.end) if stop is not None]
         assert stops == {change.ids[stop] for stop in (*change.between, *ends)}
+
+
+PLACES = np.random.default_rng(3).uniform((24.9, 60.15), (25.0, 60.2), (8, 2)).tolist()
+RISKS = np.random.default_rng(4).random((8, 8)).tolist()
+
+
+def test_the_rest_of_a_way_is_still_timed_at_the_speed_of_its_front(client: httpx.Client) -> None:
+    stops = [{"id": f"s{i}", "location": place} for i, place in enumerate(PLACES[:7])]
+    objectives = [
+        {"name": "time", "from": "great_circle", "speed": 18},
+        {"name": "risk", "matrix": [row[:7] for row in RISKS[:7]]},
+    ]
+    body = {"stops": stops, "objectives": objectives, "time_limit": 0.1}
+    front = client.post("/front", json=body).json()
+    assert front["objectives"][0] == {"name": "time", "unit": "s"}
+    new = {"id": "s7", "location": PLACES[7]}
+    new["costs"] = [None, {"to": RISKS[7], "from": [row[7] for row in RISKS]}]
+    changed = {"objective": "time", "from": "s2", "to": "s3", "cost": 5000.0}
+    tour = front["front"][0]["stops"]
+    answer = replan(client, front, done=tour[:2], add=[new], costs=[changed])
+    assert answer.status_code == 200, answer.text
+    rest = answer.json()
+    assert rest["objectives"][0] == {"name": "time", "unit": "s"}
+    seconds = np.array(matrix_of(PLACES, 18))
+    seconds[2, 3] = 5000
+    for item in rest["front"]:
+        way = [int(stop[1:]) for stop in item["stops"]]
+        assert way[0] == int(tour[1][1:])
+        assert item["lengths"][0] == pytest.approx(seconds[way[:-1], way[1:]].sum())
+
+
+def test_objectives_of_a_replan_may_have_a_speed(client: httpx.Client) -> None:
+    stops = [{"id": f"s{i}", "location": place} for i, place in enumerate(PLACES)]
+    way, risk = {"name": "way", "from": "great_circle"}, {"name": "risk", "matrix": RISKS}
+    body = {"stops": stops, "objectives": [way, risk], "time_limit": 0.1}
+    front = client.post("/front", json=body).json()
+    timed = [{"name": "time", "from": "great_circle", "speed": 36}, risk]
+    rest = replan(client, front, objectives=timed).json()
+    assert rest["objectives"][0] == {"name": "time", "unit": "s"}
+    seconds = np.array(matrix_of(PLACES, 36))
+    for item in rest["front"]:
+        way_round = [int(stop[1:]) for stop in item["stops"]]
+        expected = seconds[way_round, np.roll(way_round, -1)].sum()
+        assert item["lengths"][0] == pytest.approx(expected)
+    by_road = [{**timed[0], "from": "road_time"}, risk]
+    refused = problem(replan(client, front, objectives=by_road))
+    assert refused["errors"][0]["pointer"] == "/objectives/0/speed"

@@ -6,6 +6,7 @@ from paretour import Refused
 
 from tests.helpers.answers import Connect
 from tests.helpers.fleet_requests import fleet_request
+from tests.helpers.straight_lines import seconds_between
 
 
 def test_a_fleet_is_planned_and_its_plans_are_values(connect: Connect, url: str) -> None:
@@ -52,3 +53,30 @@ def test_one_plan_of_a_fleet_is_given_as_geojson(connect: Connect, url: str) -> 
     ]
     with pytest.raises(Refused, match="plan must be less than"):
         client.geojson(front.id, plan=last + 1)
+
+
+def test_a_fleet_is_timed_along_straight_lines_at_a_speed(connect: Connect, url: str) -> None:
+    places = {"depot": [24.94, 60.17], "a": [24.95, 60.18], "b": [24.93, 60.16]}
+    front = connect(url).fleet(
+        stops=[{"id": name, "location": place} for name, place in places.items()],
+        vehicles=[{"id": "van", "start": "depot", "end": "depot"}],
+        objectives=[
+            {"name": "distance", "from": "great_circle"},
+            {"name": "time", "from": "great_circle", "speed": 30, "over": "max"},
+        ],
+        clock="time",
+        time_limit=0.1,
+    )
+    assert [each.unit for each in front.objectives] == ["m", "s"]
+    [route] = front.plans[0].routes
+    first, second = route.stops[:2]
+    way = seconds_between(places[first], places[second], 30)
+    assert route.arrivals[1] - route.arrivals[0] == pytest.approx(way)
+    with pytest.raises(Refused, match="objectives/1/speed needs from great_circle"):
+        connect(url).front(
+            stops=[{"id": name, "location": place} for name, place in places.items()],
+            objectives=[
+                {"name": "distance", "from": "great_circle"},
+                {"name": "time", "from": "road_time", "speed": 30},
+            ],
+        )

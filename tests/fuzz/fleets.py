@@ -51,7 +51,12 @@ def _request(rng: random.Random, number: Number) -> dict[str, Any]:
             "from": "great_circle",
         }
         source = rng.choice(sorted(sources))
-        return {"name": name, source: sources[source]}
+        speed = (
+            {"speed": rng.choice((0.001, 30, 1000))}
+            if source == "from" and rng.random() < 1 / 2
+            else {}
+        )
+        return {"name": name, source: sources[source], **speed}
 
     return {
         "stops": [{"id": "0", "location": [24.9, 60.1]}, *(stop(index) for index in range(1, n))],

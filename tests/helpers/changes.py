@@ -219,8 +219,9 @@ def _costs(
     if kind == "mixed":
         objectives = [{"from": "great_circle"}, {"matrix": matrices[1, :n, :n].tolist()}]
         return {**stops, "objectives": objectives}, np.stack((great, matrices[1])), planes
-    objectives = [{"coordinates": planes[:n, :2].tolist()}, {"from": "great_circle"}]
-    return {**stops, "objectives": objectives}, np.stack((plane_costs[0], great)), planes
+    timed = {"from": "great_circle", "speed": 18}  # 5 metres per second
+    objectives = [{"coordinates": planes[:n, :2].tolist()}, timed]
+    return {**stops, "objectives": objectives}, np.stack((plane_costs[0], great / 5)), planes
 
 
 def _new_stop(

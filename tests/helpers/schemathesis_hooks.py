@@ -125,9 +125,14 @@ def _make_plannable(body: dict[str, Any]) -> None:
     n = len(body["stops"])
     located = {"location": [0.0, 0.0]}
     body["stops"] = [{**stop, **located, "id": f"{i}"} for i, stop in enumerate(body["stops"])]
-    fit = {"matrix": [[1.0] * n] * n, "coordinates": [[0.0, 1.0]] * n, "from": "great_circle"}
+    fit = {
+        "matrix": [[1.0] * n] * n,
+        "coordinates": [[0.0, 1.0]] * n,
+        "from": "great_circle",
+        "speed": 3.6,
+    }
     body["objectives"] = [
-        {name: fit.get(name, f"{m}" if name == "name" else "m") for name in objective}
+        {name: fit.get(name, f"{m}" if name == "name" else _unit(objective)) for name in objective}
         for m, objective in enumerate(body["objectives"])
     ]
     body |= {"start": "0", "actor": "pa-one-matrix"}
@@ -135,6 +140,10 @@ def _make_plannable(body: dict[str, Any]) -> None:
     body.pop("end", None)
     if "initial_tours" in body:
         body["initial_tours"] = [[f"{i}" for i in range(n)]]
+
+
+def _unit(objective: dict[str, Any]) -> str:
+    return "s" if "speed" in objective else "m"
 
 
 def _make_drivable(body: dict[str, Any]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from service.requests.json_schemas import FILE_FORMS, JSON_FORMS, front_schemas
+from service.requests.json_schemas import FILE_FORMS, JSON_FORMS, fleet_schemas, front_schemas
 from tests.helpers.serving import LIMITS
 
 SCHEMAS = front_schemas(LIMITS, ["pa-one"])
@@ -52,8 +52,19 @@ def test_an_objective_has_one_source() -> None:
     kinds = {"MatrixObjective": "matrix", "PlaneObjective": "coordinates"}
     for name, source in {**kinds, "MeasuredObjective": "from"}.items():
         assert SCHEMAS[name]["required"] == ["name", source]
-        assert SCHEMAS[name]["properties"].keys() == {"name", "unit", source}
+        speed = {"speed"} if source == "from" else set()
+        assert SCHEMAS[name]["properties"].keys() == {"name", "unit", source, *speed}
     assert SCHEMAS["NamedObjective"]["properties"].keys() == {"name", "unit"}
+
+
+def test_the_schema_says_which_speeds_there_are() -> None:
+    schemas = {**SCHEMAS, **fleet_schemas(LIMITS)}
+    for name in ("MeasuredObjective", "FleetMeasuredObjective"):
+        speed, _ = schemas[name]["properties"]["speed"]["anyOf"]
+        assert speed == {"type": "number", "minimum": 0.001, "maximum": 1000}
+        needs = schemas[name]["dependentSchemas"]["speed"]
+        assert needs == {"properties": {"from": {"const": "great_circle"}}}
+        assert "dependentSchemas" not in schemas[name.replace("Measured", "Matrix")]
 
 
 @pytest.mark.parametrize(

@@ -45,6 +45,7 @@ class StopRequest(TypedDict, total=False):
 
 
 # Written as a call because `from` is a keyword. It is great_circle, road_time or road_distance.
+# With a speed in km/h, great_circle is seconds, not metres.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
@@ -53,6 +54,7 @@ ObjectiveRequest = TypedDict(
         "matrix": Costs,
         "coordinates": ArrayLike,
         "from": str,
+        "speed": float | None,
     },
     total=False,
 )
