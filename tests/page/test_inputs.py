@@ -150,6 +150,37 @@ def test_roads_that_the_service_has_not_are_refused_at_their_objective(opened: P
     expect(source).to_be_focused()
 
 
+def test_straight_lines_are_times_at_a_speed_that_is_typed(opened: Page) -> None:
+    open_files(opened, {"stops.csv": "id,lon,lat,risk\na,0,0,2\nb,1,0,4\nc,0,1,0\n"})
+    speed = opened.get_by_label("Speed of the first objective, km/h", exact=True)
+    expect(speed).to_be_hidden()
+    measure = opened.get_by_label("What the first objective is measured by")
+    measure.select_option("Time in straight lines, s")
+    expect(speed).to_have_value("30")
+    timed = {"name": "distance", "from": "great_circle", "speed": 30}
+    assert curl_body(opened)["objectives"][0] == timed
+    commit(opened, speed.get_attribute("aria-label") or "", "0")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    fault = opened.locator("#objectives-fault")
+    expect(fault).to_have_text("The speed of the first objective must be at least 0.001, got 0.")
+    expect(speed).to_be_focused()
+    commit(opened, "Speed of the first objective, km/h", "4,5")
+    assert curl_body(opened)["objectives"][0] == {**timed, "speed": 4.5}
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(opened.locator("#comparison")).to_contain_text("Distance, s")
+    measure.select_option("Straight lines, m")
+    expect(speed).to_be_hidden()
+    assert curl_body(opened)["objectives"][0] == {"name": "distance", "from": "great_circle"}
+    request = {
+        "stops": [{"id": f"{i}", "location": place} for i, place in enumerate(LOCATED)],
+        "objectives": [timed, {"name": "risk", "matrix": MATRICES[0]}],
+    }
+    open_files(opened, {"stops.json": json.dumps(request)})
+    expect(measure).to_have_value("speed")
+    expect(speed).to_have_value("30")
+
+
 def test_places_alone_are_measured_by_road_where_the_service_has_roads(
     browser: Browser, released: str
 ) -> None:

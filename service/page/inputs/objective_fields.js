@@ -2,7 +2,9 @@
 
 import { namesIn } from "../common/objectives.js";
 
-const SOURCES = { great_circle: "Straight lines, m", road_time: "Time by road, s", road_distance: "Way by road, m" };
+const TIMED = "speed"; // straight lines at a speed
+const SPEED = 30; // km/h, until another is typed
+const SOURCES = { great_circle: "Straight lines, m", [TIMED]: "Time in straight lines, s", road_time: "Time by road, s", road_distance: "Way by road, m" };
 const NTH = ["First", "Second", "Third", "Fourth"];
 const OWN = "own"; // costs that came with the stops
 
@@ -16,6 +18,7 @@ export class ObjectiveFields {
     this.#element = element;
     element.addEventListener("change", ({ target }) => {
       const axis = Number(target.dataset.axis);
+      if (target.dataset.member === "source") showSpeed(target);
       onChange(axis, this.#changed(axis, target.dataset.member, target.value.trim()));
     });
   }
@@ -28,10 +31,13 @@ export class ObjectiveFields {
   }
 
   #changed(axis, member, value) {
+    if (member === "speed") return { speed: speedIn(value) };
     if (member !== "source") return { [member]: value || undefined };
     const { matrix, coordinates } = this.#own[axis];
+    if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates };
     // A unit that was typed for another source would be wrong; the service knows that of the source.
-    return value === OWN ? { from: undefined, matrix, coordinates } : { from: value, unit: undefined, matrix: undefined, coordinates: undefined };
+    const others = { unit: undefined, matrix: undefined, coordinates: undefined };
+    return value === TIMED ? { from: "great_circle", speed: SPEED, ...others } : { from: value, speed: undefined, ...others };
   }
 }
 
@@ -39,8 +45,29 @@ function line({ name, unit }, axis, objective) {
   const made = Object.assign(document.createElement("div"), { className: "objective" });
   const which = `${NTH[axis]} objective`;
   made.append(labelled(which, input(axis, "name", name)), labelled("Unit", input(axis, "unit", unit), `Unit of the ${which.toLowerCase()}`));
-  if (objective) made.append(labelled("Measured by", source(axis, objective), `What the ${which.toLowerCase()} is measured by`));
+  if (!objective) return made;
+  const speed = input(axis, "speed", objective.speed ?? SPEED);
+  speed.inputMode = "decimal";
+  const chosen = source(axis, objective);
+  made.append(
+    labelled("Measured by", chosen, `What the ${which.toLowerCase()} is measured by`),
+    labelled("Speed, km/h", speed, `Speed of the ${which.toLowerCase()}, km/h`),
+  );
+  showSpeed(chosen);
   return made;
+}
+
+/** Shows the speed of an objective only where it has one, with the default when it is chosen anew. */
+function showSpeed(chosen) {
+  const speed = chosen.closest(".objective").querySelector('[data-member="speed"]');
+  speed.closest("label").hidden = chosen.value !== TIMED;
+  if (chosen.value !== TIMED) speed.value = SPEED;
+}
+
+/** The number that was typed; what is not a number stays as it is, so that the service names it. */
+function speedIn(text) {
+  const number = Number(text.replace(",", "."));
+  return text === "" || Number.isNaN(number) ? text : number;
 }
 
 function labelled(title, input, label = title) {
@@ -52,11 +79,11 @@ function labelled(title, input, label = title) {
 
 const input = (axis, member, value) => marked(Object.assign(document.createElement("input"), { value, autocomplete: "off" }), axis, member);
 
-function source(axis, { from, matrix, coordinates }) {
+function source(axis, { from, speed, matrix, coordinates }) {
   const made = marked(document.createElement("select"), axis, "source");
   if (matrix || coordinates) made.append(new Option(matrix ? "Costs from the file" : "A plane from the file", OWN));
   made.append(...Object.entries(SOURCES).map(([name, title]) => new Option(title, name)));
-  made.value = from ?? OWN;
+  made.value = from === "great_circle" && speed != null ? TIMED : (from ?? OWN);
   return made;
 }
 

@@ -11,11 +11,11 @@ export function showFaults(problem) {
   const faults = faultsOf(problem);
   let first = null;
   for (const { pointer = "", detail } of faults) {
-    const [member, row] = pointer.split("/").slice(1);
+    const [member, row, part] = pointer.split("/").slice(1);
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const said = seen(document.getElementById(`${field}-fault`)) ?? document.getElementById("request-fault");
     said.textContent ||= sentence(inWords(detail, field));
-    first ??= member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row);
+    first ??= member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row, part);
   }
   first?.focus();
 }
@@ -39,8 +39,9 @@ export function showFault(field, detail) {
   document.getElementById(`${field}-fault`).textContent = sentence(detail);
 }
 
-function mark(name, row) {
-  const source = document.querySelector(`#${name} [data-axis="${row}"][data-member="source"]`);
+function mark(name, row, part) {
+  const of = part === "speed" ? part : "source";
+  const source = document.querySelector(`#${name} [data-axis="${row}"][data-member="${of}"]`);
   const field = source ?? document.getElementById(name);
   if (!field) return null;
   field.setAttribute("aria-invalid", "true");
@@ -66,6 +67,7 @@ function selectLine(area, row) {
   if (line) area.setSelectionRange(line.index, line.index + line[0].length);
 }
 
+const NTH = ["first", "second", "third", "fourth"];
 const counted = (index) => Number(index) + 1; // as people count
 
 // Sentences of the service about requests, and those that the page shows instead.
@@ -82,7 +84,8 @@ function inWords(fault, field) {
   const detail = SAID.reduce((said, [pattern, instead]) => said.replace(pattern, instead), fault);
   return detail
     .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
-    .replace(/^objectives\/([01])\b/, (_, axis) => `the ${["first", "second"][axis]} objective`)
+    .replace(/^objectives\/([0-3])\/speed\b/, (_, axis) => `the speed of the ${NTH[axis]} objective`)
+    .replace(/^objectives\/([0-3])\b/, (_, axis) => `the ${NTH[axis]} objective`)
     .replace(/^(coordinates|stops)\/(\d+)\b/, (_, member, city) => `stop ${Number(city) + 1}`)
     .replace(/^(vehicle|shipment|robot)s\/(\d+)\b/, (_, item, at) => `${item} ${Number(at) + 1}`)
     .replace(new RegExp(`^${field}\\b`), label ?? field);
