@@ -3,14 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from service.files.reading import Request, Source, quoted
-from service.roads.great_circle import great_circle_matrix
 
 Stop = dict[str, Any]
 Vehicle = dict[str, Any]
-_SPEED = 30 / 3.6  # metres per second: a van in a city
+_SPEED = 30  # km/h: a van in a city
 _OF_VISITS = ("demand", "service", "window", "prize")
 
 
@@ -20,22 +17,16 @@ def planar(costs: dict[str, Any]) -> list[dict[str, Any]]:
     return [{"name": name, **costs, "over": over} for name, over in (total, longest)]
 
 
-def measured(source: Source, stops: Sequence[Stop], timed: bool) -> list[dict[str, Any]]:
+def measured(source: Source, timed: bool) -> list[dict[str, Any]]:
     """Return both objectives of stops on the earth; if `timed`, the second is time in seconds."""
     distance = {"name": "distance", "from": "great_circle", "over": "sum"}
     if source.bounds.roads:
-        time: dict[str, Any] = {"name": "time", "from": "road_time", "over": "max"}
-    elif not timed:
+        return [distance, {"name": "time", "from": "road_time", "over": "max"}]
+    if not timed:
         return [distance, {"name": "longest route", "from": "great_circle", "over": "max"}]
-    else:
-        source.check_count("stops with times", source.bounds.matrix_cities, len(stops))
-        metres = great_circle_matrix(np.array([stop["location"] for stop in stops]))
-        seconds = np.rint(metres / _SPEED).astype(int).tolist()
-        time = {"name": "time", "unit": "s", "matrix": seconds, "over": "max"}
-        text = (
-            "There is no routing engine, so driving times are those of straight lines at 30 km/h."
-        )
-        source.note("objectives", text)
+    where = f"along straight lines at {_SPEED} km/h"
+    source.note("objectives", f"Times are {where}, as there is no routing engine here.")
+    time = {"name": "time", "from": "great_circle", "speed": _SPEED, "over": "max"}
     return [distance, time]
 
 

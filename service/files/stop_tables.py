@@ -124,7 +124,7 @@ def _fleet(columns: Columns) -> Reading:
     stops, plane = visits_of(columns)
     add_visits(columns, stops)
     columns.report()
-    objectives = planar({"coordinates": plane}) if plane else measured(source, stops, timed(stops))
+    objectives = planar({"coordinates": plane}) if plane else measured(source, timed(stops))
     return source.reading("fleet", with_one_vehicle(source, stops, objectives))
 
 

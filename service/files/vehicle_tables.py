@@ -53,7 +53,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     _add_capacities(columns, vehicles, visits, stops, units)
     stops, vehicles = at_depots(stops, vehicles)
     clock = timed(stops) or any("shift" in each for each in vehicles)
-    objectives = planar({"coordinates": plane}) if plane else measured(source, stops, clock)
+    objectives = planar({"coordinates": plane}) if plane else measured(source, clock)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)
     columns.report()

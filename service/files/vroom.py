@@ -154,7 +154,7 @@ def _objectives(problem: _Problem, value: dict[str, Any], clock: bool) -> list[d
         if any("location" not in stop for stop in problem.stops):
             raise source.refusal("each task must have a location, as there are no matrices")
         note_places(source, problem.stops)
-        return measured(source, problem.stops, clock)
+        return measured(source, clock)
     profile, costs = next(iter(matrices.items()))
     if len(matrices) > 1:
         source.note_left_out(f"all profiles but {quoted(profile)}")

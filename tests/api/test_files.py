@@ -42,6 +42,19 @@ def test_a_table_becomes_a_fleet_that_the_service_plans(address: str) -> None:
     assert planned.status_code == 200, planned.text
 
 
+def test_a_table_with_windows_is_planned_without_a_routing_engine(address: str) -> None:
+    rows = "id,lat,lon,from,to\ndepot,60.17,24.94,08:00,18:00\na,60.18,24.95,09:00,09:10\n"
+    answer = sent(address, ("windows.csv", rows.encode())).json()
+    time = answer["request"]["objectives"][1]
+    assert time == {"name": "time", "from": "great_circle", "speed": 30, "over": "max"}
+    assert any("straight lines at 30 km/h" in note["text"] for note in answer["notes"])
+    planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=60)
+    assert planned.status_code == 200, planned.text
+    [plan] = planned.json()["front"]
+    assert plan["routes"][0]["stops"] == ["depot", "a", "depot"]
+    assert 9 * 3600 <= plan["routes"][0]["arrivals"][1] <= 9 * 3600 + 600
+
+
 def test_two_tables_are_an_objective_each(address: str) -> None:
     answer = sent(address, ("a.csv", b"0,1\n2,0\n"), ("b.csv", b"0,\n2,0\n")).json()
     assert answer["request"] == {"matrices": [[[0, 1], [2, 0]], [[0, None], [2, 0]]]}

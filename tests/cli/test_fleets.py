@@ -56,6 +56,7 @@ def test_a_table_with_demands_is_planned_as_a_fleet_and_not_as_a_front(
     assert ended.returncode == 0, ended.stderr
     assert "depot a b depot" in ended.stdout or "depot b a depot" in ended.stdout
     assert "'demand' (demand)" in ended.stderr
+    assert "Times are along straight lines at 30 km/h" in ended.stderr
     refused = paretour("front", orders)
     assert (refused.returncode, refused.stdout) == (2, "")
     assert "`paretour fleet` plans that" in refused.stderr

@@ -229,9 +229,9 @@ REFUSED = {
 }
 
 
-def read(names: str) -> Reading:
+def read(names: str, bounds: Bounds = Bounds()) -> Reading:  # noqa: B008  it is frozen
     files = [NamedFile(name, (FOLDER / name).read_bytes()) for name in names.split()]
-    return read_files(files, Bounds(), wanted=None)
+    return read_files(files, bounds, wanted=None)
 
 
 @pytest.mark.parametrize(("names", "expected"), [*EARTH.items(), *OTHERS.items()])
@@ -294,3 +294,41 @@ def test_a_column_is_ignored_or_a_cost_by_its_heading_alone() -> None:
     risk = read("risk.csv").request["objectives"][1]
     assert risk["name"] == "risk"
     assert risk["matrix"][0][1] == pytest.approx(3 * 111195.08, rel=1e-6)
+
+
+TIMED = [
+    "windows-as-times.csv",
+    "service-in-minutes.csv",
+    "fleet-stops.csv fleet-vehicles.csv",
+    "vroom.json",
+]
+
+
+@pytest.mark.parametrize("names", TIMED)
+def test_times_are_along_straight_lines_where_there_is_no_routing_engine(names: str) -> None:
+    reading = read(names)
+    distance, time = reading.request["objectives"]
+    assert distance == {"name": "distance", "from": "great_circle", "over": "sum"}
+    assert time == {"name": "time", "from": "great_circle", "speed": 30, "over": "max"}
+    assert reading.request["clock"] == "time"
+    sentence = "Times are along straight lines at 30 km/h, as there is no routing engine here."
+    assert [note.text for note in reading.notes if note.code == "objectives"] == [sentence]
+
+
+@pytest.mark.parametrize("names", TIMED)
+def test_times_are_by_road_where_there_is_a_routing_engine(names: str) -> None:
+    reading = read(names, Bounds(roads=True))
+    [_, time] = reading.request["objectives"]
+    assert time == {"name": "time", "from": "road_time", "over": "max"}
+    assert not [note for note in reading.notes if note.code == "objectives"]
+
+
+@pytest.mark.parametrize("name", ["ogr2ogr-3d.GEOJSON", "nested-records.json"])
+def test_a_fleet_without_times_has_its_longest_route_in_metres(name: str) -> None:
+    [_, longest] = read(name).request["objectives"]
+    assert longest == {"name": "longest route", "from": "great_circle", "over": "max"}
+
+
+def test_stops_with_times_may_be_more_than_a_matrix_of_costs_may_have() -> None:
+    few = Bounds(matrix_cities=1)
+    assert len(read("windows-as-times.csv", few).request["stops"]) == 3
