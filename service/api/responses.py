@@ -19,7 +19,7 @@ from starlette.responses import Response
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
 from service.files.reading import Kind
-from service.fleet.rules import Over
+from service.fleet.rules import Measure, Over
 from service.front import Termination
 from service.jobs.record import Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
@@ -215,6 +215,9 @@ class RouteItem(BaseModel):
     vehicle: str = Field(description="the id of its type")
     stops: list[str] = Field(description="ids in order, with the start and end that are stops")
     lengths: Lengths
+    shift: int | SkipJsonSchema[None] = Field(
+        default=None, description="the number of its shift, if its vehicle has several"
+    )
     arrivals: list[float] | SkipJsonSchema[None] = Field(
         default=None,
         description="if there is a clock: when it reaches each stop. At the first stop: when it"
@@ -227,6 +230,10 @@ class PlanItem(BaseModel):
 
     balance: Balance
     lengths: Lengths
+    measures: dict[str, float] = Field(
+        description="what plans are compared by, as far as the request allows: vehicles, driving,"
+        " service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned"
+    )
     routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
     unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")
 
@@ -235,6 +242,9 @@ class FleetObjectiveName(ObjectiveName):
     """An objective of a fleet's front."""
 
     over: Over = Field(description="whether the routes of a plan are added, or the longest counts")
+    measure: Measure | SkipJsonSchema[None] = Field(
+        default=None, description="of plans, if it is not of costs"
+    )
 
 
 class FleetAnswer(FrontAnswer):

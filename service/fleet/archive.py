@@ -69,7 +69,7 @@ class SolutionArchive:
         translation, weight = self._translation, goal.weights[self._translation.distance]
         if goal.vehicles is not None:
             weight = 0  # vehicles that must not leave have a huge cost
-        guide = self._guide(solution, weight, goal.prizes)
+        guide = self._guide(solution, weight, goal)
         # PyVRP's lengths are at most the true lengths, up to rounding.
         if self._is_dominated((guide[0] - self._slack[0], guide[1] - self._slack[1])):
             return
@@ -116,12 +116,13 @@ class SolutionArchive:
             and (self._any_time or not solution.has_time_warp())
         )
 
-    def _guide(self, solution: pyvrp.Solution, weight: int, prizes: int) -> Point:
+    def _guide(self, solution: pyvrp.Solution, weight: int, goal: Goal) -> Point:
         """Return both lengths of a solution as PyVRP has them, or less.
 
-        `weight` multiplies what is added to the first; `prizes` multiplies prizes that are the
-        second. Extras that have no weight count as 0, and so do overtime and lateness.
+        `weight` multiplies what is added to the first. Extras that have no weight count as 0, and
+        so do overtime and lateness.
         """
+        lost = self._translation.uncollected(solution, goal)
         measure = self._translation.fleet.rules.measure
         first = self._length(solution, 0)
         extras, scale = solution.fixed_vehicle_cost(), self._translation.scales[0]
@@ -131,12 +132,12 @@ class SolutionArchive:
             case "vehicles":
                 second = float(solution.num_routes())
             case "unassigned":
-                lost = solution.uncollected_prizes()
-                second = lost / (prizes * self._translation.prize_scale) if prizes else 0.0
+                weighed = goal.prizes * self._translation.prize_scale
+                second = lost / weighed if weighed else 0.0
             case _:
                 second = 0.0
         if measure != "unassigned":
-            extras += solution.uncollected_prizes()
+            extras += lost
         return first + extras / (weight * scale) if extras and weight else first, second
 
     def _length(self, solution: pyvrp.Solution, objective: int) -> float:

@@ -17,8 +17,8 @@ Indices = NDArray[np.int64]
 class Loads(NamedTuple):
     """The loads of n stops and v types of vehicles, in d dimensions.
 
-    A plan within these capacities keeps all rules about capacities, skills and pinned stops, and
-    also `max_stops` if its routes have one trip each.
+    A plan within these capacities keeps all rules about capacities, skills, pinned stops and
+    `max_stops`.
     """
 
     demand: Indices  # (n, d); the load of a shipment is that of its pick-up

@@ -69,7 +69,7 @@ class VehicleType:
             that is a maximum.
         fixed: The cost of using one vehicle.
         skills: What they are able to do.
-        max_stops: The most stops of a route; None for any number.
+        max_stops: The most stops of a route; None for any number. Not for who may load again.
         reload: The stops at which they may load again on their way.
         max_trips: The most trips of a route, each from one loading to the next; None for any.
         initial_load: The load on board at the start, in each dimension, or empty. It is unloaded at
@@ -220,6 +220,7 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
     _check_span(rules, vehicle.shift, f"{part}/shift")
     if vehicle.max_overtime and vehicle.shift[1] == inf:
         raise invalid(f"{part}/max_overtime", "needs a shift that ends")
+    _check_initial_load(rules, vehicle, part)
     _check_trips(rules, vehicle, part)
     if vehicle.fixed and rules.over[0] == "max":
         raise invalid(f"{part}/fixed", _UNSUMMED)
@@ -228,7 +229,7 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
         raise invalid(f"{part}/longest", demand)
 
 
-def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
+def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
     load = vehicle.initial_load
     if load and len(load) != rules.dimensions:
         demand = f"must have {rules.dimensions} numbers, as capacity, got {len(load)}"
@@ -237,8 +238,13 @@ def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
         if loaded > most:
             demand = f"must be at most the capacity, {most}, got {loaded}"
             raise invalid(f"{part}/initial_load/{dimension}", demand)
+
+
+def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
     if vehicle.max_trips is not None and not vehicle.reload:
         raise invalid(f"{part}/max_trips", "needs stops for loading again, in reload")
+    if vehicle.reload and vehicle.max_stops is not None:
+        raise invalid(f"{part}/max_stops", "must not be given beside reload")
     if rules.shipments:
         for name, given in (("reload", vehicle.reload), ("max_stops", vehicle.max_stops)):
             if given:

@@ -1,7 +1,7 @@
 """The times of a route: when its vehicle leaves, arrives and waits, and how late it is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from math import inf
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route, path_of
-from service.fleet.rules import ALWAYS, Rules, Span, Visit
+from service.fleet.rules import ALWAYS, Rules, Span
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,9 @@ class _Stay(NamedTuple):
     windows: tuple[Span, ...]
     service: float
     due: float
+
+
+_FREE = _Stay((ALWAYS,), 0.0, inf)
 
 
 def schedule(fleet: Fleet, route: Route) -> Schedule:
@@ -98,22 +101,28 @@ def _drive(
     """
     time, waiting, slack, late, lateness, tightest = departure, 0.0, inf, 0.0, 0.0, -1
     arrivals, used = [], []
-    for place, (stay, leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
-        numbers = range(allowed[place], len(stay.windows))
-        number = next((i for i in numbers if stay.windows[i][1] >= time), numbers[-1])
-        opens, closes = stay.windows[number]
+    # Every solution of the search comes through here: branches cost less than calls of max().
+    for place, ((windows, service, due), leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
+        number = allowed[place]
+        while windows[number][1] < time and number + 1 < len(windows):
+            number += 1
+        opens, closes = windows[number]
         arrivals.append(time)
         used.append(number)
-        waiting += max(0.0, opens - time)
-        begin = max(time, opens)
-        if closes - begin + waiting < slack:
-            slack = closes - begin + waiting
-            tightest = place if number < numbers[-1] else -1
-        if max(0.0, stay.due - begin) + waiting < slack:
-            slack, tightest = max(0.0, stay.due - begin) + waiting, -1
-        late = max(late, begin - closes)
-        lateness += max(0.0, begin - stay.due)
-        end = begin + stay.service
+        begin = time
+        if opens > time:
+            waiting += opens - time
+            begin = opens
+        until = closes
+        if due < inf:
+            lateness += max(0.0, begin - due)
+            until = min(closes, max(due, begin))
+        if until - begin + waiting < slack:
+            slack = until - begin + waiting
+            tightest = place if until == closes and number + 1 < len(windows) else -1
+        if begin - closes > late:
+            late = begin - closes
+        end = begin + service
         time = end + leg
     if last - end + waiting < slack:
         slack, tightest = last - end + waiting, -1
@@ -126,20 +135,15 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[_
 
     A trip begins when all that it brings is released.
     """
-    released = iter([_released(rules, trip) for trip in trips[1:]])
-    reloads = rules.vehicles[route.vehicle].reload
-    ends = path_of(rules, replace(route, stops=()))
-    inner = [
-        _Stay(((next(released), inf),), 0.0, inf) if stop in reloads else _stay(rules.visits[stop])
-        for stop in route.stops
-    ]
-    starts = 0 if rules.vehicles[route.vehicle].start is None else 1
-    free = [_Stay((ALWAYS,), 0.0, inf)] * len(ends)
-    return [*free[:starts], *inner, *free[starts:]]
-
-
-def _stay(visit: Visit) -> _Stay:
-    return _Stay(visit.windows, visit.service, visit.due)
+    vehicle, visits = rules.vehicles[route.vehicle], rules.visits
+    stays = [_Stay(v.windows, v.service, v.due) for v in map(visits.__getitem__, route.stops)]
+    if len(trips) > 1:
+        released = iter(trips[1:])
+        for place, stop in enumerate(route.stops):
+            if stop in vehicle.reload:
+                stays[place] = _Stay(((_released(rules, next(released)), inf),), 0.0, inf)
+    start, end = ([] if each is None else [_FREE] for each in (vehicle.start, vehicle.end))
+    return [*start, *stays, *end]
 
 
 def _released(rules: Rules, trip: Sequence[int]) -> float:
@@ -148,9 +152,12 @@ def _released(rules: Rules, trip: Sequence[int]) -> float:
 
 def trips_of(rules: Rules, route: Route) -> list[list[int]]:
     """Return the visits of each trip of a route; a trip ends where the vehicle loads again."""
+    reload = rules.vehicles[route.vehicle].reload
+    if not reload:
+        return [list(route.stops)]
     trips: list[list[int]] = [[]]
     for stop in route.stops:
-        if stop in rules.vehicles[route.vehicle].reload:
+        if stop in reload:
             trips.append([])
         else:
             trips[-1].append(stop)

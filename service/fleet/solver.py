@@ -75,7 +75,7 @@ class Solver:
         if step.start is None:
             initial = self._initial(data, local_search, manager)
         else:
-            initial = self._translation.moved(step.start, data)
+            initial = self._translation.moved(step.start, goal)
         self._offer(initial, goal)
         watcher = _Watcher(self._offer, self._stop, goal, step.iterations)
         small = len(self._translation.fleet.rules.clients) <= _FEW

@@ -115,6 +115,8 @@ class Translation:
         rules = self.fleet.rules
         pairs = ((rules.visits[s.pickup], rules.visits[s.delivery]) for s in rules.shipments)
         too_late = any(later.windows[0][1] < earlier.windows[0][0] for earlier, later in pairs)
+        # PyVRP refuses a window that closes before its load is released.
+        too_late |= any(visit.release > visit.windows[0][1] for visit in rules.visits)
         changed = self.fleet.forbids or self.squeezed.changed
         trips = any(vehicle.reload for vehicle in rules.vehicles)
         several = any(len(visit.windows) > 1 for visit in rules.visits)
@@ -123,11 +125,15 @@ class Translation:
 
     def plan(self, solution: pyvrp.Solution) -> Plan:
         """Return the plan of a solution."""
+        reloads = any(vehicle.reload for vehicle in self.fleet.rules.vehicles)
+        stops_of = self._without_empty_trips if reloads else self._visited
         routes = (
-            Route(route.vehicle_type(), self._without_empty_trips(_visits(route)))
-            for route in solution.routes()
+            Route(route.vehicle_type(), stops_of(_visits(route))) for route in solution.routes()
         )
         return Plan(tuple(route for route in routes if route.stops))
+
+    def _visited(self, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
+        return tuple(self._stops[each] for each in activities)
 
     def _without_empty_trips(self, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
         """Return the stops of a route, without loading again before nothing is brought."""
@@ -140,10 +146,20 @@ class Translation:
             stops.append(self._depots[activity.idx] if loaded else self._stops[activity])
         return tuple(stops[:-1] if loaded and stops else stops)
 
-    def moved(self, solution: pyvrp.Solution, data: pyvrp.ProblemData) -> pyvrp.Solution:
-        """Return a solution of other data of this fleet as a solution of these data."""
-        routes = [pyvrp.Route(data, _visits(r), r.vehicle_type()) for r in solution.routes()]
-        return pyvrp.Solution(data, routes)
+    def moved(self, solution: pyvrp.Solution, goal: Goal) -> pyvrp.Solution:
+        """Return a solution that was found under another goal as one of the data for this goal.
+
+        If it uses too many vehicles, it loses the routes with the fewest visits.
+        """
+        data, routes = self.data(goal), solution.routes()
+        if goal.vehicles is not None:
+            routes = [
+                route
+                for vehicle, most in enumerate(goal.vehicles)
+                for route in _longest([r for r in routes if r.vehicle_type() == vehicle], most)
+            ]
+        moved = [pyvrp.Route(data, _visits(route), route.vehicle_type()) for route in routes]
+        return pyvrp.Solution(data, moved)
 
     def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
         """Return a plan as a solution of data that `data` returned."""
@@ -163,6 +179,15 @@ class Translation:
     def lost(self, plan: Plan) -> float:
         """Return the prizes of the stops that a plan leaves out, squeezed."""
         return float(self.squeezed.prizes[unassigned(self.fleet.rules, plan)].sum())
+
+    def uncollected(self, solution: pyvrp.Solution, goal: Goal) -> int:
+        """Return the prizes that a solution leaves out, multiplied by their weight.
+
+        For a stop with several windows PyVRP also counts those that were not chosen.
+        """
+        unused = [len(visit.windows) - 1 for visit in self.fleet.rules.visits]
+        counted = sum(self._prize(stop, goal) * times for stop, times in enumerate(unused) if times)
+        return solution.uncollected_prizes() - counted
 
     def data(self, goal: Goal) -> pyvrp.ProblemData:
         """Return PyVRP's data for a goal."""
@@ -319,6 +344,7 @@ class Translation:
         visit = self.fleet.rules.visits[stop]
         opens, closes = visit.windows[number]
         early, late = self._early(opens), self._late(min(closes, visit.due + goal.lateness))
+        least_late = max(least_late, self._early(visit.release))
         service = int(round_up(visit.service * self._time_scale))
         return early, max(early, late, least_late), service
 
@@ -341,6 +367,11 @@ class Translation:
 def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
     """Return the visits of a route, and where it loads again, but not its start and its end."""
     return list(route.schedule()[1:-1])
+
+
+def _longest(routes: list[pyvrp.Route], most: int) -> list[pyvrp.Route]:
+    """Return the routes with the most visits."""
+    return sorted(routes, key=len, reverse=True)[:most]
 
 
 def _most_reloads(vehicle: VehicleType) -> int:

@@ -11,6 +11,7 @@ from pydantic_core import to_json
 from service.errors import NoTour
 from service.fleet.evaluation import route_lengths, unassigned
 from service.fleet.fleet import Fleet
+from service.fleet.measures import measures
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.fleet.schedule import schedule
@@ -112,17 +113,21 @@ def _encode_plan(
 ) -> bytes:
     routes = [_route(fleet, route, vehicles, ids) for route in plan.routes]
     left_out = [ids[stop] for stop in unassigned(fleet.rules, plan)]
-    return to_json({**members, "routes": routes, "unassigned": left_out})
+    measured = measures(fleet, plan)
+    return to_json({**members, "measures": measured, "routes": routes, "unassigned": left_out})
 
 
 def _route(
     fleet: Fleet, route: Route, vehicles: Sequence[str], ids: Sequence[str]
 ) -> dict[str, Any]:
-    members = {
+    members: dict[str, Any] = {
         "vehicle": vehicles[route.vehicle],
         "stops": [ids[stop] for stop in path_of(fleet.rules, route)],
         "lengths": list(route_lengths(fleet, route)),
     }
+    shifts = [index for index, name in enumerate(vehicles) if name == vehicles[route.vehicle]]
+    if len(shifts) > 1:
+        members["shift"] = shifts.index(route.vehicle)
     if fleet.rules.clock is not None:
         members["arrivals"] = list(schedule(fleet, route).arrivals)
     return members

@@ -24,7 +24,7 @@ Schema = dict[str, Any]
 JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
 FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
 _CITIES = (*FORMS, "objectives")
-_SOURCES = ("matrix", "coordinates", "from")
+_SOURCES = ("matrix", "coordinates", "from", "measure")
 # A speed is an option of one measure.
 _OF_A_SPEED: Schema = {"speed": {"properties": {"from": {"const": "great_circle"}}}}
 _SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
@@ -36,7 +36,13 @@ _OBJECTIVES: _Described = {
     "MeasuredObjective": ("An objective that is measured between locations.", ["from"]),
 }
 _FLEET_OBJECTIVES: _Described = {
-    f"Fleet{name}": described for name, described in _OBJECTIVES.items()
+    **{f"Fleet{name}": described for name, described in _OBJECTIVES.items()},
+    "PlanMeasureObjective": ("An objective that is another measure of plans.", ["measure"]),
+}
+_CLOCKS: _Described = {
+    "MatrixClock": ("Travel times that are a matrix.", ["matrix"]),
+    "PlaneClock": ("Travel times that are distances in a plane.", ["coordinates"]),
+    "MeasuredClock": ("Travel times that are measured between locations.", ["from"]),
 }
 _IN_A_FILE: _Described = {
     "NamedObjective": ("An objective whose costs are a matrix in a file.", [])
@@ -91,9 +97,13 @@ def fleet_schemas(limits: Limits) -> dict[str, Schema]:
     fields = whole["properties"]
     fields["stops"]["maxItems"] = fields["shipments"]["maxItems"] = limits.fleet_stops
     fields["objectives"]["items"] = one_of(_FLEET_OBJECTIVES)
+    named = fields["clock"]["anyOf"][0]["oneOf"][0]
+    description = fields["clock"]["description"]
+    fields["clock"] = {"anyOf": [named, one_of(_CLOCKS)], "description": description}
     items = [parts[name] for name in ("FleetStopItem", "ShipmentItem", "VehicleItem")]
     objectives = _objectives(parts["FleetObjectiveItem"], limits, _FLEET_OBJECTIVES)
-    return _by_title(*map(_without_null, (*items, whole)), *objectives)
+    clocks = _objectives(parts["ClockItem"], limits, _CLOCKS)
+    return _by_title(*map(_without_null, (*items, whole)), *objectives, *clocks)
 
 
 def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
@@ -268,10 +278,15 @@ def _objectives(schema: Schema, limits: Limits, kinds: _Described) -> list[Schem
         known = [measure for measure in measures if measure not in ROAD_MEASURES]
         schema = _with(schema, **{"from": {**schema["properties"]["from"], "enum": known}})
     measured = {**schema, "dependentSchemas": _OF_A_SPEED}
+    others = {"from": _SOURCES, "measure": (*_SOURCES, "speed", "over")}
     return [
-        _variant(measured, name, description, _SOURCES, source)
-        if "from" in source
-        else _variant(schema, name, description, (*_SOURCES, "speed"), source)
+        _variant(
+            measured if "from" in source else schema,
+            name,
+            description,
+            others.get("".join(source), (*_SOURCES, "speed")),
+            source,
+        )
         for name, (description, source) in kinds.items()
     ]
 

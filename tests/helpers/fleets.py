@@ -104,6 +104,7 @@ def bounded_fleet(seed: int) -> Fleet:
 
     def vehicle() -> VehicleType:
         begin, capacity = whole(0, 10), whole(5, 13)
+        reload = ((0,), (n + 1,), (0, n + 1))[whole(0, 3)] if likely(0.5) else ()
         return VehicleType(
             start=0,
             end=[0, n + 1, None][whole(0, 3)],
@@ -112,8 +113,8 @@ def bounded_fleet(seed: int) -> Fleet:
             longest=float(whole(40, 90)) if likely(0.2) else inf,
             fixed=float(whole(0, 10)),
             skills=("cold", "lift") if likely(0.7) else (),
-            max_stops=whole(1, 4) if likely(0.3) else None,
-            reload=((0,), (n + 1,), (0, n + 1))[whole(0, 3)] if likely(0.5) else (),
+            max_stops=None if reload or likely(0.6) else whole(1, 4),
+            reload=reload,
             initial_load=(whole(0, capacity),) if likely(0.2) else (),
             max_overtime=float(whole(1, 30)) if measure == "overtime" or likely(0.2) else 0.0,
         )

@@ -172,6 +172,10 @@ def test_schemas_have_names_and_limits() -> None:
         "FleetMatrixObjective",
         "FleetPlaneObjective",
         "FleetMeasuredObjective",
+        "PlanMeasureObjective",
+        "MatrixClock",
+        "PlaneClock",
+        "MeasuredClock",
         "FleetRequest",
     }
     fields = schemas["FleetRequest"]["properties"]

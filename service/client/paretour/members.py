@@ -60,6 +60,21 @@ ObjectiveRequest = TypedDict(
 )
 
 
+# Travel times that are no objective, by their source.
+ClockRequest = TypedDict(
+    "ClockRequest",
+    {
+        "name": str,
+        "unit": str | None,
+        "matrix": Costs,
+        "coordinates": ArrayLike,
+        "from": str,
+        "speed": float | None,
+    },
+    total=False,
+)
+
+
 class FrontRequest(PlanRequest, total=False):
     """The members of a request to POST /front: coordinates, matrices, or stops with objectives.
 
@@ -82,7 +97,12 @@ class FleetStopRequest(StopRequest, total=False):
     demand: Sequence[int]
     service: float
     window: ArrayLike | None
+    windows: Sequence[ArrayLike]
     prize: float | None
+    due: float | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
 
 
 class ShipmentRequest(TypedDict):
@@ -101,14 +121,22 @@ class VehicleRequest(TypedDict, total=False):
     end: int | str | None
     capacity: Sequence[int]
     shift: ArrayLike | None
+    shifts: Sequence[ArrayLike]
+    max_overtime: float
     longest: float | None
     fixed: float
+    skills: Sequence[str]
+    max_stops: int | None
+    reload: Sequence[int | str]
+    max_trips: int | None
+    initial_load: Sequence[int]
 
 
 class FleetObjectiveRequest(ObjectiveRequest, total=False):
-    """An objective, and whether it is the sum over all routes or the longest route."""
+    """An objective: costs, of which the sum or the longest route counts; or another measure."""
 
     over: Literal["sum", "max"]
+    measure: Literal["vehicles", "unassigned", "overtime", "lateness"]
 
 
 class FleetRequest(TypedDict, total=False):
@@ -118,7 +146,7 @@ class FleetRequest(TypedDict, total=False):
     vehicles: Required[Sequence[VehicleRequest]]
     objectives: Required[Sequence[FleetObjectiveRequest]]
     shipments: Sequence[ShipmentRequest]
-    clock: str | None
+    clock: str | ClockRequest | None
     time_limit: float
     size: int
     reference_point: ArrayLike

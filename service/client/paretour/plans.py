@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.expect import Read, each, floats, indexes, members, number, text
+from paretour.expect import Read, count, each, floats, indexes, members, number, text
 from paretour.values import (
     PAIR,
     Array,
@@ -31,13 +31,15 @@ class FleetRoute:
         stops: The ids of its stops in order, with its start and end if these are stops.
         lengths: Its lengths, shape (2,).
         arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
-            (len(stops),). None if no objective is time.
+            (len(stops),). None without a clock.
+        shift: The number of its shift, if its vehicle has several.
     """
 
     vehicle: str
     stops: tuple[str, ...]
     lengths: Array
     arrivals: Array | None
+    shift: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,10 +74,18 @@ class _Plan:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FleetPlan(_Plan):
-    """A plan for the vehicles of a fleet; `unassigned` are the ids of the stops it leaves out."""
+    """A plan for the vehicles of a fleet.
+
+    Attributes:
+        routes: The routes of the vehicles that leave.
+        unassigned: The ids of the stops that it leaves out.
+        measures: What plans are compared by, as far as the request allows: vehicles, driving,
+            service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned.
+    """
 
     routes: tuple[FleetRoute, ...]
     unassigned: tuple[str, ...]
+    measures: Mapping[str, float]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -145,6 +155,7 @@ def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
         lengths=plan.read("lengths", floats(PAIR)),
         routes=plan.read("routes", each(_parse_fleet_route)),
         unassigned=plan.read("unassigned", each(text)),
+        measures=plan.maybe("measures", _measures) or {},
     )
 
 
@@ -156,7 +167,13 @@ def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
         stops=stops,
         lengths=route.read("lengths", floats(PAIR)),
         arrivals=route.maybe("arrivals", floats(len(stops))),
+        shift=route.maybe("shift", count),
     )
+
+
+def _measures(value: Any, where: str) -> dict[str, float]:
+    found = members(value, where)
+    return {name: found.read(name, number) for name in found.document}
 
 
 def _parse_robot_plan(value: Any, where: str, route: Read[RobotRoute]) -> RobotPlan:
