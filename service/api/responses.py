@@ -19,7 +19,7 @@ from starlette.responses import Response
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
 from service.files.reading import Kind
-from service.fleet.rules import Measure, Over
+from service.fleet.rules import Measure, Over, Rule
 from service.front import Termination
 from service.jobs.record import Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
@@ -225,6 +225,30 @@ class RouteItem(BaseModel):
     )
 
 
+class ReasonItem(BaseModel):
+    """What keeps the vehicles of a type from a stop."""
+
+    vehicle: str = Field(description="the id of the type")
+    rule: Rule
+    detail: str = Field(description="what a vehicle would do that the rule forbids")
+
+
+class LeftOutItem(BaseModel):
+    """How a stop can be served that a plan leaves out, or why not."""
+
+    stop: str
+    plan: int | SkipJsonSchema[None] = Field(
+        default=None, description="the number of the plan of this front that serves it"
+    )
+    price: list[float] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="what both lengths grow by in that plan, or if the stop is inserted here",
+    )
+    reasons: list[ReasonItem] | SkipJsonSchema[None] = Field(
+        default=None, description="if no vehicle can serve it: for each type the rule that forbids"
+    )
+
+
 class PlanItem(BaseModel):
     """A plan of a fleet and where it stands."""
 
@@ -236,6 +260,9 @@ class PlanItem(BaseModel):
     )
     routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
     unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")
+    left_out: list[LeftOutItem] | SkipJsonSchema[None] = Field(
+        default=None, description="for each of these, once the search has ended"
+    )
 
 
 class FleetObjectiveName(ObjectiveName):

@@ -7,12 +7,13 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import accumulate
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import Rules
+from service.fleet.rules import Rule, Rules
 from service.fleet.schedule import Schedule, legs, schedule, trips_of
 from service.objectives import OBJECTIVES
 
@@ -71,7 +72,11 @@ def violations(fleet: Fleet, plan: Plan) -> list[str]:
         *_visits_broken(fleet.rules, plan),
         *_counts_broken(fleet.rules, plan),
         *_shipments_broken(fleet.rules, plan),
-        *(broken for route in plan.routes for broken in route_violations(fleet, route)),
+        *(
+            f"a vehicle of type {route.vehicle} {broken.detail}"
+            for route in plan.routes
+            for broken in route_violations(fleet, route)
+        ),
     ]
 
 
@@ -101,11 +106,10 @@ def overtime(rules: Rules, route: Route, times: Schedule) -> float:
 
 
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
-    visits = Counter(plan.visited())
-    reloads = {stop for route in plan.routes for stop in rules.vehicles[route.vehicle].reload}
+    visits = Counter(
+        stop for route in plan.routes for trip in trips_of(rules, route) for stop in trip
+    )
     for stop, times in visits.items():
-        if stop in reloads:
-            continue
         if stop not in rules.clients:
             yield f"stop {stop} is not a stop to visit"
         elif times > 1:
@@ -137,12 +141,19 @@ def _shipments_broken(rules: Rules, plan: Plan) -> Iterator[str]:
             yield f"the load for {each.delivery} was not picked up at {each.pickup} before"
 
 
-def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
-    """Yield a sentence for each rule that a route breaks by itself."""
+class Broken(NamedTuple):
+    """A rule that a vehicle breaks on its route, and what it does, as "holds 4 of 3"."""
+
+    rule: Rule
+    detail: str
+
+
+def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:
+    """Yield each rule that a route breaks by itself."""
     rules = fleet.rules
     vehicle = rules.vehicles[route.vehicle]
     if fleet.forbids and inf in legs(fleet, route, 0):
-        yield f"a vehicle of type {route.vehicle} takes a forbidden leg"
+        yield Broken("way", "takes a forbidden leg")
         return
     yield from _service_broken(rules, route)
     yield from _trips_broken(rules, route)
@@ -150,42 +161,43 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
         times = schedule(fleet, route)
         rounding = 2 * _ROUNDING * len(times.arrivals) * times.end
         if times.late > _TOLERANCE * times.duration + rounding:
-            yield f"a vehicle of type {route.vehicle} is late by {times.late:g}"
+            over = times.end - vehicle.way[1] >= times.late
+            yield Broken("shift" if over else "window", f"is late by {times.late:g}")
     if vehicle.longest != inf:
         assert rules.limited is not None
-        if (length := cost_length(fleet, route, rules.limited)) * (
-            1 - _TOLERANCE
-        ) > vehicle.longest:
-            yield f"a route of length {length:g} is longer than {vehicle.longest:g}"
+        length = cost_length(fleet, route, rules.limited)
+        if length * (1 - _TOLERANCE) > vehicle.longest:
+            detail = f"has a route of {length:g}, longer than {vehicle.longest:g}"
+            yield Broken("longest", detail)
 
 
-def _service_broken(rules: Rules, route: Route) -> Iterator[str]:
-    """Yield a sentence for each stop that the vehicle may not visit, and if there are too many."""
+def _service_broken(rules: Rules, route: Route) -> Iterator[Broken]:
+    """Yield the rules about which stops a vehicle may visit, and how many."""
     vehicle = rules.vehicles[route.vehicle]
     visited = [stop for trip in trips_of(rules, route) for stop in trip]
     for stop in visited:
         visit = rules.visits[stop]
         if missing := set(visit.skills) - set(vehicle.skills):
-            yield f"a vehicle of type {route.vehicle} visits stop {stop} without {min(missing)}"
+            yield Broken("skills", f"lacks the skill {min(missing)}")
         if visit.vehicles and route.vehicle not in visit.vehicles:
-            yield f"a vehicle of type {route.vehicle} visits stop {stop}, which is for others"
+            yield Broken("vehicle", "is not the one that the stop names")
     if vehicle.max_stops is not None and len(visited) > vehicle.max_stops:
-        yield f"a route has {len(visited)} stops, and may have {vehicle.max_stops}"
+        yield Broken("max_stops", f"has {len(visited)} stops, and may have {vehicle.max_stops}")
 
 
-def _trips_broken(rules: Rules, route: Route) -> Iterator[str]:
-    """Yield a sentence for each rule about trips and loads that a route breaks."""
+def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:
+    """Yield the rules about trips and loads that a route breaks."""
     vehicle, trips = rules.vehicles[route.vehicle], trips_of(rules, route)
     if len(trips) > 1 and not all(trips):
-        yield f"a trip of a vehicle of type {route.vehicle} visits no stop"
+        yield Broken("max_trips", "has a trip without a stop")
     if vehicle.max_trips is not None and len(trips) > vehicle.max_trips:
-        yield f"a route has {len(trips)} trips, and may have {vehicle.max_trips}"
+        yield Broken("max_trips", f"has {len(trips)} trips, and may have {vehicle.max_trips}")
     for dimension, capacity in enumerate(vehicle.capacity):
         for number, trip in enumerate(trips):
             first = vehicle.initial_load and number == 0
             on_board = vehicle.initial_load[dimension] if first else 0
             if (most := on_board + max(_loads(rules, trip, dimension))) > capacity:
-                yield f"a vehicle of type {route.vehicle} holds {most} of {capacity}"
+                yield Broken("capacity", f"holds {most} of {capacity}")
 
 
 def _loads(rules: Rules, trip: Sequence[int], dimension: int) -> Iterator[int]:

@@ -303,7 +303,8 @@ class _Search:
         The iteration is assumed to be as long as the longest recent one.
         """
         found = len(self.archive)
-        checked = min(found, self._options.size) * self._fleet.rules.n
+        left_out = min((each.num_missing_clients() for each in self.archive.solutions), default=0)
+        checked = (min(found, self._options.size) + left_out) * self._fleet.rules.n
         selected = selection_seconds(self._options.size, found)
         return self._pause + _CHECKING * checked + selected
 

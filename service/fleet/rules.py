@@ -15,6 +15,10 @@ Over = Literal["sum", "max"]
 Measure = Literal["vehicles", "unassigned", "overtime", "lateness"]
 MEASURES: tuple[Measure, ...] = get_args(Measure)
 Span = tuple[float, float]
+# The rules that a route can break by itself.
+Rule = Literal[
+    "skills", "vehicle", "way", "capacity", "max_stops", "max_trips", "window", "shift", "longest"
+]
 ALWAYS: Span = (0.0, inf)
 _UNSUMMED = "is added to the first objective, so that must be over sum, got max"
 _UNTIMED = "needs the name of the objective that is time, in clock"

@@ -4,13 +4,14 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic_core import to_json
 
 from service.errors import NoTour
 from service.fleet.evaluation import route_lengths, unassigned
 from service.fleet.fleet import Fleet
+from service.fleet.left_out import Serving, explain
 from service.fleet.measures import measures
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, path_of
@@ -23,6 +24,13 @@ from service.requests.limits import check_reference_point
 from service.requests.task import Task, UnmeasuredFleet
 
 
+class Names(NamedTuple):
+    """The ids of types of vehicles and of stops."""
+
+    vehicles: Sequence[str]
+    stops: Sequence[str]
+
+
 def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
     """Return the front of plans of a task; see `Run`."""
     subject, actor = task.subject, tools.actors.get(task.actor)
@@ -32,9 +40,15 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
     ids = [stop.id for stop in task.labels.stops]
 
     def encoded(front: FleetFront) -> FrontDocument:
+        # While the search runs, plans come without reasons for what they leave out.
+        ended = front.terminated is not None
+        servings = iter(explain(front.fleet, front.plans, front.points) if ended else ())
+        names = Names(subject.vehicles, ids)
         return document_of_plans(
             front,
-            lambda plan, members: _encode_plan(front.fleet, plan, members, subject.vehicles, ids),
+            lambda plan, members: _encode_plan(
+                front.fleet, plan, members, names, next(servings, [])
+            ),
             actor,
             kind="fleet",
             cities=subject.n,
@@ -108,18 +122,36 @@ def _encode_plan(
     fleet: Fleet,
     plan: Plan,
     members: dict[str, Any],
-    vehicles: Sequence[str],
-    ids: Sequence[str],
+    names: Names,
+    servings: Sequence[Serving],
 ) -> bytes:
-    routes = [_route(fleet, route, vehicles, ids) for route in plan.routes]
-    left_out = [ids[stop] for stop in unassigned(fleet.rules, plan)]
-    measured = measures(fleet, plan)
-    return to_json({**members, "measures": measured, "routes": routes, "unassigned": left_out})
+    content = {
+        **members,
+        "measures": measures(fleet, plan),
+        "routes": [_route(fleet, route, names) for route in plan.routes],
+        "unassigned": [names.stops[stop] for stop in unassigned(fleet.rules, plan)],
+    }
+    if servings:
+        content["left_out"] = [_serving(each, names) for each in servings]
+    return to_json(content)
 
 
-def _route(
-    fleet: Fleet, route: Route, vehicles: Sequence[str], ids: Sequence[str]
-) -> dict[str, Any]:
+def _serving(serving: Serving, names: Names) -> dict[str, Any]:
+    """Return how a stop can be served that is left out, or why not."""
+    members: dict[str, Any] = {"stop": names.stops[serving.stop]}
+    if serving.plan is not None:
+        members["plan"] = serving.plan
+    if serving.price is not None:
+        return {**members, "price": list(serving.price)}
+    reasons = [
+        {"vehicle": names.vehicles[vehicle], "rule": broken.rule, "detail": broken.detail}
+        for vehicle, broken in serving.reasons
+    ]
+    return {**members, "reasons": reasons}
+
+
+def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
+    vehicles, ids = names
     members: dict[str, Any] = {
         "vehicle": vehicles[route.vehicle],
         "stops": [ids[stop] for stop in path_of(fleet.rules, route)],

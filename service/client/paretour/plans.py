@@ -72,6 +72,33 @@ class _Plan:
     lengths: Array
 
 
+@dataclass(frozen=True, kw_only=True)
+class Reason:
+    """The rule that keeps the vehicles of a type from a stop, and what one would do."""
+
+    vehicle: str
+    rule: str
+    detail: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LeftOut:
+    """A stop that a plan leaves out.
+
+    Attributes:
+        stop: Its id.
+        plan: The number of the plan of the front that serves it at the least price, if one does.
+        price: What both lengths grow by there, or if the stop is inserted here, shape (2,). None if
+            no vehicle can serve it.
+        reasons: If none can, a reason for each type of vehicles.
+    """
+
+    stop: str
+    plan: int | None
+    price: Array | None
+    reasons: tuple[Reason, ...]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FleetPlan(_Plan):
     """A plan for the vehicles of a fleet.
@@ -81,11 +108,13 @@ class FleetPlan(_Plan):
         unassigned: The ids of the stops that it leaves out.
         measures: What plans are compared by, as far as the request allows: vehicles, driving,
             service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned.
+        left_out: For each stop that it leaves out, what it would cost to serve it, or why none can.
     """
 
     routes: tuple[FleetRoute, ...]
     unassigned: tuple[str, ...]
     measures: Mapping[str, float]
+    left_out: tuple[LeftOut, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -156,6 +185,7 @@ def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
         routes=plan.read("routes", each(_parse_fleet_route)),
         unassigned=plan.read("unassigned", each(text)),
         measures=plan.maybe("measures", _measures) or {},
+        left_out=plan.maybe("left_out", each(_parse_left_out)) or (),
     )
 
 
@@ -169,6 +199,21 @@ def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
         arrivals=route.maybe("arrivals", floats(len(stops))),
         shift=route.maybe("shift", count),
     )
+
+
+def _parse_left_out(value: Any, where: str) -> LeftOut:
+    left_out = members(value, where)
+    return LeftOut(
+        stop=left_out.read("stop", text),
+        plan=left_out.maybe("plan", count),
+        price=left_out.maybe("price", floats(PAIR)),
+        reasons=left_out.maybe("reasons", each(_parse_reason)) or (),
+    )
+
+
+def _parse_reason(value: Any, where: str) -> Reason:
+    reason = members(value, where)
+    return Reason(**{name: reason.read(name, text) for name in ("vehicle", "rule", "detail")})
 
 
 def _measures(value: Any, where: str) -> dict[str, float]:

@@ -1,0 +1,124 @@
+"""Why plans leave stops out: the price of serving each, or what keeps each vehicle from it."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, get_args
+
+import numpy as np
+
+from service.fleet.evaluation import (
+    Broken,
+    plan_lengths,
+    route_violations,
+    unassigned,
+)
+from service.fleet.fleet import Array, Fleet
+from service.fleet.plans import Plan, Route
+from service.fleet.rules import Rule
+
+_RULES: tuple[Rule, ...] = get_args(Rule)  # from those that never change to those that may
+_SAME_EVERYWHERE = ("skills", "vehicle", "capacity", "max_stops")  # wherever the stop is inserted
+
+
+class Reason(NamedTuple):
+    """The rule that keeps all vehicles of a type from a stop where it would break the fewest."""
+
+    vehicle: int
+    broken: Broken
+
+
+class Serving(NamedTuple):
+    """How a stop that a plan leaves out can be served, or why not.
+
+    Attributes:
+        stop: The stop.
+        plan: The number of the plan of the front that serves it, and is the least longer; None if
+            no plan does.
+        price: What the lengths grow by, in that plan or with the stop inserted where it costs the
+            least. None if it cannot be inserted.
+        reasons: If it cannot, a reason for each type of vehicles.
+    """
+
+    stop: int
+    plan: int | None
+    price: tuple[float, float] | None
+    reasons: tuple[Reason, ...] = ()
+
+
+def explain(fleet: Fleet, plans: Sequence[Plan], points: Array) -> list[list[Serving]]:
+    """Return for each plan of a front how the stops that it leaves out can be served, in order.
+
+    A stop that no plan serves is inserted into the plan that leaves out the fewest.
+
+    Args:
+        fleet: The fleet.
+        plans: The m plans.
+        points: Their lengths, shape (m, 2).
+    """
+    left_out = [unassigned(fleet.rules, plan) for plan in plans]
+    if not any(left_out):
+        return [[] for _ in plans]
+    fullest = min(range(len(plans)), key=lambda index: len(left_out[index]))
+    served_by_none = set.intersection(*map(set, left_out))
+    inserted = {stop: _inserted(fleet, plans[fullest], stop) for stop in served_by_none}
+    outside = [set(stops) for stops in left_out]
+    return [
+        [
+            inserted[stop]
+            if stop in inserted
+            else _served_elsewhere(fleet, stop, index, outside, points)
+            for stop in stops
+        ]
+        for index, stops in enumerate(left_out)
+    ]
+
+
+def _served_elsewhere(
+    fleet: Fleet, stop: int, index: int, left_out: Sequence[set[int]], points: Array
+) -> Serving:
+    """Return the plan that serves a stop and is the least longer than one that leaves it out."""
+    serving = [other for other, stops in enumerate(left_out) if stop not in stops]
+    grown = points[serving] - points[index]
+    best = int((grown.clip(min=0.0) / fleet.scale).sum(axis=1).argmin())
+    return Serving(stop, serving[best], (float(grown[best, 0]), float(grown[best, 1])))
+
+
+def _inserted(fleet: Fleet, plan: Plan, stop: int) -> Serving:
+    """Return the cheapest insertion of a stop into a plan, or what forbids each."""
+    before, prices = np.array(plan_lengths(fleet, plan)), []
+    reasons: dict[int, Broken] = {}
+    for number, route in _routes(fleet, plan):
+        for extended in _extensions(fleet, route, stop):
+            broken = next(route_violations(fleet, extended), None)
+            if broken is None:
+                routes = [*plan.routes[:number], extended, *plan.routes[number + 1 :]]
+                prices.append(np.array(plan_lengths(fleet, Plan(tuple(routes)))) - before)
+                continue
+            known = reasons.setdefault(route.vehicle, broken)
+            if _RULES.index(broken.rule) > _RULES.index(known.rule):
+                reasons[route.vehicle] = broken
+            if broken.rule in _SAME_EVERYWHERE:
+                break
+    if not prices:
+        return Serving(stop, None, None, tuple(Reason(*each) for each in sorted(reasons.items())))
+    least = prices[int((np.array(prices) / fleet.scale).sum(axis=1).argmin())]
+    return Serving(stop, None, (float(least[0]), float(least[1])))
+
+
+def _routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:
+    """Yield the routes of a plan with their numbers, and one for each type with a vehicle left."""
+    yield from enumerate(plan.routes)
+    used = [route.vehicle for route in plan.routes]
+    for index, vehicle in enumerate(fleet.rules.vehicles):
+        if used.count(index) < vehicle.count:
+            yield len(plan.routes), Route(index, ())
+
+
+def _extensions(fleet: Fleet, route: Route, stop: int) -> Iterator[Route]:
+    """Yield the routes with a stop inserted; of a shipment both, the pick-up before the delivery.
+
+    The stops of a shipment follow each other.
+    """
+    shipped = [each for each in fleet.rules.shipments if stop in (each.pickup, each.delivery)]
+    added = (shipped[0].pickup, shipped[0].delivery) if shipped else (stop,)
+    for place in range(len(route.stops) + 1):
+        yield Route(route.vehicle, (*route.stops[:place], *added, *route.stops[place:]))
