@@ -142,12 +142,15 @@ class PlanRoutes:
         return await self._plan(request, "fleet")
 
     async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
-        """Plan the rest of a tour that is being driven, after something has changed.
+        """Plan the rest of a tour or of a fleet's plan that is driven, after something has changed.
 
         Stops were done, added or removed, the vehicle is elsewhere, or costs or the map changed.
         The answer is a front of open routes from the position through the remaining stops to the
         old end; for a closed tour, back to its start. Each tour has `kept`, the share of the
         driven tour's remaining legs that it keeps. The earlier front stays as it is.
+
+        Of a fleet, the answer is a front of plans from now on: vehicles on their way go on from
+        where they are with what they carry, others have not left.
 
         Headers work as in `POST /front`. The answer is a new front, which can be replanned too.
         """

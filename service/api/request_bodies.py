@@ -15,6 +15,7 @@ from service.requests.json_schemas import (
     front_schemas,
     one_of,
     reference_to,
+    replan_fleet_schemas,
     replan_schemas,
 )
 from service.requests.limits import Limits
@@ -31,6 +32,7 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         **front_schemas(limits, names),
         **coverage_schemas(limits, names),
         **replan_schemas(limits, names),
+        **replan_fleet_schemas(limits),
         **fleet_schemas(limits),
         "FrontForm": _form_schema(one_of(FILE_FORMS), "matrices", file),
         "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
@@ -59,6 +61,6 @@ def _form_schema(request: Schema, file: str, description: str) -> Schema:
 
 _JSON = "application/json"
 FRONT_BODY = _body(one_of(JSON_FORMS), "FrontForm")
-REPLAN_BODY = _body(reference_to("ReplanRequest"))
+REPLAN_BODY = _body({"anyOf": [reference_to("ReplanRequest"), reference_to("ReplanFleetRequest")]})
 COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")
 FLEET_BODY = _body(reference_to("FleetRequest"))

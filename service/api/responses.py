@@ -218,6 +218,10 @@ class RouteItem(BaseModel):
     shift: int | SkipJsonSchema[None] = Field(
         default=None, description="the number of its shift, if its vehicle has several"
     )
+    route: int | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of a vehicle on its way: the number of its route in the plan that is driven",
+    )
     arrivals: list[float] | SkipJsonSchema[None] = Field(
         default=None,
         description="if there is a clock: when it reaches each stop. At the first stop: when it"
@@ -254,6 +258,11 @@ class PlanItem(BaseModel):
 
     balance: Balance
     lengths: Lengths
+    kept: float | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of a replanned fleet: the share of the stops left that the same vehicles visit"
+        " after the same stops as in the plan that is driven",
+    )
     measures: dict[str, float] = Field(
         description="what plans are compared by, as far as the request allows: vehicles, driving,"
         " service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned"

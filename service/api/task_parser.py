@@ -18,10 +18,10 @@ from service.files.reading import NamedFile
 from service.files.upload import read_upload
 from service.requests.limits import Limits, check_structure
 from service.requests.parser import parse_task
-from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.parser import check_replan as check_replan_body
 from service.requests.task import Task, TaskSource
-from service.requests.validation import check_depth, parse_json
+from service.requests.validation import check_depth
 
 _SHORT = 2**17  # bytes that this process parses, in a few milliseconds
 _FEW_QUOTES = 2000  # as 300 stops have, whose faults take a few milliseconds to describe
@@ -91,7 +91,7 @@ class TaskParser:
         """Raise a refusal if a short body is not a request to replan; others are parsed later."""
         if len(body) <= _SHORT and body.count(b'"') <= _FEW_QUOTES:
             check_structure(body, self._limits)
-            parse_json(ReplanRequest, body)
+            check_replan_body(body)
         else:
             self._check(body)
 

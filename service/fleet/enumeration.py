@@ -82,9 +82,9 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
 def _trips(rules: Rules, vehicle: int, stops: tuple[int, ...]) -> Iterator[Route]:
     """Yield the routes of a vehicle that visit these stops in order, with any stops to reload."""
     reloads = [(), *((stop,) for stop in rules.vehicles[vehicle].reload)]
-    for between in product(reloads, repeat=len(stops) - 1):
-        trips = zip(stops, (*between, ()), strict=True)
-        yield Route(vehicle, tuple(each for stop, reload in trips for each in (stop, *reload)))
+    for before in product(reloads, repeat=len(stops)):
+        trips = zip(before, stops, strict=True)
+        yield Route(vehicle, tuple(each for reload, stop in trips for each in (*reload, stop)))
 
 
 def _ships_in_order(rules: Rules, stops: tuple[int, ...]) -> bool:

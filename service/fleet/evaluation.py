@@ -188,8 +188,8 @@ def _service_broken(rules: Rules, route: Route) -> Iterator[Broken]:
 def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:
     """Yield the rules about trips and loads that a route breaks."""
     vehicle, trips = rules.vehicles[route.vehicle], trips_of(rules, route)
-    if len(trips) > 1 and not all(trips):
-        yield Broken("max_trips", "has a trip without a stop")
+    if not all(trips[1:]):
+        yield Broken("max_trips", "loads again and brings nothing")
     if vehicle.max_trips is not None and len(trips) > vehicle.max_trips:
         yield Broken("max_trips", f"has {len(trips)} trips, and may have {vehicle.max_trips}")
     for dimension, capacity in enumerate(vehicle.capacity):

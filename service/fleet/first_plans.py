@@ -229,10 +229,9 @@ def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
     if fleet.rules.clock is None:
         return arrays
     begin = Horizon.of(fleet.rules, float(fleet.largest_legs[fleet.rules.clock])).begin
-    window, shift, release = (
-        np.maximum(0.0, times - begin) for times in (arrays.window, arrays.shift, arrays.release)
-    )
-    return arrays._replace(window=window, shift=shift, release=release)
+    names = ("window", "shift", "release", "leaves_by")
+    times = {name: np.maximum(0.0, getattr(arrays, name) - begin) for name in names}
+    return arrays._replace(**times)
 
 
 def warm_up() -> None:

@@ -82,26 +82,49 @@ def _served_elsewhere(
     return Serving(stop, serving[best], (float(grown[best, 0]), float(grown[best, 1])))
 
 
+def with_stop(fleet: Fleet, plan: Plan, stop: int) -> Plan | None:
+    """Return a plan with one more stop where it costs the least; None if it fits nowhere.
+
+    Both lengths count in units of the fleet's scale.
+    """
+    found, _ = _insertions(fleet, plan, stop)
+    return min(found, key=lambda each: _cost(fleet, each), default=None)
+
+
+def _cost(fleet: Fleet, plan: Plan) -> float:
+    return float((np.array(plan_lengths(fleet, plan)) / fleet.scale).sum())
+
+
 def _inserted(fleet: Fleet, plan: Plan, stop: int) -> Serving:
     """Return the cheapest insertion of a stop into a plan, or what forbids each."""
-    before, prices = np.array(plan_lengths(fleet, plan)), []
+    found, reasons = _insertions(fleet, plan, stop)
+    if not found:
+        return Serving(stop, None, None, tuple(Reason(*each) for each in sorted(reasons.items())))
+    cheapest = plan_lengths(fleet, min(found, key=lambda each: _cost(fleet, each)))
+    first, second = plan_lengths(fleet, plan)
+    return Serving(stop, None, (cheapest[0] - first, cheapest[1] - second))
+
+
+def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[Plan], dict[int, Broken]]:
+    """Return all plans with one more stop, and by type the rule that forbids others.
+
+    Of several rules it is the one that the fewest insertions get as far as.
+    """
+    found: list[Plan] = []
     reasons: dict[int, Broken] = {}
     for number, route in _routes(fleet, plan):
         for extended in _extensions(fleet, route, stop):
             broken = next(route_violations(fleet, extended), None)
             if broken is None:
-                routes = [*plan.routes[:number], extended, *plan.routes[number + 1 :]]
-                prices.append(np.array(plan_lengths(fleet, Plan(tuple(routes)))) - before)
+                routes = (*plan.routes[:number], extended, *plan.routes[number + 1 :])
+                found.append(Plan(routes))
                 continue
             known = reasons.setdefault(route.vehicle, broken)
             if _RULES.index(broken.rule) > _RULES.index(known.rule):
                 reasons[route.vehicle] = broken
-            if broken.rule in _SAME_EVERYWHERE:
+            if broken.rule in _SAME_EVERYWHERE and not fleet.rules.vehicles[route.vehicle].reload:
                 break
-    if not prices:
-        return Serving(stop, None, None, tuple(Reason(*each) for each in sorted(reasons.items())))
-    least = prices[int((np.array(prices) / fleet.scale).sum(axis=1).argmin())]
-    return Serving(stop, None, (float(least[0]), float(least[1])))
+    return found, reasons
 
 
 def _routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:
@@ -114,11 +137,13 @@ def _routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:
 
 
 def _extensions(fleet: Fleet, route: Route, stop: int) -> Iterator[Route]:
-    """Yield the routes with a stop inserted; of a shipment both, the pick-up before the delivery.
+    """Yield the routes with a stop inserted, also after loading again at the end of a route.
 
-    The stops of a shipment follow each other.
+    Of a shipment both stops are inserted, one after the other.
     """
     shipped = [each for each in fleet.rules.shipments if stop in (each.pickup, each.delivery)]
     added = (shipped[0].pickup, shipped[0].delivery) if shipped else (stop,)
     for place in range(len(route.stops) + 1):
         yield Route(route.vehicle, (*route.stops[:place], *added, *route.stops[place:]))
+    for reload in fleet.rules.vehicles[route.vehicle].reload:
+        yield Route(route.vehicle, (*route.stops, reload, *added))

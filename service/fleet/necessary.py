@@ -103,10 +103,11 @@ def _check_totals(rules: Rules) -> None:
         if total > most:
             sums = f"the demands sum to {total} in dimension {dimension}"
             raise Refusal("no-plan", reason=f"{sums}, and all vehicles together hold {int(most)}")
-    stops = [vehicle.count * (vehicle.max_stops or inf) for vehicle in rules.vehicles]
-    if len(_required(rules)) > sum(stops):
+    limits = [(each.count, each.max_stops) for each in rules.vehicles]
+    stops = sum(inf if each is None else count * each for count, each in limits)
+    if len(_required(rules)) > stops:
         many = f"{len(_required(rules))} stops must be visited"
-        raise Refusal("no-plan", reason=f"{many}, and all vehicles together may visit {sum(stops)}")
+        raise Refusal("no-plan", reason=f"{many}, and all vehicles together may visit {stops}")
 
 
 def _holds(vehicle: VehicleType, dimension: int) -> float:
@@ -134,7 +135,11 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
     }
     for stop in _required(rules):
         stops = (stop, *deliveries.get(stop, ()))
-        routes = (Route(vehicle, stops) for vehicle in different.values())
+        routes = (
+            Route(vehicle, (*reload, *stops))
+            for vehicle in different.values()
+            for reload in [(), *((stop,) for stop in rules.vehicles[vehicle].reload)]
+        )
         served = any(ended() or not any(route_violations(fleet, route)) for route in routes)
         if not served and triangle():
             sentence = (

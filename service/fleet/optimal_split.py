@@ -38,6 +38,7 @@ class FleetArrays(NamedTuple):
     ends: Indices  # (v, 2), start and end of each type; -1 for none
     capacity: Indices  # (v, d)
     shift: Array  # (v, 2)
+    leaves_by: Array  # (v,), the latest departure
     longest: Array  # (v,)
 
 
@@ -57,6 +58,7 @@ def arrays_of(fleet: Fleet) -> FleetArrays:
         ends=np.array(ends, np.int64),
         capacity=loads.capacity - loads.initial,
         shift=np.array([vehicle.way for vehicle in rules.vehicles], np.float64),
+        leaves_by=np.array([vehicle.leaves_by for vehicle in rules.vehicles]),
         longest=np.array([vehicle.longest for vehicle in rules.vehicles]),
     )
 
@@ -128,7 +130,8 @@ def _write_lengths(
     departs, returns = fleet.shift[vehicle]
     start, end = fleet.ends[vehicle]
     longest = fleet.longest[vehicle] * (1 + _ROUNDING)
-    begun = _Begun(0.0, 0.0, 0.0, departs, returns, start, True)
+    latest = min(returns, fleet.leaves_by[vehicle])
+    begun = _Begun(0.0, 0.0, 0.0, departs, latest, start, True)
     for count in range(len(lengths)):
         stop = sequence[(place + count) % len(sequence)]
         opens, closes = fleet.window[stop]

@@ -13,9 +13,10 @@ from service.construction.first_tours import SHARE, Constructor
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.enumeration import exact_plans, is_enumerable
-from service.fleet.evaluation import points_of, violations
+from service.fleet.evaluation import points_of, unassigned, violations
 from service.fleet.first_plans import Cutter, network_sequences
 from service.fleet.fleet import Array, Fleet
+from service.fleet.left_out import with_stop
 from service.fleet.measure_sweep import MeasureSweep
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan, Route
@@ -50,6 +51,7 @@ class FleetOptions:
             no sensible plan reaches.
         iterations: The most iterations of PyVRP. With an infinite time limit, the same seed and
             iterations give the same front.
+        driven: A plan to start from, which may leave out stops.
     """
 
     time_limit: float
@@ -57,6 +59,7 @@ class FleetOptions:
     seed: int = 0
     reference_point: Array | None = None
     iterations: int = _NO_LIMIT
+    driven: Plan | None = None
 
 
 def plan_fleet(
@@ -113,7 +116,9 @@ def _searched(
 ) -> FleetFront:
     """Return the front that a search finds; if it found none, a front of one plain plan."""
     search = _Search(fleet, options, stop, report, began)
-    if constructor is not None and not fleet.rules.shipments:
+    if options.driven is not None:
+        search.begin_with(options.driven)
+    elif constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
     if not search.archive and terminated != "cancelled" and fleet.rules.has_bounds:
@@ -230,10 +235,21 @@ class _Search:
             )
         except Refusal:  # too large to be cut: the search constructs its first plans itself
             return
-        data = self._translation.data(FREE)
         for plan in cutter.plans():
             self._constructed += 1
-            self.archive.offer(self._translation.solution(data, plan), FREE)
+            self.archive.offer(self._translation.solution(plan), FREE)
+
+    def begin_with(self, driven: Plan) -> None:
+        """Put a plan into the archive, with the stops that it leaves out where they cost least.
+
+        Stops that fit nowhere stay out; then the plan may break a rule, and is not put there.
+        """
+        plan = driven
+        for stop in unassigned(self._fleet.rules, driven):
+            if stop not in plan.visited():
+                plan = with_stop(self._fleet, plan, stop) or plan
+        if not violations(self._fleet, plan):
+            self.archive.offer(self._translation.solution(plan), FREE)
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or `stop` returns True."""

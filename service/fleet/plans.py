@@ -27,6 +27,22 @@ class Plan:
         return (stop for route in self.routes for stop in route.stops)
 
 
+def kept_share(driven: Plan, plan: Plan) -> float:
+    """Return the share of a driven plan's stops that a plan keeps; 1 if there are none.
+
+    A stop is kept if the same type of vehicles visits it after the same stop, or first as before.
+    """
+    before, after = set(_steps(driven)), set(_steps(plan))
+    return len(before & after) / len(before) if before else 1.0
+
+
+def _steps(plan: Plan) -> Iterator[tuple[int, int | None, int]]:
+    """Yield the vehicle of each stop, the stop before it, and the stop."""
+    for route in plan.routes:
+        for before, stop in zip((None, *route.stops), route.stops, strict=False):
+            yield route.vehicle, before, stop
+
+
 def path_of(rules: Rules, route: Route) -> tuple[int, ...]:
     """Return the stops of a route, with its start and end if these are stops."""
     vehicle = rules.vehicles[route.vehicle]

@@ -79,6 +79,7 @@ class VehicleType:
         initial_load: The load on board at the start, in each dimension, or empty. It is unloaded at
             the first stop for reloading, or at the end.
         max_overtime: How much later than its shift a route may end.
+        leaves_by: The latest departure: of a vehicle on its way, the present time.
     """
 
     start: int | None = None
@@ -94,6 +95,7 @@ class VehicleType:
     max_trips: int | None = None
     initial_load: tuple[int, ...] = ()
     max_overtime: float = 0.0
+    leaves_by: float = inf
 
     @property
     def way(self) -> Span:

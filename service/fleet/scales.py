@@ -103,6 +103,7 @@ class Units:
                 longest=_scaled_bound(vehicle.longest, time),
                 fixed=_scaled(vehicle.fixed, extra),
                 max_overtime=_scaled(vehicle.max_overtime, time),
+                leaves_by=_scaled_bound(vehicle.leaves_by, time),
             )
             for vehicle in rules.vehicles
         )

@@ -1,7 +1,7 @@
 """The times of a route: when its vehicle leaves, arrives and waits, and how late it is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from math import inf
@@ -58,7 +58,8 @@ _FREE = _Stay((ALWAYS,), 0.0, inf)
 def schedule(fleet: Fleet, route: Route) -> Schedule:
     """Return the times of a route whose vehicle is done as early as possible.
 
-    It leaves as late as neither delays its end nor makes a visit later than due.
+    It leaves as late as neither delays its end nor makes a visit later than due, and no later than
+    it must.
 
     Raises:
         ValueError: The fleet has no clock.
@@ -66,13 +67,14 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
     if fleet.rules.clock is None:
         raise ValueError("a fleet without a clock has no times")
     driven = legs(fleet, route, fleet.rules.clock)
-    begin, last = fleet.rules.vehicles[route.vehicle].way
+    vehicle = fleet.rules.vehicles[route.vehicle]
+    begin, last = vehicle.way
     trips = trips_of(fleet.rules, route)
     begin = max(begin, _released(fleet.rules, trips[0]))
     drive = partial(_drive, _stays(fleet.rules, route, trips), driven, last=last)
     best = drive([0] * len(path_of(fleet.rules, route)), begin)
-    if best.late:
-        return best
+    if best.late or begin > vehicle.leaves_by:
+        return replace(best, late=max(best.late, begin - vehicle.leaves_by))
     # A later window at the stop that keeps the vehicle from leaving later may not delay the end.
     while best.slack <= best.waiting and best.tightest >= 0:
         allowed = list(best.windows)
@@ -83,7 +85,7 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
         best = later
     # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
     # delay the end of the route.
-    delay = min(best.waiting, best.slack)
+    delay = min(best.waiting, best.slack, vehicle.leaves_by - begin)
     return drive(best.windows, begin + delay) if delay else best
 
 

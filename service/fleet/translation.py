@@ -7,7 +7,7 @@ numbers are rounded against the plan, so that a plan of PyVRP breaks no rule.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -22,6 +22,7 @@ from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import VehicleType
 from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
+from service.fleet.schedule import schedule
 from service.objectives import OBJECTIVES
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
@@ -126,25 +127,33 @@ class Translation:
     def plan(self, solution: pyvrp.Solution) -> Plan:
         """Return the plan of a solution."""
         reloads = any(vehicle.reload for vehicle in self.fleet.rules.vehicles)
-        stops_of = self._without_empty_trips if reloads else self._visited
+        stops_of = self._with_trips if reloads else self._visited
         routes = (
-            Route(route.vehicle_type(), stops_of(_visits(route))) for route in solution.routes()
+            Route(route.vehicle_type(), stops_of(route.vehicle_type(), _visits(route)))
+            for route in solution.routes()
         )
         return Plan(tuple(route for route in routes if route.stops))
 
-    def _visited(self, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
+    def _visited(self, _: int, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
         return tuple(self._stops[each] for each in activities)
 
-    def _without_empty_trips(self, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
-        """Return the stops of a route, without loading again before nothing is brought."""
+    def _with_trips(self, vehicle: int, activities: Sequence[pyvrp.Activity]) -> tuple[int, ...]:
+        """Return the stops of a route, without loading again before nothing is brought.
+
+        A vehicle that carries nothing may load first, but not at its start.
+        """
+        kind = self.fleet.rules.vehicles[vehicle]
         stops: list[int] = []
-        loaded = True
+        at = None if any(kind.initial_load) else kind.start  # where it has just loaded
         for activity in activities:
-            if activity.is_depot() and loaded:
-                continue
-            loaded = activity.is_depot()
-            stops.append(self._depots[activity.idx] if loaded else self._stops[activity])
-        return tuple(stops[:-1] if loaded and stops else stops)
+            stop = self._depots[activity.idx] if activity.is_depot() else self._stops[activity]
+            if activity.is_depot() and stops and stops[-1] in kind.reload:
+                stops.pop()
+            if not activity.is_depot() or stops or stop != at:
+                stops.append(stop)
+        if stops and stops[-1] in kind.reload:
+            stops.pop()
+        return tuple(stops)
 
     def moved(self, solution: pyvrp.Solution, goal: Goal) -> pyvrp.Solution:
         """Return a solution that was found under another goal as one of the data for this goal.
@@ -161,13 +170,24 @@ class Translation:
         moved = [pyvrp.Route(data, _visits(route), route.vehicle_type()) for route in routes]
         return pyvrp.Solution(data, moved)
 
-    def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
-        """Return a plan as a solution of data that `data` returned."""
+    def solution(self, plan: Plan) -> pyvrp.Solution:
+        """Return a plan as a solution of the data for the goal FREE."""
+        data = self.data(FREE)
         routes = [
-            pyvrp.Route(data, [self._activities[stop] for stop in route.stops], route.vehicle)
+            pyvrp.Route(data, list(self._activities_of(route)), route.vehicle)
             for route in plan.routes
         ]
         return pyvrp.Solution(data, routes)
+
+    def _activities_of(self, route: Route) -> Iterator[pyvrp.Activity]:
+        """Yield the activity of each stop of a route, in the window that its vehicle uses."""
+        rules = self.fleet.rules
+        windows = [0] * len(route.stops)
+        if any(len(rules.visits[stop].windows) > 1 for stop in route.stops):
+            first = 0 if rules.vehicles[route.vehicle].start is None else 1
+            windows = list(schedule(self.fleet, route).windows[first:])
+        for stop, window in zip(route.stops, windows, strict=False):
+            yield self._activities[stop, window]
 
     def extras(self, plan: Plan) -> float:
         """Return what a plan adds to its first length, squeezed: fixed costs, and lost prizes."""
@@ -238,13 +258,15 @@ class Translation:
         return found
 
     @cached_property
-    def _activities(self) -> dict[int, pyvrp.Activity]:
-        """The activity of each stop of the plans that cutting makes: they have one window."""
+    def _activities(self) -> dict[tuple[int, int], pyvrp.Activity]:
+        """The activity of each stop in each of its windows."""
+        kinds = pyvrp.ActivityType
         depots = {
-            stop: pyvrp.Activity(pyvrp.ActivityType.DEPOT, index)
-            for index, stop in enumerate(self._depots)
+            (stop, 0): pyvrp.Activity(kinds.DEPOT, index) for index, stop in enumerate(self._depots)
         }
-        return depots | {stop: activity for activity, stop in self._stops.items()}
+        clients = {each: pyvrp.Activity(kinds.CLIENT, i) for i, each in enumerate(self._clients)}
+        others = {(stop, 0): activity for activity, stop in self._stops.items()}
+        return {**others, **depots, **clients}
 
     def _client(self, stop: int, number: int, goal: Goal, group: int | None) -> pyvrp.Client:
         visit = self.fleet.rules.visits[stop]
@@ -304,10 +326,16 @@ class Translation:
             max_distance=longest_distance,
             unit_distance_cost=distance,
             unit_duration_cost=duration,
+            start_late=self._latest_departure(vehicle),
             initial_load=self._loads.initial[index].tolist(),
             reload_depots=[self._depot(stop) for stop in vehicle.reload],
             max_reloads=_most_reloads(vehicle),
         )
+
+    def _latest_departure(self, vehicle: VehicleType) -> int | None:
+        if vehicle.leaves_by == inf:
+            return None
+        return max(self._early(vehicle.shift[0]), self._late(vehicle.leaves_by))
 
     def _longest(self, vehicle: VehicleType, limit: int) -> tuple[int, int]:
         """Return the longest distance and the longest duration of a route."""

@@ -14,20 +14,20 @@ from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
 from service.fleet.measures import measures
 from service.fleet.necessary import least_lengths
-from service.fleet.plans import FleetFront, Plan, Route, path_of
+from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
 from service.fleet.schedule import schedule
 from service.front import ReportOf, reporting
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Report, Tools
 from service.pareto import balances
 from service.requests.limits import check_reference_point
-from service.requests.task import Task, UnmeasuredFleet
+from service.requests.task import Task, UnmeasuredFleet, VehicleName
 
 
 class Names(NamedTuple):
-    """The ids of types of vehicles and of stops."""
+    """The names of types of vehicles, and the ids of stops."""
 
-    vehicles: Sequence[str]
+    vehicles: Sequence[VehicleName]
     stops: Sequence[str]
 
 
@@ -44,10 +44,11 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
         ended = front.terminated is not None
         servings = iter(explain(front.fleet, front.plans, front.points) if ended else ())
         names = Names(subject.vehicles, ids)
+        driven = Plan(subject.driven) if subject.driven else None
         return document_of_plans(
             front,
             lambda plan, members: _encode_plan(
-                front.fleet, plan, members, names, next(servings, [])
+                front.fleet, plan, _with_kept(members, driven, plan), names, next(servings, [])
             ),
             actor,
             kind="fleet",
@@ -59,7 +60,8 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
     fleet = subject.fleet()
     timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
     try:
-        front = plan_front(task, fleet, actor, stop, reporting(report, encoded))
+        driven = Plan(subject.driven) if subject.driven else None
+        front = plan_front(task, fleet, actor, stop, reporting(report, encoded), driven)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
     return encoded(replace(front, timings={**timings, **front.timings}))
@@ -71,8 +73,12 @@ def plan_front(
     actor: NamedActor | None,
     stop: Callable[[], bool],
     report: ReportOf[FleetFront],
+    driven: Plan | None = None,
 ) -> FleetFront:
-    """Return the front of plans of a fleet, with the options of a task."""
+    """Return the front of plans of a fleet, with the options of a task.
+
+    `driven` is a plan to start from.
+    """
     # Imported here so that a service or a worker starts without PyVRP.
     from service.fleet.planner import FleetOptions, plan_fleet
 
@@ -82,6 +88,7 @@ def plan_front(
         size=task.options.size,
         seed=task.options.seed,
         reference_point=task.options.reference_point,
+        driven=driven,
     )
     return plan_fleet(fleet, options, actor, stop, report)
 
@@ -118,6 +125,10 @@ def document_of_plans(
     )
 
 
+def _with_kept(members: dict[str, Any], driven: Plan | None, plan: Plan) -> dict[str, Any]:
+    return members if driven is None else {**members, "kept": kept_share(driven, plan)}
+
+
 def _encode_plan(
     fleet: Fleet,
     plan: Plan,
@@ -144,22 +155,21 @@ def _serving(serving: Serving, names: Names) -> dict[str, Any]:
     if serving.price is not None:
         return {**members, "price": list(serving.price)}
     reasons = [
-        {"vehicle": names.vehicles[vehicle], "rule": broken.rule, "detail": broken.detail}
+        {"vehicle": names.vehicles[vehicle].id, "rule": broken.rule, "detail": broken.detail}
         for vehicle, broken in serving.reasons
     ]
     return {**members, "reasons": reasons}
 
 
 def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
-    vehicles, ids = names
+    name = names.vehicles[route.vehicle]
     members: dict[str, Any] = {
-        "vehicle": vehicles[route.vehicle],
-        "stops": [ids[stop] for stop in path_of(fleet.rules, route)],
+        "vehicle": name.id,
+        "stops": [names.stops[stop] for stop in path_of(fleet.rules, route)],
         "lengths": list(route_lengths(fleet, route)),
     }
-    shifts = [index for index, name in enumerate(vehicles) if name == vehicles[route.vehicle]]
-    if len(shifts) > 1:
-        members["shift"] = shifts.index(route.vehicle)
+    numbers = {"shift": name.shift, "route": name.route}
+    members |= {member: number for member, number in numbers.items() if number is not None}
     if fleet.rules.clock is not None:
         members["arrivals"] = list(schedule(fleet, route).arrivals)
     return members

@@ -36,7 +36,7 @@ from service.requests.stop_fields import (
     read_stops,
 )
 from service.requests.stops import Labels, Source, Stop, Stops, locations_of
-from service.requests.task import UnmeasuredFleet
+from service.requests.task import UnmeasuredFleet, VehicleName
 from service.requests.validation import parse_json, show, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
@@ -92,7 +92,7 @@ class FleetRequest(SearchFields):
         check_unique([item.id for item in self.vehicles], "vehicles")
         vehicles, names = self._vehicles(ids)
         types = {
-            item.id: tuple(index for index, name in enumerate(names) if name == item.id)
+            item.id: tuple(index for index, name in enumerate(names) if name.id == item.id)
             for item in self.vehicles
         }
         first, second = self.objectives
@@ -108,10 +108,12 @@ class FleetRequest(SearchFields):
         stops = Stops(locations_of(labels.stops), self._sources(labels.stops))
         return UnmeasuredFleet(rules, names, stops)
 
-    def _vehicles(self, ids: Mapping[str, int]) -> tuple[tuple[VehicleType, ...], tuple[str, ...]]:
-        """Return the types of vehicles and their ids: the first shifts first, in their order."""
+    def _vehicles(
+        self, ids: Mapping[str, int]
+    ) -> tuple[tuple[VehicleType, ...], tuple[VehicleName, ...]]:
+        """Return the types of vehicles and their names: the first shifts first, in their order."""
         shifts = [
-            (number, item.id, vehicle)
+            (number, VehicleName(item.id, number if len(item.shifts) > 1 else None), vehicle)
             for i, item in enumerate(self.vehicles)
             for number, vehicle in enumerate(item.vehicle_types(f"vehicles/{i}", ids))
         ]

@@ -18,6 +18,7 @@ from service.requests.front import FORMS, FrontRequest
 from service.requests.limits import Limits, defaults
 from service.requests.maps.fields import USELESS
 from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.stops import ROAD_MEASURES
 
 Schema = dict[str, Any]
@@ -122,6 +123,16 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     for name in ("done", "remove", "tour", "add"):
         fields[name]["maxItems"] = limits.cities
     return _by_title(*map(_without_null, parts.values()), whole)
+
+
+def replan_fleet_schemas(limits: Limits) -> dict[str, Schema]:
+    """Return the schema of a request to replan a fleet, and of what only it has, by name."""
+    whole = _of_two(_limited(ReplanFleetRequest, limits))
+    parts = whole.pop("$defs")
+    for name in ("routes", "add", "remove"):
+        whole["properties"][name]["maxItems"] = limits.fleet_stops
+    own = [parts[name] for name in ("RouteOnTheWay", "NewFleetStop")]
+    return _by_title(*map(_without_null, (*own, whole)))
 
 
 def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:

@@ -8,6 +8,7 @@ from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.fleet.fleet import Fleet
+from service.fleet.plans import Route
 from service.fleet.rules import Measure, Over, Rules
 from service.front import PlanOptions
 from service.objectives import OBJECTIVES
@@ -21,13 +22,36 @@ _METRES = {"sum": "total distance", "max": "longest route"}
 _COSTS = {"sum": "total cost", "max": "greatest cost"}
 
 
+@dataclass(frozen=True)
+class VehicleName:
+    """The name of a type of vehicles in answers.
+
+    Args:
+        id: Its id.
+        shift: The number of its shift, if those of its id have several.
+        route: Of a vehicle on its way, the number of its route in the plan that is driven.
+    """
+
+    id: str
+    shift: int | None = None
+    route: int | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class UnmeasuredFleet:
-    """The rules of a fleet, the names of its types of vehicles, and the sources of its costs."""
+    """The rules of a fleet, the names of its types of vehicles, and the sources of its costs.
+
+    Args:
+        rules: The rules.
+        vehicles: The name of each type of vehicles.
+        stops: The stops, with the sources of two costs.
+        driven: What is left of the routes of a plan that is being driven.
+    """
 
     rules: Rules
-    vehicles: tuple[str, ...]
+    vehicles: tuple[VehicleName, ...]
     stops: Stops
+    driven: tuple[Route, ...] = ()
 
     @property
     def n(self) -> int:

@@ -17,6 +17,7 @@ from pydantic_core import from_json, to_json
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, Robot
+from service.fleet.plans import Route
 from service.fleet.rules import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds
@@ -34,7 +35,7 @@ from service.requests.stops import (
     Stop,
     Stops,
 )
-from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet
+from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet, VehicleName
 
 _FIRST_LINE = b"paretour task 4\n"
 _LENGTH = struct.Struct("!Q")
@@ -48,7 +49,11 @@ _TYPES: Mapping[str, type[Any]] = {
 }
 # A task may hold thousands of these. Their members are numbers, texts, and tuples of numbers.
 _FLAT_TYPES: Mapping[str, type[Any]] = {
-    each.__name__: each for each in (Stop, Objective, Visit, Shipment, VehicleType, Robot)
+    each.__name__: each
+    for each in (
+        *(Stop, Objective, Visit, Shipment, VehicleType, Robot),
+        *(VehicleName, Route),
+    )
 }
 _NUMBERS = "biuf"  # kinds of NumPy's types: booleans, integers and floats
 

@@ -22,8 +22,12 @@ def insertions(fleet: Fleet, plan: Plan, stop: int) -> Iterator[Plan]:
             stops = (*route.stops[:place], stop, *route.stops[place:])
             longer = Route(route.vehicle, stops)
             yield Plan((*plan.routes[:number], longer, *plan.routes[number + 1 :]))
-    for vehicle in range(len(fleet.rules.vehicles)):
-        yield Plan((*plan.routes, Route(vehicle, (stop,))))
+        for reload in fleet.rules.vehicles[route.vehicle].reload:
+            longer = Route(route.vehicle, (*route.stops, reload, stop))
+            yield Plan((*plan.routes[:number], longer, *plan.routes[number + 1 :]))
+    for vehicle, kind in enumerate(fleet.rules.vehicles):
+        for first in [(), *((reload,) for reload in kind.reload)]:
+            yield Plan((*plan.routes, Route(vehicle, (*first, stop))))
 
 
 @pytest.mark.parametrize("seed", range(60))

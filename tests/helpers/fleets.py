@@ -117,6 +117,7 @@ def bounded_fleet(seed: int) -> Fleet:
             reload=reload,
             initial_load=(whole(0, capacity),) if likely(0.2) else (),
             max_overtime=float(whole(1, 30)) if measure == "overtime" or likely(0.2) else 0.0,
+            leaves_by=float(begin + whole(0, 20)) if likely(0.2) else inf,
         )
 
     over = ("sum", ["sum", "max"][whole(0, 2)] if measure is None else measure)
@@ -151,10 +152,10 @@ def _plans(rules: Rules, stops: list[int], types: list[int]) -> Iterator[Plan]:
 
 
 def _trips(rules: Rules, vehicle: int, stops: tuple[int, ...]) -> Iterator[Route]:
-    """Yield the routes through these stops, which may load again before each but the first."""
+    """Yield the routes through these stops, which may load again before each."""
     reload = rules.vehicles[vehicle].reload
-    routes = [stops[:1]]
-    for stop in stops[1:]:
+    routes: list[tuple[int, ...]] = [()]
+    for stop in stops:
         loaded = [(*route, depot, stop) for route in routes for depot in reload]
         routes = [*((*route, stop) for route in routes), *loaded]
     yield from (Route(vehicle, route) for route in routes)
@@ -193,7 +194,8 @@ def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
     path = path_of(fleet.rules, route)
     numbers = [range(len(fleet.rules.visits[stop].windows)) for stop in path]
     found = []
-    for departure in range(int(begins), 200):
+    latest = min(200.0, fleet.rules.vehicles[route.vehicle].leaves_by)
+    for departure in range(int(begins), int(latest) + 1):
         for windows in product(*numbers):
             driven = _driven(fleet, route, windows, float(departure))
             if driven is not None and driven[0] <= ends:

@@ -23,6 +23,7 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
 )
@@ -109,6 +110,17 @@ class Calls:
         """
         return self.plan(replan_plan(front, request))
 
+    def replan_fleet(
+        self, front: FleetFront | str, **request: Unpack[ReplanFleetRequest]
+    ) -> Call[FleetFront]:
+        """Plan the rest of a fleet's day, given what has changed, and wait for it.
+
+        Args:
+            front: The front, or its id.
+            **request: What has changed, and the options of the new front.
+        """
+        return self.plan_fleet(replan_plan(front, request))
+
     def fleet(self, **request: Unpack[FleetRequest]) -> Call[FleetFront]:
         """Plan a front of plans for a fleet and wait for it."""
         return self.plan_fleet(fleet_plan(request))
@@ -146,6 +158,12 @@ class Calls:
     ) -> Call[Submitted[Front]]:
         """Submit a job that plans the rest of a tour; arguments as of `replan`."""
         return self.post(replan_plan(front, request))
+
+    def submit_replan_fleet(
+        self, front: FleetFront | str, **request: Unpack[ReplanFleetRequest]
+    ) -> Call[Submitted[FleetFront]]:
+        """Submit a job that plans the rest of a fleet's day; arguments as of `replan_fleet`."""
+        return self._submit(replan_plan(front, request), parse_fleet)
 
     def submit_fleet(self, **request: Unpack[FleetRequest]) -> Call[Submitted[FleetFront]]:
         """Submit a job that plans a front of plans for a fleet."""

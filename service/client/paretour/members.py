@@ -206,6 +206,31 @@ class RobotsRequest(CoverageRequest, total=False):
     over: Sequence[Literal["sum", "max"]]
 
 
+class RouteRequest(TypedDict, total=False):
+    """A route of the plan that is driven, whose vehicle has left."""
+
+    route: Required[int]
+    done: Sequence[int | str]
+    position: int | str | Mapping[str, Any] | None
+    broken_down: bool
+
+
+class ReplanFleetRequest(TypedDict, total=False):
+    """The members of a request to POST /front/{id}/replan about a fleet."""
+
+    plan: int | None
+    now: float | None
+    routes: Sequence[RouteRequest]
+    add: Sequence[Mapping[str, Any]]
+    remove: Sequence[int | str]
+    costs: Sequence[Mapping[str, Any]]
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    geometry: Literal["straight", "roads"]
+    seed: int
+
+
 class ReplanRequest(PlanOptions, total=False):
     """The members of a request to POST /front/{id}/replan: what has changed since.
 

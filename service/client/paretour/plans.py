@@ -33,6 +33,7 @@ class FleetRoute:
         arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
             (len(stops),). None without a clock.
         shift: The number of its shift, if its vehicle has several.
+        route: Of a vehicle on its way, the number of its route in the plan that is driven.
     """
 
     vehicle: str
@@ -40,6 +41,7 @@ class FleetRoute:
     lengths: Array
     arrivals: Array | None
     shift: int | None = None
+    route: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -109,12 +111,15 @@ class FleetPlan(_Plan):
         measures: What plans are compared by, as far as the request allows: vehicles, driving,
             service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned.
         left_out: For each stop that it leaves out, what it would cost to serve it, or why none can.
+        kept: If it was replanned, the share of the stops left that the same vehicles visit after
+            the same stops.
     """
 
     routes: tuple[FleetRoute, ...]
     unassigned: tuple[str, ...]
     measures: Mapping[str, float]
     left_out: tuple[LeftOut, ...]
+    kept: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -186,6 +191,7 @@ def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
         unassigned=plan.read("unassigned", each(text)),
         measures=plan.maybe("measures", _measures) or {},
         left_out=plan.maybe("left_out", each(_parse_left_out)) or (),
+        kept=plan.maybe("kept", number),
     )
 
 
@@ -198,6 +204,7 @@ def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
         lengths=route.read("lengths", floats(PAIR)),
         arrivals=route.maybe("arrivals", floats(len(stops))),
         shift=route.maybe("shift", count),
+        route=route.maybe("route", count),
     )
 
 

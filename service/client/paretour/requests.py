@@ -14,9 +14,11 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
 )
+from paretour.plans import FleetFront
 from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the default of the service
@@ -108,9 +110,11 @@ def coverage_plan(request: CoverageRequest | RobotsRequest, png: bytes | None) -
     return Plan("/coverage", without_frames(request), None if png is None else File("map", png))
 
 
-def replan_plan(front: Front | str, request: ReplanRequest) -> Plan:
+def replan_plan(
+    front: Front | FleetFront | str, request: ReplanRequest | ReplanFleetRequest
+) -> Plan:
     """Return the request to replan a front, given as such or by its id."""
-    path = front_path(front.id if isinstance(front, Front) else front)
+    path = front_path(front if isinstance(front, str) else front.id)
     return Plan(f"{path}/replan", without_frames(request))
 
 

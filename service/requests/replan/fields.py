@@ -43,14 +43,9 @@ class StopCosts(StrictModel):
     )
 
 
-class NewStop(StrictModel):
-    """A stop that the front does not have, and how to reach it under each objective."""
+class NewCosts(StrictModel):
+    """How to reach a stop that the front does not have, under each objective."""
 
-    id: Text = Field(description="one that no stop of the front has")
-    location: tuple[Longitude, Latitude] | None = Field(
-        default=None,
-        description="longitude and latitude in degrees, where an objective is measured",
-    )
     coordinates: OneEach[PlanePoint | None] = Field(
         default_factory=list,
         description="for each objective x and y in its plane, null where it has none",
@@ -58,6 +53,16 @@ class NewStop(StrictModel):
     costs: OneEach[StopCosts | None] = Field(
         default_factory=list,
         description="for each objective the costs to and from all stops, null if not a matrix",
+    )
+
+
+class NewStop(NewCosts):
+    """A stop that the front does not have, and how to reach it under each objective."""
+
+    id: Text = Field(description="one that no stop of the front has")
+    location: tuple[Longitude, Latitude] | None = Field(
+        default=None,
+        description="longitude and latitude in degrees, where an objective is measured",
     )
 
 

@@ -8,11 +8,13 @@ from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.requests.limits import Limits
 from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.rest_of_fleet import rest_of_fleet
 from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.replan.rest_of_stops import rest_of_stops
 from service.requests.replan.way import StoredFront, earlier_front, not_replannable
 from service.requests.stops import Stops
-from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
+from service.requests.task import Task, UnmeasuredFleet
 from service.requests.task_codec import read_task
 from service.requests.validation import parse_json
 
@@ -33,19 +35,27 @@ def parse_replan(source: ReplanSource, limits: Limits, actors: Mapping[str, Acto
             be replanned so.
         InvalidInstance: The costs or the map cannot be planned.
     """
-    request, stored = parse_json(ReplanRequest, source.body), source.front
+    stored = source.front
     task = _stored_task(stored, limits, actors)
+    if isinstance(task.subject, UnmeasuredFleet):
+        changes = parse_json(ReplanFleetRequest, source.body)
+        return rest_of_fleet(changes, stored, task, limits, actors)
+    request = parse_json(ReplanRequest, source.body)
     match task.subject:
         case Stops() as stops:
             front = earlier_front(stored, task, stops)
             return rest_of_stops(request, front, limits, actors)
         case Coverage() as coverage:
             return rest_of_map(request, stored, coverage, limits, actors)
-        case UnmeasuredFleet():
-            reason = "it is of POST /fleet, and only those of POST /front and /coverage can be"
-            raise not_replannable(stored.id, reason)
-        case SharedCoverage():
-            raise not_replannable(stored.id, "it is of plans for several robots")
+    raise not_replannable(stored.id, "it is of plans for several robots")
+
+
+def check_replan(body: bytes) -> None:
+    """Raise a refusal if a body is a request to replan neither tours nor a fleet."""
+    try:
+        parse_json(ReplanFleetRequest, body)
+    except Refusal:
+        parse_json(ReplanRequest, body)
 
 
 def _stored_task(stored: StoredFront, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:

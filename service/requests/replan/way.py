@@ -38,6 +38,9 @@ class FoundTours(Protocol):
     def lengths(self) -> Array:
         """The lengths of each tour, shape (k, m)."""
 
+    def split(self) -> list[bytes]:
+        """Return the JSON of each tour or plan."""
+
     @property
     def places(self) -> Sequence[Sequence[int]] | None:
         """Of a front of a map, row and column of each place."""

@@ -1,0 +1,185 @@
+"""A fleet's day so far: the plan that is driven, and how far each vehicle on its way has come."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from pydantic_core import from_json
+
+from service.errors import invalid
+from service.fleet.plans import Route
+from service.fleet.rules import Rules
+from service.pareto import knee
+from service.requests.replan.fields import NewStop
+from service.requests.replan.fleet_fields import ReplanFleetRequest, RouteOnTheWay
+from service.requests.replan.way import StoredFront, not_replannable
+from service.requests.stop_fields import find_index
+from service.requests.task import UnmeasuredFleet, VehicleName
+from service.requests.validation import show
+
+_OF_PLAN = "a stop of this route"
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A vehicle on its way, in indexes of the front's stops.
+
+    Args:
+        part: The part of the request that is about it.
+        type: The type of the vehicle.
+        position: Where it goes on; None for a new place.
+        left: What is left of its route, with the stops where it loads again.
+        done: The stops that it has visited.
+        trips: The number of trips that have ended.
+        departure: When it left; None without a clock.
+        broken_down: Whether it is out of service.
+    """
+
+    part: str
+    type: int
+    position: int | None
+    left: tuple[int, ...]
+    done: tuple[int, ...]
+    trips: int
+    departure: float | None
+    broken_down: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Day:
+    """The day so far.
+
+    Args:
+        ways: The vehicles on their way, in the order of the request.
+        numbers: The number of the route of each in the plan.
+        waiting: The routes whose vehicles have not left.
+    """
+
+    ways: tuple[Way, ...]
+    numbers: tuple[int, ...]
+    waiting: tuple[Route, ...]
+
+    @property
+    def done(self) -> frozenset[int]:
+        """All stops that were visited."""
+        return frozenset(stop for way in self.ways for stop in way.done)
+
+
+def day_of(
+    request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
+) -> Day:
+    """Return the day so far.
+
+    Args:
+        request: The request to replan.
+        stored: The front.
+        fleet: The fleet that it is of.
+        ids: The index of each of its stops by its id.
+
+    Raises:
+        Refusal: The request names a plan, a route or a stop that is not there, or one twice.
+    """
+    routes, departures = _driven(request, stored, fleet, ids)
+    numbers: list[int] = []
+    ways = []
+    for index, item in enumerate(request.routes):
+        part = f"routes/{index}"
+        if item.route >= len(routes):
+            demand = f"must be less than {len(routes)}, the number of routes of the plan"
+            raise invalid(f"{part}/route", f"{demand}, got {item.route}")
+        if item.route in numbers:
+            raise invalid(f"{part}/route", f"must not be given twice, got {item.route}")
+        numbers.append(item.route)
+        route, departure = routes[item.route], departures[item.route]
+        ways.append(_way(item, part, fleet.rules, route, departure, ids))
+    waiting = tuple(route for number, route in enumerate(routes) if number not in numbers)
+    return Day(tuple(ways), tuple(numbers), waiting)
+
+
+def _driven(
+    request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
+) -> tuple[list[Route], list[float | None]]:
+    """Return the routes of the plan that is driven, and when the vehicle of each leaves."""
+    plans = stored.found.split()
+    if not plans:
+        raise not_replannable(stored.id, "it has no plan")
+    number = knee(stored.found.lengths) if request.plan is None else request.plan
+    if number >= len(plans):
+        demand = f"must be less than {len(plans)}, the number of plans, got {number}"
+        raise invalid("plan", demand)
+    types = {name: index for index, name in enumerate(fleet.vehicles)}
+    routes: list[Route] = []
+    departures: list[float | None] = []
+    for item in from_json(plans[number])["routes"]:
+        kind = types[VehicleName(item["vehicle"], item.get("shift"), item.get("route"))]
+        vehicle = fleet.rules.vehicles[kind]
+        stops = [ids[stop] for stop in item["stops"]]
+        first = 0 if vehicle.start is None else 1
+        last = len(stops) - (0 if vehicle.end is None else 1)
+        routes.append(Route(kind, tuple(stops[first:last])))
+        departures.append(item["arrivals"][0] if "arrivals" in item else None)
+    return routes, departures
+
+
+def _way(
+    item: RouteOnTheWay,
+    part: str,
+    rules: Rules,
+    route: Route,
+    departure: float | None,
+    ids: Mapping[str, int],
+) -> Way:
+    done = _done(item, part, rules, route, ids)
+    after = max((route.stops.index(stop) for stop in done), default=-1) + 1
+    reload = rules.vehicles[route.vehicle].reload
+    skipped = [s for s in route.stops[:after] if s not in done and s not in reload]
+    return Way(
+        part=part,
+        type=route.vehicle,
+        position=_position(item, part, rules, route, done, ids),
+        left=(*skipped, *route.stops[after:]),
+        done=done,
+        trips=sum(stop in reload for stop in route.stops[:after]),
+        departure=departure,
+        broken_down=item.broken_down,
+    )
+
+
+def _done(
+    item: RouteOnTheWay, part: str, rules: Rules, route: Route, ids: Mapping[str, int]
+) -> tuple[int, ...]:
+    """Return the stops that were visited; those to load again may be named too, and are skipped."""
+    done: list[int] = []
+    for index, reference in enumerate(item.done):
+        where = f"{part}/done/{index}"
+        stop = find_index(reference, ids, where, len(ids))
+        if stop not in route.stops:
+            raise invalid(where, f"must be {_OF_PLAN}, got {show(reference)}")
+        if stop in done:
+            raise invalid(where, f"must not be given twice, got {show(reference)}")
+        if stop not in rules.depots:
+            done.append(stop)
+    return tuple(done)
+
+
+def _position(
+    item: RouteOnTheWay,
+    part: str,
+    rules: Rules,
+    route: Route,
+    done: Sequence[int],
+    ids: Mapping[str, int],
+) -> int | None:
+    """Return the stop where a vehicle goes on, None for a new place."""
+    where = f"{part}/position"
+    if isinstance(item.position, NewStop):
+        return None
+    if item.position is None:
+        position = done[-1] if done else rules.vehicles[route.vehicle].start
+        if position is None:
+            raise invalid(where, "is needed, as the route has no start and nothing is done")
+        return position
+    position = find_index(item.position, ids, where, len(ids))
+    if position not in done and position not in rules.depots:
+        demand = "must be a stop that is done, a depot or a new place"
+        raise invalid(where, f"{demand}, got {show(item.position)}")
+    return position

@@ -1,0 +1,331 @@
+"""The rest of a fleet's day: what is left of the plan that is driven, and what has changed."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from service.actor_info import ActorInfo
+from service.errors import Refusal, invalid
+from service.fleet.plans import Route
+from service.fleet.rules import Rules, Shipment, VehicleType, Visit
+from service.requests.limits import Limits, check_amounts, check_limit, check_router, lower_defaults
+from service.requests.parser import actor_for_plans
+from service.requests.replan.costs import (
+    AllStops,
+    all_stops,
+    between,
+    changed_sources,
+    extended_sources,
+)
+from service.requests.replan.day import Day, Way, day_of
+from service.requests.replan.fields import NewStop
+from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.way import StoredFront
+from service.requests.stop_fields import find_index
+from service.requests.stops import Labels, Source, Stops, locations_of
+from service.requests.task import Task, UnmeasuredFleet, VehicleName
+from service.requests.validation import show, too_many_cities
+
+_LATER = 1e-6  # of the greatest time: what cannot be loaded now is released this much later
+
+
+def rest_of_fleet(
+    request: ReplanFleetRequest,
+    stored: StoredFront,
+    task: Task,
+    limits: Limits,
+    actors: Mapping[str, ActorInfo],
+) -> Task:
+    """Return what is left to plan of a fleet.
+
+    Raises:
+        Refusal: The request is over a limit, or the front cannot be replanned so.
+    """
+    assert isinstance(task.subject, UnmeasuredFleet)
+    assert task.labels is not None
+    check_limit("routes", limits.fleet_stops, len(request.routes))
+    rest = _Rest(request, stored, task.subject, task.labels)
+    n = len(rest.labels.stops)
+    if n > limits.fleet_stops:
+        raise too_many_cities("add", limits.fleet_stops, n)
+    # Each stop may come in a route, and depots again in each of as many routes.
+    id_bytes = 3 * rest.labels.id_bytes + sum(len(name.id) for name in rest.names)
+    check_amounts(request, n, limits, id_bytes)
+    subject = rest.subject
+    check_router(subject.stops.sources, limits)
+    return Task(
+        subject=subject,
+        options=lower_defaults(request, n, limits, id_bytes).options(),
+        actor=actor_for_plans(actors),
+        labels=rest.labels,
+        geometry=request.geometry,
+    )
+
+
+class _Rest:
+    """What is left to plan, from indexes of all stops: those of the front, then new ones."""
+
+    def __init__(
+        self,
+        request: ReplanFleetRequest,
+        stored: StoredFront,
+        fleet: UnmeasuredFleet,
+        labels: Labels,
+    ) -> None:
+        self._request, self._fleet, self._rules, self._known = request, fleet, fleet.rules, labels
+        if (request.now is None) != (fleet.rules.clock is None):
+            needed = fleet.rules.clock is not None
+            demand = "is needed, as the fleet has a clock" if needed else "needs a clock"
+            raise invalid("now", demand)
+        ids = {stop.id: index for index, stop in enumerate(labels.stops)}
+        self._day = day_of(request, stored, fleet, ids)
+        self._all = _all_stops(request, labels)
+        self._removed = _removed(request, self._day, fleet.rules, ids)
+        gone = self._day.done | self._removed
+        self._left = [stop for stop in fleet.rules.clients if stop not in gone]
+        self._carried = self._carriers()
+        self.names, self._types, self._old = self._vehicles()
+        if not self._types:
+            raise Refusal("no-plan", reason="no vehicle is left that may drive")
+
+    @property
+    def _added(self) -> range:
+        return range(self._all.n, self._all.n + len(self._request.add))
+
+    @cached_property
+    def _ends(self) -> frozenset[int]:
+        """The stops at which the vehicles start, end or load again."""
+        ends = (end for each in self._types for end in (each.start, each.end, *each.reload))
+        return frozenset(end for end in ends if end is not None)
+
+    @cached_property
+    def _place(self) -> dict[int, int]:
+        """The index of each stop in the rest."""
+        chosen = sorted({*self._left, *self._added, *self._ends})
+        return {stop: index for index, stop in enumerate(chosen)}
+
+    @cached_property
+    def labels(self) -> Labels:
+        """The names of the stops of the rest, and of the objectives."""
+        return Labels(tuple(self._all.stops[stop] for stop in self._place), self._known.objectives)
+
+    @property
+    def subject(self) -> UnmeasuredFleet:
+        """The fleet of the rest."""
+        rules = Rules(
+            visits=tuple(self._visit(stop) for stop in self._place),
+            vehicles=tuple(self._placed(vehicle) for vehicle in self._types),
+            shipments=tuple(self._shipments()),
+            over=self._rules.over,
+            clock=self._rules.clock,
+        )
+        stops = Stops(locations_of(self.labels.stops), self._sources())
+        return UnmeasuredFleet(rules, self.names, stops, tuple(self._driven()))
+
+    def _carriers(self) -> dict[int, int]:
+        """Return, by stop, the vehicle on its way that carries what it brings there."""
+        pickups = {each.delivery: each.pickup for each in self._rules.shipments}
+        carried = {}
+        for number, way in enumerate(self._day.ways):
+            reload = self._rules.vehicles[way.type].reload
+            reloads = [place for place, stop in enumerate(way.left) if stop in reload]
+            for place, stop in enumerate(way.left):
+                picked_up = pickups.get(stop) in way.done
+                loaded = stop not in self._rules.shipped and place < min(reloads, default=inf)
+                if (picked_up or loaded) and not way.broken_down:
+                    carried[stop] = number
+        return carried
+
+    def _vehicles(self) -> tuple[tuple[VehicleName, ...], list[VehicleType], list[int]]:
+        """Return the names of all vehicles that may drive, their types, and their old types.
+
+        First those on their way, then those that have not left.
+        """
+        found: list[tuple[VehicleName, VehicleType, int]] = []
+        for number, way in zip(self._day.numbers, self._day.ways, strict=True):
+            name = replace(self._fleet.vehicles[way.type], route=number)
+            if not way.broken_down:
+                found.append((name, self._on_the_way(way), way.type))
+        used = [way.type for way in self._day.ways]
+        for index, vehicle in enumerate(self._rules.vehicles):
+            count = vehicle.count - used.count(index)
+            begin, end = max(vehicle.shift[0], self._now), vehicle.shift[1]
+            if count > 0 and begin <= end and begin <= vehicle.leaves_by:
+                later = replace(vehicle, count=count, shift=(begin, end))
+                found.append((self._fleet.vehicles[index], later, index))
+        names, types, old = zip(*found, strict=True) if found else ((), (), ())
+        return tuple(names), list(types), list(old)
+
+    @property
+    def _now(self) -> float:
+        return self._request.now or 0.0
+
+    def _on_the_way(self, way: Way) -> VehicleType:
+        """Return a vehicle on its way as a type of its own."""
+        vehicle = self._rules.vehicles[way.type]
+        position = way.position
+        if position is None:
+            position = self._all.n + list(self._all.new).index(f"{way.part}/position")
+        timed = self._rules.clock is not None
+        longest = vehicle.longest
+        if way.departure is not None:
+            longest = max(0.0, longest - max(0.0, self._now - way.departure))
+        visits, trips = vehicle.max_stops, vehicle.max_trips
+        return replace(
+            vehicle,
+            count=1,
+            start=position,
+            shift=(self._now, max(self._now, vehicle.shift[1])) if timed else vehicle.shift,
+            leaves_by=self._now if timed else inf,
+            longest=longest,
+            fixed=0.0,
+            max_stops=None if visits is None else max(0, visits - len(way.done)),
+            max_trips=None if trips is None else max(1, trips - way.trips),
+            initial_load=() if way.trips else vehicle.initial_load,
+        )
+
+    def _visit(self, stop: int) -> Visit:
+        """Return what a stop of the rest asks for."""
+        if stop in self._ends:
+            return Visit()
+        if stop >= self._all.n:
+            item = self._request.add[stop - self._all.n]
+            ids = {name.id for name in self._fleet.vehicles}
+            types = {
+                each: tuple(i for i, name in enumerate(self._fleet.vehicles) if name.id == each)
+                for each in ids
+            }
+            visit = item.visit(f"add/{stop - self._all.n}", types)
+        else:
+            visit = self._known_visit(stop)
+        return replace(
+            visit, vehicles=self._servers(stop, visit), release=self._release(stop, visit)
+        )
+
+    def _known_visit(self, stop: int) -> Visit:
+        """Return what a stop of the front asks for, also of shipments on board."""
+        visit = self._rules.visits[stop]
+        pickups = {each.delivery: each.pickup for each in self._rules.shipments}
+        if pickups.get(stop) not in self._day.done:
+            return visit
+        pickup = self._rules.visits[pickups[stop]]
+        return replace(visit, demand=pickup.demand, prize=pickup.prize)
+
+    def _servers(self, stop: int, visit: Visit) -> tuple[int, ...]:
+        """Return the types of the rest that may visit a stop; empty for all.
+
+        What a vehicle carries stays with it. Vehicles on their way cannot load what they do not
+        carry, unless they come to a stop for loading again.
+        """
+        on_the_way = len(self._types) - sum(name.route is None for name in self.names)
+        if stop in self._carried:
+            working = [i for i, way in enumerate(self._day.ways) if not way.broken_down]
+            return (working.index(self._carried[stop]),)
+        able = [
+            index
+            for index, old in enumerate(self._old)
+            if not visit.vehicles or old in visit.vehicles
+        ]
+        if self._must_be_loaded(stop, visit):
+            able = [i for i in able if i >= on_the_way or self._types[i].reload]
+        if not able:
+            stop_id = show(self._all.stops[stop].id)
+            reason = f"no vehicle can bring what stop {stop_id} asks for: those that may are on"
+            raise Refusal("no-plan", reason=f"{reason} their way, and load nothing again")
+        return () if len(able) == len(self._types) else tuple(able)
+
+    def _must_be_loaded(self, stop: int, visit: Visit) -> bool:
+        shipped = {i for each in self._left_shipments() for i in (each.pickup, each.delivery)}
+        return any(visit.demand) and stop not in shipped and stop not in self._carried
+
+    def _release(self, stop: int, visit: Visit) -> float:
+        """Return when what is brought to a stop can be loaded: not by who is on the way now."""
+        loading = any(each.leaves_by < inf and each.reload for each in self._types)
+        if not loading or not self._must_be_loaded(stop, visit):
+            return 0.0 if stop in self._carried else visit.release
+        latest = max(each.shift[1] for each in self._types if each.shift[1] < inf)
+        return max(visit.release, self._now + _LATER * max(latest, self._now, 1.0))
+
+    def _left_shipments(self) -> Iterator[Shipment]:
+        """Yield the shipments that nobody has picked up."""
+        left = set(self._left)
+        return (s for s in self._rules.shipments if s.pickup in left and s.delivery in left)
+
+    def _shipments(self) -> Iterator[Shipment]:
+        for each in self._left_shipments():
+            yield Shipment(self._place[each.pickup], self._place[each.delivery])
+
+    def _placed(self, vehicle: VehicleType) -> VehicleType:
+        start, end = (None if e is None else self._place[e] for e in (vehicle.start, vehicle.end))
+        reload = tuple(self._place[stop] for stop in vehicle.reload)
+        return replace(vehicle, start=start, end=end, reload=reload)
+
+    def _sources(self) -> list[Source]:
+        """Return the sources of both costs between the stops of the rest."""
+        sources = list(self._fleet.stops.sources)
+        if self._rules.measure is not None and self._rules.clock != 1:
+            sources = sources[:1]  # the second costs are the same
+        names = [objective.name for objective in self._known.objectives[: len(sources)]]
+        sources = extended_sources(sources, names, self._all)
+        sources, _ = changed_sources(sources, names, self._request.costs, self._all)
+        chosen = np.array(list(self._place), np.int64)
+        placed = [between(source, chosen) for source in sources]
+        return [*placed, placed[0]][:2]
+
+    def _driven(self) -> Iterator[Route]:
+        """Yield what is left of the routes of the plan."""
+        working = [way for way in self._day.ways if not way.broken_down]
+        for index, way in enumerate(working):
+            yield from self._rest_of_route(index, way.left)
+        for route in self._day.waiting:
+            for index in range(len(working), len(self._types)):
+                if self._old[index] == route.vehicle:
+                    yield from self._rest_of_route(index, route.stops)
+
+    def _rest_of_route(self, vehicle: int, stops: Sequence[int]) -> Iterator[Route]:
+        reload = self._types[vehicle].reload
+        rest: list[int] = []
+        for stop in stops:
+            if (stop in reload and rest[-1:] != [stop]) or stop in self._left:
+                rest.append(stop)
+        if rest and rest[-1] in reload:
+            rest.pop()
+        if rest:
+            yield Route(vehicle, tuple(self._place[stop] for stop in rest))
+
+
+def _all_stops(request: ReplanFleetRequest, labels: Labels) -> AllStops:
+    """Return the stops of the front, the added ones, and new positions."""
+    items: dict[str, Any] = {f"add/{index}": item for index, item in enumerate(request.add)}
+    for index, way in enumerate(request.routes):
+        if isinstance(way.position, NewStop):
+            items[f"routes/{index}/position"] = way.position
+    return all_stops(labels.stops, items)
+
+
+def _removed(
+    request: ReplanFleetRequest, day: Day, rules: Rules, ids: Mapping[str, int]
+) -> frozenset[int]:
+    """Return the stops that are no longer visited.
+
+    Raises:
+        Refusal: One is not a stop, done or a depot, or only half of a shipment.
+    """
+    removed = []
+    for index, reference in enumerate(request.remove):
+        part = f"remove/{index}"
+        stop = find_index(reference, ids, part, len(ids))
+        if stop in rules.depots or stop in day.done:
+            what = "a depot" if stop in rules.depots else "done"
+            raise invalid(part, f"must not be {what}, got {show(reference)}")
+        removed.append(stop)
+    for each in rules.shipments:
+        halves = [stop for stop in (each.pickup, each.delivery) if stop in removed]
+        if len(halves) == 1 and each.pickup not in day.done:
+            demand = "must name both stops of a shipment that is not on board"
+            raise invalid(f"remove/{removed.index(halves[0])}", demand)
+    return frozenset(removed)

@@ -1,0 +1,179 @@
+"""POST /front/{id}/replan of fleets against a live server."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from tests.helpers.serving import app_of, serving
+from tests.helpers.straight_lines import metres_between
+
+SPEED = 36 / 3.6  # metres in a second
+NOW = 1500.0
+RANDOM = np.random.default_rng(4)
+PLACES = RANDOM.uniform((24.90, 60.15), (25.00, 60.20), (13, 2)).tolist()
+DISTANCE = {"name": "distance", "from": "great_circle"}
+TIME = {"name": "time", "from": "great_circle", "speed": 36, "over": "max"}
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+        yield client
+
+
+def request(**van: Any) -> dict[str, Any]:
+    """Return a request of twelve orders and three vans."""
+    orders = [
+        {"id": f"order-{i}", "location": PLACES[i], "demand": [1], "service": 60}
+        for i in range(1, 13)
+    ]
+    van = {"id": "van", "count": 3, "start": "depot", "end": "depot", "capacity": [5], **van}
+    return {
+        "stops": [{"id": "depot", "location": PLACES[0]}, *orders],
+        "vehicles": [{**van, "shift": [0, 30000]}],
+        "objectives": [DISTANCE, TIME],
+        "clock": "time",
+        "time_limit": 0.2,
+    }
+
+
+@pytest.fixture(scope="module")
+def front(client: httpx.Client) -> dict[str, Any]:
+    response = client.post("/fleet", json=request())
+    assert response.status_code == 200, response.text
+    return response.json()
+
+
+def full_plan(front: dict[str, Any]) -> int:
+    """Return the number of the plan with the most routes: three at least, as each holds 5 of 12."""
+    return max(range(len(front["front"])), key=lambda i: len(front["front"][i]["routes"]))
+
+
+def replan(client: httpx.Client, front: dict[str, Any], **changes: Any) -> httpx.Response:
+    body = {"time_limit": 0.2, "now": NOW, **changes}
+    return client.post(f"/front/{front['id']}/replan", json=body)
+
+
+def test_vans_go_on_with_what_they_carry_and_bring_nothing_new(
+    client: httpx.Client, front: dict[str, Any]
+) -> None:
+    plan = full_plan(front)
+    first, second, *_ = front["front"][plan]["routes"]
+    here = {"id": "here", "location": [24.95, 60.17]}
+    new = {"id": "new", "location": [24.93, 60.16], "demand": [1]}
+    visit = {"id": "visit", "location": [24.96, 60.18]}
+    ways = [
+        {"route": 0, "done": first["stops"][1:2], "position": here},
+        {"route": 1, "done": second["stops"][1:3]},
+    ]
+    removed = first["stops"][2]
+    changes = {"plan": plan, "routes": ways, "add": [new, visit], "remove": [removed]}
+    response = replan(client, front, **changes)
+    assert response.status_code == 200, response.text
+    answer = response.json()
+    done = {*first["stops"][1:2], *second["stops"][1:3], removed}
+    carried = [set(first["stops"][1:-1]) - done, set(second["stops"][1:-1]) - done]
+    places = {stop["id"]: stop["location"] for stop in answer["stops"]}
+    assert answer["front"]
+    for each in answer["front"]:
+        visited = {stop for route in each["routes"] for stop in visits_of(route)}
+        everything = {f"order-{i}" for i in range(1, 13)} - done
+        assert visited == everything | {"new", "visit"}
+        on_the_way = {route["route"]: route for route in each["routes"] if "route" in route}
+        for number, start in ((0, "here"), (1, second["stops"][2])):
+            route = on_the_way[number]
+            assert (route["stops"][0], route["arrivals"][0]) == (start, NOW)
+            assert set(visits_of(route)) - {"visit"} == carried[number]
+        for route in each["routes"]:
+            check_times(route, places)
+            assert "route" in route or route["arrivals"][0] >= NOW
+        assert 0 <= each["kept"] <= 1
+    assert max(each["kept"] for each in answer["front"]) > 0.5
+
+
+def visits_of(route: dict[str, Any]) -> list[str]:
+    return [stop for stop in route["stops"][1:] if stop != "depot"]
+
+
+def check_times(route: dict[str, Any], places: dict[str, list[float]]) -> None:
+    columns = zip(route["stops"], route["arrivals"], strict=True)
+    for number, ((a, left), (b, arrived)) in enumerate(pairwise(columns)):
+        service = 60 if number and a.startswith("order") else 0
+        seconds = metres_between(places[a], places[b]) / SPEED
+        assert arrived == pytest.approx(left + service + seconds)
+
+
+def test_a_van_that_broke_down_leaves_its_load_to_those_at_the_depot(
+    client: httpx.Client, front: dict[str, Any]
+) -> None:
+    plan = full_plan(front)
+    routes = front["front"][plan]["routes"]
+    ways = [{"route": 0, "done": routes[0]["stops"][1:2], "broken_down": True}]
+    response = replan(client, front, plan=plan, routes=ways)
+    if response.status_code == 422:  # two vans hold ten of eleven
+        assert response.json()["code"] == "no-plan"
+        ways = [{"route": 0, "done": routes[0]["stops"][1:3], "broken_down": True}]
+        response = replan(client, front, plan=plan, routes=ways)
+    answer = response.json()
+    done = set(ways[0]["done"])
+    for each in answer["front"]:
+        assert len(each["routes"]) <= 2
+        visited = {stop for route in each["routes"] for stop in visits_of(route)}
+        assert visited == {f"order-{i}" for i in range(1, 13)} - done
+        assert not any("route" in route for route in each["routes"])
+
+
+def test_a_van_that_may_load_again_brings_a_new_order_after_it_has(client: httpx.Client) -> None:
+    front = client.post("/fleet", json=request(reload=["depot"])).json()
+    plan = full_plan(front)
+    routes = front["front"][plan]["routes"]
+    ways = [{"route": i, "done": route["stops"][1:2]} for i, route in enumerate(routes)]
+    new = {"id": "new", "location": [24.93, 60.16], "demand": [1]}
+    response = replan(client, front, plan=plan, routes=ways, add=[new])
+    assert response.status_code == 200, response.text
+    answer = response.json()
+    for each in answer["front"]:
+        (stops,) = (route["stops"] for route in each["routes"] if "new" in route["stops"])
+        route = next(route for route in each["routes"] if "new" in route["stops"])
+        assert "route" not in route or "depot" in stops[: stops.index("new")]
+
+
+def test_the_rest_of_the_rest_is_replanned_too(client: httpx.Client, front: dict[str, Any]) -> None:
+    plan = full_plan(front)
+    stops = front["front"][plan]["routes"][0]["stops"]
+    once = replan(client, front, plan=plan, routes=[{"route": 0, "done": stops[1:2]}]).json()
+    routes = once["front"][0]["routes"]
+    number = next(i for i, route in enumerate(routes) if route.get("route") == 0)
+    done = routes[number]["stops"][1:2]
+    ways = [{"route": number, "done": done}]
+    answer = replan(client, once, plan=0, now=NOW + 600, routes=ways)
+    assert answer.status_code == 200, answer.text
+    left = {f"order-{i}" for i in range(1, 13)} - {*stops[1:2], *done}
+    for each in answer.json()["front"]:
+        assert {stop for route in each["routes"] for stop in visits_of(route)} == left
+
+
+REFUSED = [
+    ({"now": None}, "/now"),
+    ({"plan": 999}, "/plan"),
+    ({"routes": [{"route": 99}]}, "/routes/0/route"),
+    ({"routes": [{"route": 0}, {"route": 0}]}, "/routes/1/route"),
+    ({"routes": [{"route": 0, "done": ["depot"]}]}, "/routes/0/done/0"),
+    ({"routes": [{"route": 0, "position": "nowhere"}]}, "/routes/0/position"),
+    ({"remove": ["depot"]}, "/remove/0"),
+    ({"add": [{"id": "order-1", "location": [25, 60]}]}, "/add/0/id"),
+    ({"add": [{"id": "new"}]}, "/add/0/location"),
+]
+
+
+@pytest.mark.parametrize(("changes", "pointer"), REFUSED)
+def test_what_cannot_be_is_refused_where_it_stands(
+    client: httpx.Client, front: dict[str, Any], changes: dict[str, Any], pointer: str
+) -> None:
+    response = replan(client, front, **changes)
+    assert response.status_code == 422
+    assert [error["pointer"] for error in response.json()["errors"]] == [pointer], response.text
