@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,6 @@ from service.errors import invalid
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
 Measure = Literal["vehicles", "unassigned", "overtime", "lateness"]
-MEASURES: tuple[Measure, ...] = get_args(Measure)
 Span = tuple[float, float]
 # The rules that a route can break by itself.
 Rule = Literal[

@@ -39,7 +39,6 @@ REFUSED: Mapping[tuple[str, str], tuple[int, str, str]] = {
     ("tour", "robots"): (404, "no-tours", PLANS),
     ("tour", "fleet"): (404, "no-tours", PLANS),
     ("replan", "robots"): (409, "not-replannable", "only tours are replanned"),
-    ("replan", "fleet"): (409, "not-replannable", "only tours are replanned"),
     ("initial_tours", "replanned stops"): (422, "invalid-request", EARLIER),
     ("initial_tours", "replanned coverage"): (422, "invalid-request", EARLIER),
     **{
@@ -191,7 +190,10 @@ def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
     front = post(client, asked).json()
     first = front["front"][0]
     done = first.get("stops", first.get("tour", [0]))[:1]
-    answer = client.post(f"/front/{front['id']}/replan", json={"done": done, "time_limit": 0})
+    changes = {"done": done}
+    if asked.kind == "fleet":
+        changes = {"routes": [{"route": 0, "done": first["routes"][0]["stops"][1:2]}]}
+    answer = client.post(f"/front/{front['id']}/replan", json={**changes, "time_limit": 0})
     if answer.is_success:
         assert all("kept" in each for each in answer.json()["front"])
     return answer
