@@ -24,14 +24,21 @@ _NAMES = {
     "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
     " twstart twfrom twopen readytime ready earliest open opens opening from begin von start",
     "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
-    " duedate duetime due latest close closes closing to until end bis",
-    "window": "window timewindow tw deliverywindow zeitfenster",
+    " duedate duetime latest close closes closing to until end bis",
+    "window": "window timewindow tw deliverywindow zeitfenster windows timewindows deliverywindows",
     "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
     " servicezeit standzeit",
-    "skills": "skills skill",
+    "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
+    "release": "release releasetime releasedate availablefrom readyatdepot",
+    "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
+    " qualifications qualification",
+    "vehicle": "vehicle vehicleid vehiclename van vanid driver driverid drivername truck truckid"
+    " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer",
     "prize": "prize",
     "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
 }
+_OF_WINDOWS = ("window_from", "window_to", "window")
+WINDOWS = ("window", "window_2", "window_3")  # the windows that a table may have
 _AMOUNTS = _NAMES["demand"].split()
 _OF_VEHICLES_ONLY = {
     "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
@@ -44,6 +51,12 @@ _OF_VEHICLES_ONLY = {
     "longest_time": "maxtime maxtraveltime maxdrivingtime maxduration maxrouteduration",
     "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
     "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
+    "max_stops": "maxstops maxnumberofstops maxtasks maxorders maxjobs maxvisits maxdeliveries",
+    "max_trips": "maxtrips maxnumberoftrips tripsperday maxtours",
+    "reload": "reload reloadat reloadstop reloadstops reloaddepot reloaddepots reloadlocation",
+    "max_overtime": "overtime maxovertime overtimelimit allowedovertime ueberstunden",
+    "initial_load": "initialload startload loadatstart loadonboard onboard "
+    + " ".join(f"initial{each}" for each in _AMOUNTS if each != "load"),
     "per_km": "costperkm costkm kmcost perkm priceperkm kmkosten",
 }  # fields that only vehicles have
 _NAMES_OF_VEHICLES = {
@@ -64,15 +77,17 @@ _NAMES_OF_VEHICLES = {
     "shift_to": f"{_OF_VEHICLES_ONLY['shift_to']} {_NAMES['window_to']}",
     "shift": f"{_OF_VEHICLES_ONLY['shift']} {_NAMES['window']}",
     "count": "count vehicles available anzahl",
-    "skills": "skills skill",
+    "skills": "skills skill abilities capabilities qualifications qualification",
 }
 _PLACES = ("longitude", "latitude", "x", "y")
 _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(](.*?)[\])]")
+_HOURS_OF = (["working"], ["work"])  # whose hours are times of day
 _SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
-_SEVERAL = ("demand", "capacity", "cost")  # fields that a table may have several times
-FLEET = ("demand", "window_from", "window_to", "window", "service", "skills", "prize")
+# Fields that a table may have several times.
+_SEVERAL = ("demand", "capacity", "initial_load", "cost")
+_NAMED_WINDOW = re.compile(r"^(timewindow|deliverywindow|window|tw)(?!s?$)")
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
     rf"(?:SRID=4326;)?\s*POINT\s*Z?M?\s*\(\s*{_DEGREES}\s+{_DEGREES}(?:\s+{_DEGREES}){{0,2}}\s*\)",
@@ -81,6 +96,31 @@ _POINT = re.compile(
 # As web maps show a place: latitude first.
 _PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
 _INDEX = ("", "index", "unnamed: 0")
+
+
+def _numbered(words: str, number: int) -> str:
+    """Return names of columns with a number at the end, or after `window`."""
+    known = words.split()
+    within = {_NAMED_WINDOW.sub(rf"\g<1>{number}", word) for word in known}
+    return " ".join([*(f"{word}{number}" for word in known), *sorted(within - {*known})])
+
+
+def _names_of_stops() -> dict[str, str]:
+    """Return the names of all fields of stops, with those of second and third windows."""
+    several = {
+        field.replace("window", window, 1): _numbered(_NAMES[field], number)
+        for number, window in enumerate(WINDOWS, 1)
+        for field in _OF_WINDOWS
+    }
+    first = {field: f"{_NAMES[field]} {several.pop(field)}" for field in _OF_WINDOWS}
+    return {**_NAMES, **first, **several}
+
+
+_NAMES_OF_STOPS = _names_of_stops()
+FLEET = (
+    *(field for field in _NAMES_OF_STOPS if field.startswith("window")),
+    *("demand", "service", "due", "release", "skills", "vehicle", "prize"),
+)
 
 
 @dataclass
@@ -114,6 +154,10 @@ class Columns:
             self.fields[at] = None
             self.source.note_left_out(quoted(self.names[at]) + when)
 
+    def filled(self, column: int) -> list[int]:
+        """Return the rows in which a column has text."""
+        return [row for row in range(len(self.table.rows)) if self.text(row, column)]
+
     def number(self, row: int, column: int) -> float:
         """Return the number in a field.
 
@@ -125,6 +169,21 @@ class Columns:
         if number is None:
             raise self.refusal(row, column, "must be a number", text)
         return number
+
+    def amount(self, row: int, column: int) -> float:
+        """Return the number in a field, which must not be negative."""
+        number = self.number(row, column)
+        if number < 0:
+            raise self.refusal(row, column, f"must not be negative, got {number:g}")
+        return number
+
+    def whole(self, row: int, column: int) -> int:
+        """Return the whole number from 1 in a field."""
+        number = self.number(row, column)
+        if number < 1 or not number.is_integer():
+            demand = "must be a whole number from 1"
+            raise self.refusal(row, column, demand, self.text(row, column))
+        return int(number)
 
     def numbers(self, columns: list[int]) -> list[list[float]]:
         """Return the numbers of columns, row by row."""
@@ -215,16 +274,18 @@ def ids_of(columns: Columns) -> list[str]:
 
 
 def fields_of_vehicles(heading: Sequence[str]) -> list[str | None]:
-    """Return the field of vehicles that each column may be; only capacity may come several times.
+    """Return the field of vehicles that each column may be.
+
+    Only those of loads may come several times.
 
     Columns `start` and `end` may be times of a shift instead: their contents decide.
     """
-    return fields_of(heading, _NAMES_OF_VEHICLES)
+    return _fields_of(heading, _NAMES_OF_VEHICLES)
 
 
 def is_about_vehicles(heading: Sequence[str]) -> bool:
     """Return whether a heading has columns of vehicles alone, and none of stops alone."""
-    stops, found = fields_of(heading), set(fields_of(heading, _OF_VEHICLES_ONLY))
+    stops, found = fields_of(heading), set(_fields_of(heading, _OF_VEHICLES_ONLY))
     located = {"latitude", "x", "place"} & set(stops)
     return bool(found - ({"id", None} if located else {None})) and "demand" not in stops
 
@@ -232,15 +293,27 @@ def is_about_vehicles(heading: Sequence[str]) -> bool:
 def amount_of(name: str) -> str:
     """Return the amount that a column of demands or capacities is about, as `weight`, or ""."""
     plain = plain_name(name)
-    forms = ("{}", "max{}", "capacity{}", "{}capacity")
+    forms = ("{}", "max{}", "capacity{}", "{}capacity", "initial{}")
     return next((each for each in _AMOUNTS for form in forms if form.format(each) == plain), "")
 
 
-def fields_of(heading: Sequence[str], names: Mapping[str, str] = _NAMES) -> list[str | None]:
-    """Return the field that each column may be, by default of stops, or None.
+def fields_of(heading: Sequence[str]) -> list[str | None]:
+    """Return the field of stops that each column may be, or None; only some come several times.
 
-    Only demand, capacity and cost may come several times. Of two columns for any other field, the
-    one whose name comes first in `names` gets it, and the other one gets None.
+    A column `due` beside the begin of a window is its end, if no other column is.
+    """
+    taken = _fields_of(heading, _NAMES_OF_STOPS)
+    if "window_from" in taken and "window_to" not in taken:
+        pairs = zip(heading, taken, strict=True)
+        return ["window_to" if plain_name(name) == "due" else each for name, each in pairs]
+    return taken
+
+
+def _fields_of(heading: Sequence[str], names: Mapping[str, str]) -> list[str | None]:
+    """Return the field that each column may be, or None.
+
+    Of two columns for a field that comes once, the one whose name comes first in `names` gets it,
+    and the other one gets None.
     """
     ranks = [_rank(plain_name(name), names) for name in heading]
     taken: list[str | None] = [None] * len(heading)
@@ -271,5 +344,6 @@ def plain_name(name: str) -> str:
     """Return a heading without its unit, reduced to small letters and digits."""
     decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
     words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
-    kept = words[:-1] if len(words) > 1 and words[-1] in _SECONDS else words
+    of_a_day = words[-1:] == ["hours"] and words[:1] in _HOURS_OF
+    kept = words[:-1] if len(words) > 1 and words[-1] in _SECONDS and not of_a_day else words
     return "".join(kept)

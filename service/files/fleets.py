@@ -1,6 +1,6 @@
-"""Make requests for fleets: their objectives, depots, and one vehicle if a file names none."""
+"""Make requests for fleets: their objectives, depots, and vehicles if a file names none."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from service.files.reading import Request, Source, quoted
@@ -8,7 +8,10 @@ from service.files.reading import Request, Source, quoted
 Stop = dict[str, Any]
 Vehicle = dict[str, Any]
 _SPEED = 30  # km/h: a van in a city
-_OF_VISITS = ("demand", "service", "window", "prize")
+_TIMES = ("service", "window", "windows", "due", "release")
+_OF_VISITS = (*_TIMES, "demand", "prize", "skills", "vehicle")
+_OF_VISITED = ("skills", "vehicle")  # members that no depot has
+_MOST_NAMED = 3
 
 
 def planar(costs: dict[str, Any]) -> list[dict[str, Any]]:
@@ -32,7 +35,19 @@ def measured(source: Source, timed: bool) -> list[dict[str, Any]]:
 
 def timed(stops: Sequence[Stop]) -> bool:
     """Return whether stops have times."""
-    return any(stop.keys() & {"service", "window"} for stop in stops)
+    return any(stop.keys() & set(_TIMES) for stop in stops)
+
+
+def in_shifts(vehicles: Sequence[Vehicle]) -> bool:
+    """Return whether vehicles have shifts."""
+    return any(each.keys() & {"shift", "shifts"} for each in vehicles)
+
+
+def spans(name: str, found: Sequence[list[float]]) -> dict[str, Any]:
+    """Return windows or shifts as a member: `window`, or `windows` if there are several."""
+    if len(found) > 1:
+        return {f"{name}s": list(found)}
+    return {name: found[0]} if found else {}
 
 
 def at_depots(
@@ -41,24 +56,39 @@ def at_depots(
     """Return stops and vehicles; fill in places and shifts that vehicles do not name.
 
     A vehicle without a start and an end drives from and to the first stop, unless that stop has a
-    demand. Its shift is the window of the stop where it starts. Starts and ends are not visited.
+    demand, skills or a vehicle. Its shift is the window of the stop where it starts. Starts, ends
+    and stops for loading again are not visited.
     """
     first, by_id = stops[0], {stop["id"]: stop for stop in stops}
-    home = {} if any(first.get("demand", ())) else dict.fromkeys(("start", "end"), first["id"])
+    home = {} if _is_visited(first) else dict.fromkeys(("start", "end"), first["id"])
     placed = [each if each.keys() & {"start", "end"} else each | home for each in vehicles]
-    windows = [by_id.get(each.get("start"), {}).get("window") for each in placed]
     made = [
-        {"shift": window, **each} if window else each
-        for each, window in zip(placed, windows, strict=True)
+        each if in_shifts([each]) else each | _shift_of(by_id.get(each.get("start"), {}))
+        for each in placed
     ]
     depots = {each.get(end) for each in made for end in ("start", "end")}
+    depots |= {stop for each in made for stop in each.get("reload", ())}
     kept = [
         {name: value for name, value in stop.items() if name not in _OF_VISITS}
-        if stop["id"] in depots and not any(stop.get("demand", ()))
+        if stop["id"] in depots and not _is_visited(stop)
         else stop
         for stop in stops
     ]
     return kept, made
+
+
+def _is_visited(stop: Stop) -> bool:
+    """Return whether a stop has what no depot has."""
+    return any(stop.get("demand", ())) or any(stop.get(name) for name in _OF_VISITED)
+
+
+def _shift_of(depot: Stop) -> Vehicle:
+    """Return the windows of a depot as shifts of a vehicle."""
+    return {
+        shift: depot[window]
+        for shift, window in (("shift", "window"), ("shifts", "windows"))
+        if window in depot
+    }
 
 
 def all_demand(stops: Sequence[Stop]) -> list[int]:
@@ -71,23 +101,60 @@ def fleet_request(
 ) -> Request:
     """Return the request of a fleet, with a clock if stops or vehicles have times."""
     request: Request = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
-    if timed(stops) or any("shift" in each for each in vehicles):
+    if timed(stops) or in_shifts(vehicles):
         request["clock"] = objectives[1]["name"]
     return request
 
 
-def with_one_vehicle(source: Source, stops: list[Stop], objectives: list[Any]) -> Request:
-    """Return the request for one vehicle that starts at the first stop and holds all demand."""
+def with_measure(source: Source, request: Request) -> Request:
+    """Return a request whose second objective is lateness or overtime, if it has either.
+
+    The costs of the second objective become those of the clock.
+    """
+    stops, vehicles = request["stops"], request["vehicles"]
+    if any("due" in stop for stop in stops):
+        measure, means = "lateness", "lateness after stops are due"
+    elif any("max_overtime" in vehicle for vehicle in vehicles):
+        measure, means = "overtime", "overtime beyond shifts"
+    else:
+        return request
+    first, times = request["objectives"]
+    source.note("objectives", f"The second objective is {means}.")
+    clock = {name: value for name, value in times.items() if name != "over"} | {"name": "time"}
+    objectives = [first, {"name": measure, "measure": measure}]
+    return {**request, "objectives": objectives, "clock": clock}
+
+
+def with_vehicles(source: Source, stops: list[Stop], objectives: list[Any]) -> Request:
+    """Return the request for the vehicles that stops name, or for one if they name none.
+
+    Each vehicle starts at the first stop, holds all demand and has all skills.
+    """
     first, demands = stops[0], all_demand(stops)
-    stops, [vehicle] = at_depots(stops, [{"id": "vehicle"}])
-    if demands:
-        vehicle["capacity"] = demands
+    named = _distinct(stop["vehicle"] for stop in stops if "vehicle" in stop)
+    skills = _distinct(skill for stop in stops for skill in stop.get("skills", ()))
+    held = ({"capacity": demands} if demands else {}) | ({"skills": skills} if skills else {})
+    stops, vehicles = at_depots(stops, [{"id": name, **held} for name in named or ["vehicle"]])
     where = (
         f"from and to the first stop, {quoted(first['id'])}"
-        if "start" in vehicle
+        if "start" in vehicles[0]
         else "from any stop to any"
     )
-    holds = f", and holds all demand, {vehicle['capacity']}" if demands else ""
-    added = "The file names no vehicles, so one was added."
-    source.note("vehicle", f"{added} It drives {where}{holds}.")
-    return fleet_request(stops, [vehicle], objectives)
+    holds = f", and holds all demand, {demands}" if demands else ""
+    able = f", and has all skills, {_listed(skills)}" if skills else ""
+    added = "The file names no vehicles, so one was added. It"
+    if named:
+        added = f"One vehicle was added for each that stops name, {_listed(named)}. Each"
+    source.note("vehicle", f"{added} drives {where}{holds}{able}.")
+    return with_measure(source, fleet_request(stops, vehicles, objectives))
+
+
+def _distinct(texts: Iterable[str]) -> list[str]:
+    """Return each text once, in order."""
+    return list(dict.fromkeys(texts))
+
+
+def _listed(texts: Sequence[str]) -> str:
+    """Return the first texts for a sentence, and how many more there are."""
+    more = f" and {len(texts) - _MOST_NAMED} more" if len(texts) > _MOST_NAMED else ""
+    return ", ".join(quoted(each) for each in texts[:_MOST_NAMED]) + more

@@ -14,6 +14,7 @@ from service.files.vroom import is_vroom, read_vroom
 _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
 _OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives", "cost_layers"}
 _ROWS = {"coordinates", "grid", "cost_layer"}
+_WINDOWS = ("window", "windows", "time_window", "time_windows")
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
 
 
@@ -139,8 +140,12 @@ def _members(record: dict[str, Any], depth: int = 0) -> Iterator[tuple[str, str]
         elif name in ("location", "coordinates") and _is_place(value):
             yield "longitude", str(value[0])
             yield "latitude", str(value[1])
-        elif name in ("window", "time_window") and _is_place(value):
+        elif name in _WINDOWS and _is_place(value):
             yield name, f"{value[0]}-{value[1]}"
+        elif name in _WINDOWS and isinstance(value, list) and all(map(_is_place, value)):
+            yield name, "; ".join(f"{each[0]}-{each[1]}" for each in value)
+        elif isinstance(value, list) and all(isinstance(each, str) for each in value):
+            yield name, "; ".join(value)
         elif isinstance(value, list) and len(value) == 1:
             yield name, _text(value[0])
         else:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.files.columns import FLEET, Columns, columns_of, ids_of, place_in
-from service.files.fleets import Stop, measured, planar, timed, with_one_vehicle
+from service.files.fleets import Stop, measured, planar, timed, with_vehicles
 from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
@@ -119,13 +119,13 @@ def _located(columns: Columns) -> Reading:
 
 
 def _fleet(columns: Columns) -> Reading:
-    """Return the request for a fleet of one vehicle."""
+    """Return the request for a fleet whose vehicles have no table."""
     source = columns.source
     stops, plane = visits_of(columns)
     add_visits(columns, stops)
     columns.report()
     objectives = planar({"coordinates": plane}) if plane else measured(source, timed(stops))
-    return source.reading("fleet", with_one_vehicle(source, stops, objectives))
+    return source.reading("fleet", with_vehicles(source, stops, objectives))
 
 
 def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:

@@ -4,7 +4,6 @@ import re
 
 from service.files.columns import (
     Columns,
-    amount_of,
     columns_of,
     fields_of,
     fields_of_vehicles,
@@ -14,18 +13,22 @@ from service.files.columns import (
 from service.files.fleets import (
     Stop,
     Vehicle,
-    all_demand,
     at_depots,
     fleet_request,
+    in_shifts,
     measured,
     planar,
+    spans,
     timed,
+    with_measure,
 )
 from service.files.places import check_range
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import visits_of
 from service.files.tables import Table
-from service.files.visits import add_visits, is_time, seconds_in, span_in
+from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
+from service.files.vehicle_loads import add_loads
+from service.files.visits import add_visits, is_time, seconds_in, spans_in, texts_in
 
 _ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # members by column
 _KILOMETRE = 1000.0
@@ -47,17 +50,20 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     visits = columns_of(*of_stops)
     stops, plane = visits_of(visits)
     units = add_visits(visits, stops)
-    visits.report()
     columns = _columns_of_vehicles(other, of_vehicles[1], stops)
     vehicles = _Vehicles(columns, stops, located=plane is None).read()
-    _add_capacities(columns, vehicles, visits, stops, units)
+    add_loads(columns, vehicles, visits, stops, units)
+    add_skills(columns, vehicles)
+    check_servers(visits, stops, columns, vehicles)
+    visits.report()
     stops, vehicles = at_depots(stops, vehicles)
-    clock = timed(stops) or any("shift" in each for each in vehicles)
+    add_bounds(columns, vehicles)
+    clock = timed(stops) or in_shifts(vehicles)
     objectives = planar({"coordinates": plane}) if plane else measured(source, clock)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)
     columns.report()
-    request = fleet_request(stops, vehicles, objectives)
+    request = with_measure(source, fleet_request(stops, vehicles, objectives))
     return reading_of_several("fleet", request, (source, other))
 
 
@@ -97,20 +103,28 @@ class _Vehicles:
         else:
             ids = [f"vehicle {row + 1}" for row in rows]
             self._source.note("ids", "No column has names of vehicles: they are numbered from 1.")
-        columns.leave_out("skills")
         return [self._vehicle(row, id_) for row, id_ in zip(rows, ids, strict=True)]
 
     def _vehicle(self, row: int, id_: str) -> Vehicle:
         columns = self._columns
         vehicle: Vehicle = {"id": id_}
         if (at := columns.find("count")) is not None and columns.text(row, at):
-            vehicle["count"] = _whole(columns, row, at)
+            vehicle["count"] = columns.whole(row, at)
         for place, ends in _ENDS.items():
             if name := self._place(row, place, id_):
                 vehicle |= dict.fromkeys(ends, name)
-        if shift := span_in(columns, row, "shift"):
-            vehicle["shift"] = shift
-        return vehicle
+        if (at := columns.find("reload")) is not None and columns.text(row, at):
+            vehicle["reload"] = self._reload(row, at)
+        return vehicle | spans("shift", spans_in(columns, row, ["shift"]))
+
+    def _reload(self, row: int, at: int) -> list[str]:
+        """Return the ids of the stops at which a vehicle may load again."""
+        text = " ".join(self._columns.text(row, at).split())
+        ids = [text] if text in self._ids else texts_in(self._columns, row, at)
+        for each in ids:
+            if each not in self._ids:
+                raise self._columns.refusal(row, at, "must be ids of stops", each)
+        return ids
 
     def _place(self, row: int, place: str, vehicle: str) -> str | None:
         """Return the id of the stop where a vehicle starts or ends, given as an id or a place."""
@@ -136,33 +150,6 @@ class _Vehicles:
         return name
 
 
-def _add_capacities(
-    columns: Columns, vehicles: list[Vehicle], visits: Columns, stops: list[Stop], units: int
-) -> None:
-    """Add capacities, in the units and order of the demands; by default those of all demand."""
-    demands = [at for at, each in enumerate(visits.fields) if each == "demand"]
-    found = [at for at, each in enumerate(columns.fields) if each == "capacity"]
-    if not demands:
-        for _ in found:
-            columns.leave_out("capacity", " without demands of stops")
-        return
-    if not found:
-        text = f"No column has a capacity: each vehicle holds all demand, {all_demand(stops)}."
-        columns.source.note("vehicle", text)
-        for vehicle in vehicles:
-            vehicle["capacity"] = all_demand(stops)
-        return
-    if len(found) != len(demands):
-        demand = f"must have a column of capacity for each demand of {visits.source.name}"
-        raise columns.source.refusal(f"{demand}, {len(demands)}, got {len(found)}")
-    amounts = [amount_of(visits.names[at]) for at in demands]
-    by_amount = {amount_of(columns.names[at]): at for at in found}
-    if by_amount.keys() == set(amounts) and len(by_amount) == len(amounts):
-        found = [by_amount[amount] for amount in amounts]
-    for row, vehicle in enumerate(vehicles):
-        vehicle["capacity"] = [int(_amount(columns, row, at) * units) for at in found]
-
-
 def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
     """Add the limit on routes: on their time if there is a clock, else on their length."""
     used, left_out = "longest_time", "longest_distance"
@@ -175,7 +162,7 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
         if columns.text(row, at):
             unit = _KILOMETRE if _IN_KILOMETRES.search(columns.names[at]) else 1.0
             vehicle["longest"] = (
-                seconds_in(columns, row, at) if clock else unit * _amount(columns, row, at)
+                seconds_in(columns, row, at) if clock else unit * columns.amount(row, at)
             )
 
 
@@ -189,7 +176,7 @@ def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> N
         columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
         for row, vehicle in enumerate(vehicles):
             if columns.text(row, at):
-                vehicle["fixed"] = _amount(columns, row, at) / metre
+                vehicle["fixed"] = columns.amount(row, at) / metre
 
 
 def _rates(columns: Columns) -> set[float]:
@@ -197,21 +184,7 @@ def _rates(columns: Columns) -> set[float]:
     at = columns.find("per_km")
     if at is None:
         return set()
-    rates = {_amount(columns, row, at) for row in range(len(columns.table.rows))}
+    rates = {columns.amount(row, at) for row in range(len(columns.table.rows))}
     if len(rates) > 1 or 0.0 in rates:
         columns.leave_out("per_km", ", which differs by vehicle,")
     return rates - {0.0}
-
-
-def _whole(columns: Columns, row: int, at: int) -> int:
-    number = columns.number(row, at)
-    if number < 1 or not number.is_integer():
-        raise columns.refusal(row, at, "must be a whole number from 1", columns.text(row, at))
-    return int(number)
-
-
-def _amount(columns: Columns, row: int, at: int) -> float:
-    number = columns.number(row, at)
-    if number < 0:
-        raise columns.refusal(row, at, f"must not be negative, got {number:g}")
-    return number

@@ -1,18 +1,26 @@
-"""Read the columns of a table that are about visits: demands, windows, service, prizes."""
+"""Read the columns of a table that are about visits: demands, times, skills, vehicles, prizes."""
 
 import re
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from service.files.columns import Columns, seconds_of
-from service.files.fleets import Stop
+from service.files.columns import WINDOWS, Columns, seconds_of
+from service.files.fleets import Stop, spans
 from service.files.tables import number_in
 
 _TIME = re.compile(
     r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?(?:Z|[-+]\d\d:\d\d)?",
     re.ASCII,
 )
+_OR = re.compile(r"\s*(?:[;|,&]|\band\b|\bund\b)\s*", re.IGNORECASE)  # between two windows
+_SEPARATOR = re.compile(r"[;|,]")  # between skills or ids
+_AROUND_SPAN = " []()"
+_AROUND_TEXT = " []{}\"'"  # as Python and JSON write lists
+_ENDS = 2  # of a window
 _BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
 _MOST = 1e6  # the largest demand
 _ROUNDING = 1e-6
@@ -20,20 +28,26 @@ _MOST_DECIMALS = 3  # of a demand, which becomes a whole number
 
 
 def add_visits(columns: Columns, stops: list[Stop]) -> int:
-    """Add the members of visits to stops: demand, window, service and prize.
+    """Add the members of visits to stops: demand, times, skills, vehicle and prize.
 
     Returns:
         By how much the demands of the table were multiplied.
     """
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
-    columns.leave_out("skills")
-    for name, read in (("service", partial(seconds_in, columns)), ("prize", columns.number)):
+    readers: Mapping[str, Callable[[int, int], Any]] = {
+        "service": partial(seconds_in, columns),
+        "due": partial(seconds_in, columns),
+        "release": partial(seconds_in, columns),
+        "skills": partial(texts_in, columns),
+        "vehicle": lambda row, at: " ".join(columns.text(row, at).split()),
+        "prize": columns.number,
+    }
+    for name, read in readers.items():
         if (at := columns.find(name)) is not None:
-            for row in _filled(columns, at):
+            for row in columns.filled(at):
                 stops[row][name] = read(row, at)
     for row, stop in enumerate(stops):
-        if window := span_in(columns, row, "window"):
-            stop["window"] = window
+        stop |= spans("window", spans_in(columns, row, WINDOWS))
     return _add_demands(columns, demands, stops) if demands else 1
 
 
@@ -42,9 +56,10 @@ def is_time(text: str) -> bool:
     return _TIME.fullmatch(text) is not None
 
 
-def _filled(columns: Columns, at: int) -> list[int]:
-    """Return the rows in which a column has text."""
-    return [row for row in range(len(columns.table.rows)) if columns.text(row, at)]
+def texts_in(columns: Columns, row: int, at: int) -> list[str]:
+    """Return the texts in a field, such as skills, between semicolons, commas or bars."""
+    pieces = _SEPARATOR.split(columns.text(row, at))
+    return [text for each in pieces if (text := " ".join(each.strip(_AROUND_TEXT).split()))]
 
 
 def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int:
@@ -74,26 +89,57 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
     return 10**decimals
 
 
-def span_in(columns: Columns, row: int, field: str) -> list[float] | None:
-    """Return a window or a shift in seconds; None if its fields are empty."""
+def spans_in(columns: Columns, row: int, fields: Iterable[str]) -> list[list[float]]:
+    """Return the windows or shifts of a row in seconds, in order; none if its fields are empty.
+
+    Raises:
+        UnreadableFile: A window begins before the one before has ended.
+    """
+    found = [(span, at) for field in fields for span, at in _spans_in(columns, row, field)]
+    found.sort(key=lambda each: each[0])
+    for (before, _), (span, at) in pairwise(found):
+        if span[0] <= before[1]:
+            came = f"got {span[0]:g} s after {before[1]:g} s"
+            demand = f"must begin after the {_noun(columns, at)} before has ended, {came}"
+            raise columns.refusal(row, at, demand)
+    return [span for span, _ in found]
+
+
+def _spans_in(columns: Columns, row: int, field: str) -> list[tuple[list[float], int]]:
+    """Return the windows or shifts of one field, each with a column that it is in."""
     both = columns.find(field)
     if both is not None:
-        text = columns.text(row, both)
-        bounds = _BETWEEN.split(text.strip("[]() "))
-        if text and len(bounds) != 2:
-            raise columns.refusal(row, both, "must be two times, as 8:00-12:30", text)
-        return [seconds_in(columns, row, both, each) for each in bounds] if text else None
-    ends = [columns.find(f"{field}_from"), columns.find(f"{field}_to")]
-    texts = ["" if at is None else columns.text(row, at) for at in ends]
+        bounds = _bounds_in(columns, row, both)
+        return [([seconds_in(columns, row, both, text) for text in each], both) for each in bounds]
+    earliest, latest = (columns.find(f"{field}_{end}") for end in ("from", "to"))
+    texts = ["" if at is None else columns.text(row, at) for at in (earliest, latest)]
     if not any(texts):
-        return None
-    earliest, latest = ends
+        return []
     if latest is None or not texts[1]:
         at = latest if latest is not None else earliest
         assert at is not None
-        raise columns.refusal(row, at, f"must say when the {field} ends, got none")
+        noun = _noun(columns, at)
+        raise columns.refusal(row, at, f"must say when the {noun} ends, got none")
     start = 0.0 if earliest is None or not texts[0] else seconds_in(columns, row, earliest)
-    return [start, seconds_in(columns, row, latest)]
+    return [([start, seconds_in(columns, row, latest)], latest)]
+
+
+def _bounds_in(columns: Columns, row: int, at: int) -> list[list[str]]:
+    """Return the texts of both bounds of each window in a field."""
+    text = columns.text(row, at).strip(_AROUND_SPAN)
+    several = [_BETWEEN.split(each.strip(_AROUND_SPAN)) for each in _OR.split(text) if each]
+    if all(len(bounds) == _ENDS for bounds in several):
+        return several
+    one = _BETWEEN.split(text)  # whose numbers may have decimal commas
+    if len(one) == _ENDS:
+        return [one]
+    demand = "must be two times, as 8:00-12:30, or several as 8:00-10:00; 14:00-16:00"
+    raise columns.refusal(row, at, demand, columns.text(row, at))
+
+
+def _noun(columns: Columns, at: int) -> str:
+    """Return `window` or `shift`, by the field of a column."""
+    return str(columns.fields[at]).partition("_")[0]
 
 
 def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> float:

@@ -10,6 +10,7 @@ import httpx
 import openpyxl
 import pytest
 
+from tests.files.test_examples import FOLDER as EXAMPLES
 from tests.helpers.serving import LIMITS, app_of, serving
 
 ORDERS = "Order ID;Breitengrad;Längengrad;demand\ndepot;60,1;24,9;0\n#1001;60,2;24,95;3\n"
@@ -25,6 +26,13 @@ def address() -> Iterator[str]:
 def roomy() -> Iterator[str]:
     """A service that takes long bodies."""
     with serving(app_of(limits=replace(LIMITS, body_bytes=2**24))) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def patient() -> Iterator[str]:
+    """A service that may plan for seconds."""
+    with serving(app_of(limits=replace(LIMITS, seconds=5))) as address:
         yield address
 
 
@@ -53,6 +61,30 @@ def test_a_table_with_windows_is_planned_without_a_routing_engine(address: str) 
     [plan] = planned.json()["front"]
     assert plan["routes"][0]["stops"] == ["depot", "a", "depot"]
     assert 9 * 3600 <= plan["routes"][0]["arrivals"][1] <= 9 * 3600 + 600
+
+
+PLANNED = [
+    "orders-of-two-days.csv vans-of-two-shifts.csv",
+    "assigned.csv",
+    "due-in-a-plane.csv",
+    "several-windows.json",
+]
+
+
+@pytest.mark.parametrize("names", PLANNED)
+def test_files_with_bounds_are_planned_within_them(patient: str, names: str) -> None:
+    files = [(name, (EXAMPLES / name).read_bytes()) for name in names.split()]
+    asked = sent(patient, *files).json()["request"]
+    planned = httpx.post(f"{patient}/fleet", json=asked | {"time_limit": 1.5}, timeout=60)
+    assert planned.status_code == 200, planned.text
+    stops = {stop["id"]: stop for stop in asked["stops"]}
+    skills = {vehicle["id"]: vehicle.get("skills", []) for vehicle in asked["vehicles"]}
+    assert planned.json()["front"]
+    for plan in planned.json()["front"]:
+        for route in plan["routes"]:
+            for stop in (stops[each] for each in route["stops"]):
+                assert stop.get("vehicle", route["vehicle"]) == route["vehicle"]
+                assert set(stop.get("skills", ())) <= set(skills[route["vehicle"]])
 
 
 def test_two_tables_are_an_objective_each(address: str) -> None:

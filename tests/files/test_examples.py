@@ -102,7 +102,33 @@ OTHERS = {
     "demand-with-decimals.csv": fleet("depot a b", "demand", vehicles=van(capacity=[35])),
     "two-demands.csv": fleet("depot a b", vehicles=van(capacity=[3, 12])),
     "rfc3339.csv": fleet("job1 job2", "dates", vehicles=[{"id": "vehicle", "capacity": [3]}]),
-    "skills.csv": fleet("depot a", "left-out"),
+    "skills.csv": fleet("depot a", "vehicle", vehicles=van(capacity=[2], skills=["fridge"])),
+    "assigned.csv": fleet(
+        "home boiler_1 boiler_2 roof",
+        "vehicle",
+        vehicles=[
+            {"id": name, "skills": ["gas", "heights"], "start": "home", "end": "home"}
+            for name in ("Anna", "Bob")
+        ],
+    ),
+    "ready-and-due.csv": fleet(
+        "0 1 2",
+        vehicles=[
+            {"id": "vehicle", "capacity": [3], "start": "0", "end": "0", "shift": [0, 100]},
+        ],
+        clock="longest route",
+    ),
+    "due-in-a-plane.csv": fleet(
+        "0 1 2",
+        "objectives",
+        clock={"name": "time", "coordinates": [[0, 0], [3, 4], [6, 8]]},
+    ),
+    "several-windows.json": fleet("depot a b", vehicles=van(skills=["fridge", "crane"])),
+    "orders-of-two-days.csv vans-of-two-shifts.csv": fleet(
+        "depot #2001 #2002 #2003 #2004 #2005",
+        "objectives",
+        clock={"name": "time", "from": "great_circle", "speed": 30},
+    ),
     "plane-with-demand.csv": fleet("depot a b", "objectives", vehicles=van(capacity=[3])),
     "first-stop-has-demand.csv": fleet("a b", vehicles=[{"id": "vehicle", "capacity": [5]}]),
     "ogr2ogr-3d.GEOJSON": fleet("7 8", vehicles=[{"id": "vehicle", "capacity": [7]}]),
@@ -177,6 +203,7 @@ OTHERS = {
                 "longest": 28800,
                 "fixed": 5,
                 "capacity": [3, 12],
+                "skills": ["cold"],
             },
         ],
     ),

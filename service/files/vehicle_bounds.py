@@ -1,0 +1,100 @@
+"""Read the columns of a table of vehicles that bound routes: skills, stops, trips and overtime."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from service.files.columns import Columns
+from service.files.fleets import Stop, Vehicle, in_shifts
+from service.files.reading import UnreadableFile, quoted
+from service.files.visits import seconds_in, texts_in
+
+
+def add_skills(columns: Columns, vehicles: list[Vehicle]) -> None:
+    """Add what vehicles are able to do."""
+    if (at := columns.find("skills")) is not None:
+        for row in columns.filled(at):
+            vehicles[row]["skills"] = texts_in(columns, row, at)
+
+
+def check_servers(
+    visits: Columns, stops: list[Stop], columns: Columns, vehicles: list[Vehicle]
+) -> None:
+    """Check that a vehicle may visit each stop; leave out skills if vehicles have none.
+
+    Raises:
+        UnreadableFile: A stop names a vehicle that does not exist, or skills that none has.
+    """
+    if "skills" not in columns.fields:
+        visits.leave_out("skills", " without skills of vehicles")
+        for stop in stops:
+            stop.pop("skills", None)
+    by_id = {vehicle["id"]: vehicle for vehicle in vehicles}
+    _check_pinned(visits, stops, by_id, columns.source.name)
+    if (at := visits.find("skills")) is not None:
+        for row in visits.filled(at):
+            name = stops[row].get("vehicle")
+            able = vehicles if name is None else [by_id[name]]
+            if not _any_has(able, stops[row]["skills"]):
+                whose = "one vehicle" if name is None else f"vehicle {quoted(name)}"
+                demand = f"must be skills of which {whose} has all"
+                raise visits.refusal(row, at, demand, visits.text(row, at))
+
+
+def _check_pinned(
+    visits: Columns, stops: list[Stop], by_id: Mapping[str, Vehicle], file: str
+) -> None:
+    """Check that the vehicles that stops name are those of the other file."""
+    if (at := visits.find("vehicle")) is not None:
+        for row in visits.filled(at):
+            if stops[row]["vehicle"] not in by_id:
+                demand = f"must be the id of a vehicle of {file}"
+                raise visits.refusal(row, at, demand, stops[row]["vehicle"])
+
+
+def _any_has(vehicles: Iterable[Vehicle], skills: Sequence[str]) -> bool:
+    """Return whether a vehicle has all skills."""
+    return any(set(skills) <= set(vehicle.get("skills", ())) for vehicle in vehicles)
+
+
+def add_bounds(columns: Columns, vehicles: list[Vehicle]) -> None:
+    """Add the bounds on the routes of vehicles, whose places and shifts are known.
+
+    Raises:
+        UnreadableFile: A bound is not a number, or needs a shift or a stop for loading again.
+    """
+    for name, add in (
+        ("max_stops", _add_max_stops),
+        ("max_trips", _add_max_trips),
+        ("max_overtime", _add_max_overtime),
+    ):
+        if (at := columns.find(name)) is not None:
+            for row in columns.filled(at):
+                add(columns, row, at, vehicles[row])
+
+
+def _add_max_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+    for name in ("reload", "max_trips"):
+        other = columns.find(name)
+        if other is not None and columns.text(row, other):
+            raise _beside(columns, row, at, other)
+    vehicle["max_stops"] = columns.whole(row, at)
+
+
+def _beside(columns: Columns, row: int, at: int, other: int) -> UnreadableFile:
+    demand = f"must be empty beside {quoted(columns.names[other])}"
+    return columns.refusal(row, at, demand, columns.text(row, at))
+
+
+def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+    """Add the most trips of a route; by default vehicles load again where they start."""
+    if "reload" not in vehicle:
+        if "start" not in vehicle:
+            raise columns.refusal(row, at, "needs a stop for loading again, in a column 'reload'")
+        vehicle["reload"] = [vehicle["start"]]
+    vehicle["max_trips"] = columns.whole(row, at)
+
+
+def _add_max_overtime(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+    if overtime := seconds_in(columns, row, at):
+        if not in_shifts([vehicle]):
+            raise columns.refusal(row, at, "needs a shift of the vehicle", columns.text(row, at))
+        vehicle["max_overtime"] = overtime

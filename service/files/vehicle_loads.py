@@ -1,0 +1,69 @@
+"""Read the columns of a table of vehicles that are about loads: capacities, and initial loads."""
+
+from service.files.columns import Columns, amount_of
+from service.files.fleets import Stop, Vehicle, all_demand
+
+
+def add_loads(
+    columns: Columns, vehicles: list[Vehicle], visits: Columns, stops: list[Stop], units: int
+) -> None:
+    """Add capacities and initial loads, in the units and order of the demands.
+
+    Without a column of capacity, each vehicle holds all demand.
+
+    Raises:
+        UnreadableFile: There are not as many columns as demands, or a load exceeds a capacity.
+    """
+    demands = [at for at, each in enumerate(visits.fields) if each == "demand"]
+    if not demands:
+        for field in columns.fields:
+            if field in ("capacity", "initial_load"):
+                columns.leave_out(field, " without demands of stops")
+        return
+    if "capacity" in columns.fields:
+        found = _columns_of(columns, "capacity", visits, demands)
+        for row, vehicle in enumerate(vehicles):
+            vehicle["capacity"] = [int(columns.amount(row, at) * units) for at in found]
+    else:
+        _hold_all(columns, vehicles, all_demand(stops))
+    if "initial_load" in columns.fields:
+        found = _columns_of(columns, "initial_load", visits, demands)
+        for row, vehicle in enumerate(vehicles):
+            _add_initial_load(columns, row, found, vehicle, units)
+
+
+def _hold_all(columns: Columns, vehicles: list[Vehicle], demand: list[int]) -> None:
+    """Let each vehicle hold all demand, and note it."""
+    text = f"No column has a capacity: each vehicle holds all demand, {demand}."
+    columns.source.note("vehicle", text)
+    for vehicle in vehicles:
+        vehicle["capacity"] = demand
+
+
+def _columns_of(columns: Columns, field: str, visits: Columns, demands: list[int]) -> list[int]:
+    """Return the columns of a field, one for each demand: by their names if both share them."""
+    found = [at for at, each in enumerate(columns.fields) if each == field]
+    if len(found) != len(demands):
+        noun = field.replace("_", " ")
+        demand = f"must have a column of {noun} for each demand of {visits.source.name}"
+        raise columns.source.refusal(f"{demand}, {len(demands)}, got {len(found)}")
+    amounts = [amount_of(visits.names[at]) for at in demands]
+    by_amount = {amount_of(columns.names[at]): at for at in found}
+    if by_amount.keys() == set(amounts) and len(by_amount) == len(amounts):
+        return [by_amount[amount] for amount in amounts]
+    return found
+
+
+def _add_initial_load(
+    columns: Columns, row: int, found: list[int], vehicle: Vehicle, units: int
+) -> None:
+    """Add the load on board at the start, where a field has one."""
+    filled = [at for at in found if columns.text(row, at)]
+    if not filled:
+        return
+    load = [columns.amount(row, at) * units if at in filled else 0.0 for at in found]
+    for at, loaded, most in zip(found, load, vehicle["capacity"], strict=True):
+        if loaded > most:
+            came = f"{loaded / units:g}"
+            raise columns.refusal(row, at, f"must be at most the capacity, {most / units:g}", came)
+    vehicle["initial_load"] = [int(each) for each in load]
