@@ -4,16 +4,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from service.files.fleets import Stop, fleet_request, measured, timed
+from service.files.fleets import Stop, Vehicle, fleet_request, in_shifts, measured, spans, timed
 from service.files.places import check_range, note_places
 from service.files.reading import Reading, Source, quoted
 
 _LEFT_OUT = {
-    "jobs": ("skills", "priority", "setup", "pickup"),
-    "shipments": ("skills", "priority"),
-    "vehicles": ("skills", "breaks", "speed_factor", "max_tasks", "max_travel_time", "max_distance",
-                 "steps", "type"),
-}  # fmt: skip
+    "jobs": ("priority", "setup", "pickup", "time_window"),
+    "shipments": ("priority",),
+    "vehicles": ("speed_factor", "max_travel_time", "max_distance", "steps", "type"),
+}
+_NO_BREAKS = "breaks of vehicles were left out: plans have no breaks, so drivers get none."
 
 
 @dataclass
@@ -59,31 +59,21 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
     """Return a problem as the request for a fleet.
 
     Raises:
-        UnreadableFile: A member has a wrong type, or several windows.
+        UnreadableFile: A member has a wrong type, or a shipment several windows.
     """
     problem = _Problem(source)
-    vehicles = [_vehicle(problem, each, where) for each, where in _items(source, value, "vehicles")]
+    vehicles = _vehicles(problem, value)
     for job, where in _items(source, value, "jobs"):
-        _add_task(
-            problem,
-            job,
-            where,
-            str(job.get("id", len(problem.stops))),
-            job.get("delivery", job.get("amount")),
-        )
-    shipments = []
-    for shipment, where in _items(source, value, "shipments"):
-        pair = {}
-        for role in ("pickup", "delivery"):
-            task = shipment.get(role)
-            if not isinstance(task, dict):
-                raise source.refusal(f"{where} must have a {role}, an object")
-            load = shipment.get("amount") if role == "pickup" else None
-            name = f"{role} {task.get('id', len(problem.stops))}"
-            pair[role] = _add_task(problem, task, f"{where}/{role}", name, load)
-        shipments.append(pair)
+        name = str(job.get("id", len(problem.stops)))
+        skills = _skills(source, job, where)
+        windows = _windows(source, job, where)
+        load = job.get("delivery", job.get("amount"))
+        _add_task(problem, job, where, id=name, demand=load, skills=skills, **windows)
+    shipments = [
+        _shipment(problem, each, where) for each, where in _items(source, value, "shipments")
+    ]
     source.check_count("stops", source.bounds.cities, len(problem.stops))
-    clock = timed(problem.stops) or any("shift" in vehicle for vehicle in vehicles)
+    clock = timed(problem.stops) or in_shifts(vehicles)
     objectives = _objectives(problem, value, clock)
     request = fleet_request(problem.stops, vehicles, objectives)
     if shipments:
@@ -105,37 +95,110 @@ def _items(
         yield each, f"{name}/{at}"
 
 
-def _vehicle(problem: _Problem, vehicle: dict[str, Any], where: str) -> dict[str, Any]:
-    made: dict[str, Any] = {"id": str(vehicle.get("id", where))}
+def _vehicles(problem: _Problem, value: dict[str, Any]) -> list[Vehicle]:
+    """Return all vehicles, and note what is left out of them."""
+    source = problem.source
+    items = list(_items(source, value, "vehicles"))
+    vehicles = [_vehicle(problem, each, where) for each, where in items]
+    _number_same(source, vehicles)
+    if any(each.get("breaks") for each, _ in items):
+        source.note("left-out", _NO_BREAKS)
+    if value.get("shipments") and any("max_stops" in each for each in vehicles):
+        source.note(
+            "left-out", "max_tasks of vehicles was left out: it is not supported beside shipments."
+        )
+        vehicles = [
+            {name: member for name, member in each.items() if name != "max_stops"}
+            for each in vehicles
+        ]
+    return vehicles
+
+
+def _number_same(source: Source, vehicles: list[Vehicle]) -> None:
+    """Number vehicles that share an id, as VROOM allows for the shifts of one vehicle."""
+    seen: dict[str, int] = {}
+    for vehicle in vehicles:
+        name = vehicle["id"]
+        seen[name] = seen.get(name, 0) + 1
+        if seen[name] > 1:
+            vehicle["id"] = f"{name} ({seen[name]})"
+    if shared := [name for name, count in seen.items() if count > 1]:
+        named = ", ".join(map(quoted, shared[:3]))
+        source.note("ids", f"Vehicles that share an id were numbered, as {named}.")
+
+
+def _vehicle(problem: _Problem, vehicle: dict[str, Any], where: str) -> Vehicle:
+    made: Vehicle = {"id": str(vehicle.get("id", where))}
     for end in ("start", "end"):
         place, index = vehicle.get(end), vehicle.get(f"{end}_index")
         if place is not None or index is not None:
             made[end] = problem.depot(place, index, f"{where}/{end}")
-    if vehicle.get("capacity"):
-        made["capacity"] = vehicle["capacity"]
-    if shift := _window(problem.source, [vehicle.get("time_window")], f"{where}/time_window"):
-        made["shift"] = shift
+    window = vehicle.get("time_window")
     fixed = vehicle["costs"].get("fixed") if isinstance(vehicle.get("costs"), dict) else None
-    return {**made, "fixed": fixed} if fixed else made
+    members = {
+        "capacity": vehicle.get("capacity"),
+        "shift": _window(problem.source, window, f"{where}/time_window") if window else None,
+        "skills": _skills(problem.source, vehicle, where),
+        "fixed": fixed,
+    }
+    made |= {name: member for name, member in members.items() if member}
+    if (most := vehicle.get("max_tasks")) is not None:
+        made["max_stops"] = most
+    return made
 
 
-def _add_task(problem: _Problem, task: dict[str, Any], where: str, name: str, load: Any) -> str:
+def _shipment(problem: _Problem, shipment: dict[str, Any], where: str) -> dict[str, str]:
+    """Add both stops of a shipment, and return their ids."""
+    source, pair = problem.source, {}
+    skills = _skills(source, shipment, where)
+    for role in ("pickup", "delivery"):
+        task = shipment.get(role)
+        if not isinstance(task, dict):
+            raise source.refusal(f"{where} must have a {role}, an object")
+        load = shipment.get("amount") if role == "pickup" else None
+        name = f"{role} {task.get('id', len(problem.stops))}"
+        windows = _windows(source, task, f"{where}/{role}")
+        if "windows" in windows:
+            demand = f"{where}/{role}/time_windows must be one window: several are for jobs alone"
+            raise source.refusal(demand, task["time_windows"])
+        pair[role] = _add_task(
+            problem, task, f"{where}/{role}", id=name, demand=load, skills=skills, **windows
+        )
+    return pair
+
+
+def _add_task(problem: _Problem, task: dict[str, Any], where: str, **members: Any) -> str:
+    """Add the stop of a job, a pick-up or a delivery, and return its id."""
+    place, index, name = task.get("location"), task.get("location_index"), members.pop("id")
+    return problem.add(name, place, index, where, service=task.get("service"), **members)
+
+
+def _skills(source: Source, task: dict[str, Any], where: str) -> list[str]:
+    """Return the skills of a task or a vehicle, which are numbers, as texts."""
+    skills = task.get("skills") or []
+    if not isinstance(skills, list) or not all(_is_skill(each) for each in skills):
+        raise source.refusal(f"{where}/skills must be a list of numbers", skills)
+    return [str(each) for each in skills]
+
+
+def _is_skill(value: Any) -> bool:
+    return isinstance(value, int | str) and not isinstance(value, bool)
+
+
+def _windows(source: Source, task: dict[str, Any], where: str) -> dict[str, Any]:
+    """Return the windows of a task as members of a stop."""
     windows = task.get("time_windows") or []
-    window = _window(problem.source, windows, f"{where}/time_windows")
-    place, index = task.get("location"), task.get("location_index")
-    service = task.get("service")
-    return problem.add(name, place, index, where, service=service, demand=load, window=window)
+    if not isinstance(windows, list):
+        raise source.refusal(f"{where}/time_windows must be a list of windows", windows)
+    found = [_window(source, each, f"{where}/time_windows/{at}") for at, each in enumerate(windows)]
+    return spans("window", found)
 
 
-def _window(source: Source, windows: Any, where: str) -> list[float] | None:
-    """Return the only window of a list, or None if it is empty."""
-    if not windows or windows == [None]:
-        return None
-    if not isinstance(windows, list) or len(windows) > 1:
-        raise source.refusal(f"{where} must be one window", windows)
-    if not _are_numbers(windows[0], 2):
-        raise source.refusal(f"{where} must be two times in seconds", windows[0])
-    return list(windows[0])
+def _window(source: Source, window: Any, where: str) -> list[float]:
+    """Return a window, which must be two times."""
+    if not _are_numbers(window, 2):
+        raise source.refusal(f"{where} must be two times in seconds", window)
+    return list(window)
 
 
 def _are_numbers(value: Any, count: int) -> bool:

@@ -68,6 +68,8 @@ PLANNED = [
     "assigned.csv",
     "due-in-a-plane.csv",
     "several-windows.json",
+    "vroom-skills.json",
+    "vroom-shipments.json",
 ]
 
 

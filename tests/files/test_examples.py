@@ -136,12 +136,22 @@ OTHERS = {
     "orders.xlsx": fleet("depot #1001", "sheet", vehicles=van(shift=[28800, 64800], capacity=[2])),
     "vroom.json": fleet(
         "depot_1 14 pickup_4 delivery_5",
-        "left-out",
         shipments=[{"pickup": "pickup 4", "delivery": "delivery 5"}],
     ),
     "vroom-matrix.json": fleet(
         "depot_1 depot_2 1414 1515",
         vehicles=[{"id": "0", "start": "depot 1", "end": "depot 2"}],
+    ),
+    "vroom-skills.json": fleet("depot_1 1 2 3", "left-out ids", clock="time"),
+    "vroom-shipments.json": fleet(
+        "depot_1 pickup_1000 delivery_1",
+        "left-out",
+        vehicles=[
+            {
+                **{"id": "1", "start": "depot 1", "end": "depot 1", "skills": ["3"]},
+                **{"capacity": [5500, 35], "shift": [28800, 86340]},
+            },
+        ],
     ),
     "cvrp.vrp": fleet(
         "1 2 3 4",
@@ -244,7 +254,7 @@ REFUSED = {
     "utm.geojson": "export it in EPSG:4326",
     "line.geojson": "features/0 must be a Point, got 'LineString'",
     "cut-off.json": "must be JSON",
-    "vroom-two-windows.json": "jobs/0/time_windows must be one window",
+    "vroom-shipment-windows.json": "shipments/0/pickup/time_windows must be one window",
     "order.sop": "an order of cities",
     "att.TSP": "one objective: name another",
     "map.yaml": "open both together",
