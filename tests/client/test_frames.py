@@ -95,9 +95,18 @@ NAMED: list[tuple[dict[str, Any], str]] = [
     ),
     *(
         ({"stops": PLACES.assign(**{name: cell})}, f"stops: row 5, column '{name}' must be")
-        for name in ("demand", "service", "prize", "window")
+        for name in ("demand", "service", "prize", "window", "windows", "due", "release")
         for cell in ("8:00", pd.Timestamp(0), 1j)
     ),
+    *(
+        ({"stops": PLACES.assign(skills=[cell, None])}, "row 5, column 'skills' must be skills, as")
+        for cell in (7, ["crane", 7], pd.Timestamp(0))
+    ),
+    *(
+        ({"stops": PLACES.assign(windows=[None, cell])}, "row 6, column 'windows' must be")
+        for cell in ([0, 60], [[0, 60, 90]], [[0, "9:00"]], 7)
+    ),
+    ({"stops": PLACES.assign(vehicle=[["van"], None])}, "row 5, column 'vehicle' must be an id"),
     ({"stops": PLACES.assign(window=7)}, "column 'window' must be two times, as [0, 3600], got 7"),
     (
         {"stops": PLACES.set_axis(["id", "lat", "lat"], axis=1).assign(lon=1)},
@@ -157,6 +166,58 @@ def test_empty_cells_of_what_a_stop_may_lack_are_left_out() -> None:
     first, second = json.loads(fleet_plan({"stops": frame}).json)["stops"]
     assert first == {"id": "a", "location": [24.9, 60.1], "demand": [3], "window": [0, 60]}
     assert second == {"id": "b", "location": [25.0, 60.2], "prize": 4, "service": 5}
+
+
+def test_bounds_of_stops_are_lists_in_cells_and_may_be_empty() -> None:
+    frame = PLACES.assign(
+        windows=[[[0, 60], [120, 180]], None],
+        due=[np.nan, 50],
+        release=[10, pd.NA],
+        skills=[("fridge", "crane"), np.nan],
+        vehicle=[None, "van"],
+    )
+    request = {"stops": frame, "vehicles": [{"id": "van"}], "clock": "time"}
+    first, second = json.loads(fleet_plan(request).json)["stops"]
+    assert first == {
+        "id": "a",
+        "location": [24.9, 60.1],
+        "windows": [[0, 60], [120, 180]],
+        "release": 10,
+        "skills": ["fridge", "crane"],
+    }
+    assert second == {"id": "b", "location": [25.0, 60.2], "due": 50, "vehicle": "van"}
+
+
+def test_bounds_of_stops_may_be_as_a_file_has_them() -> None:
+    frame = PLACES.assign(
+        skills=["fridge; tail lift", "crane"],
+        vehicle=[np.nan, 7.0],
+        windows=[[np.array([0, 60])], np.array([[0, 60], [90, 99]])],
+    )
+    first, second = json.loads(fleet_plan({"stops": frame}).json)["stops"]
+    assert first["skills"] == ["fridge", "tail lift"]
+    assert first["windows"] == [[0, 60]]
+    assert "vehicle" not in first
+    assert second["skills"] == ["crane"]
+    assert second["vehicle"] == "7"
+    assert second["windows"] == [[0, 60], [90, 99]]
+
+
+class ListColumn(list[Any]):
+    """A list in a cell as polars gives it: a column of its own, compared cell by cell."""
+
+    def to_list(self) -> list[Any]:
+        return list(self)
+
+    def __eq__(self, other: object) -> Any:
+        raise AssertionError("a column has no truth value")
+
+
+def test_a_list_in_a_cell_of_polars_is_a_list() -> None:
+    cells = pd.Series([ListColumn([0, 60]), None], index=PLACES.index, dtype=object)
+    first, second = json.loads(fleet_plan({"stops": PLACES.assign(window=cells)}).json)["stops"]
+    assert first["window"] == [0, 60]
+    assert "window" not in second
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Turn DataFrames in requests into arrays and stops, without importing pandas or polars."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from numbers import Integral, Real
@@ -13,7 +14,10 @@ COSTS = ("matrices", "matrix", "second_matrix", "costs")  # members that hold co
 _IDS = ("id", "name")
 _LONGITUDES = ("lon", "lng", "longitude")
 _LATITUDES = ("lat", "latitude")
-_OF_FLEETS = ("demand", "service", "prize", "window")
+_NUMBERS = ("service", "prize", "due", "release")
+_OF_FLEETS = ("demand", *_NUMBERS, "window", "windows", "skills")
+_ENDS = 2  # of a window
+_SEPARATOR = re.compile(r"[;|,]")  # between skills in one text
 _MOST_SHOWN = 80  # characters of a wrong value in a sentence
 _Cells = list[tuple[str, Any]]  # the cells of a column: the position and the value of each
 
@@ -21,8 +25,9 @@ _Cells = list[tuple[str, Any]]  # the cells of a column: the position and the va
 def without_frames(value: Any, name: str = "") -> Any:
     """Return the members of a request with arrays or stops in place of DataFrames.
 
-    A DataFrame of `stops` has columns id, lon and lat, and for fleets those of their stops. Any
-    other DataFrame is a table of numbers. Costs may be infinite, and empty on the diagonal.
+    A DataFrame of `stops` has columns id, lon and lat, and for fleets those of their stops:
+    `windows` are lists, and `skills` lists or a text with semicolons, commas or bars. Any other
+    DataFrame is a table of numbers. Costs may be infinite, and empty on the diagonal.
 
     Raises:
         ValueError: A column is missing, or a cell does not fit its column; the message names it.
@@ -73,7 +78,18 @@ def _stops(frame: Any) -> list[dict[str, Any]]:
         for stop, (where, cell) in zip(stops, _column(frame, (name,), needed=False), strict=False):
             if not _is_empty(cell):
                 stop[name] = _of_fleet(name, cell, where)
+    _add_vehicles(stops, _column(frame, ("vehicle",), needed=False))
     return stops
+
+
+def _add_vehicles(stops: list[dict[str, Any]], cells: _Cells) -> None:
+    """Add the ids of the vehicles that must visit stops, where cells have some."""
+    filled = [row for row, (_, cell) in enumerate(cells) if not _is_empty(cell)]
+    for where, cell in (cells[row] for row in filled):
+        if not isinstance(cell, str | Real):
+            raise _wrong(where, "an id", cell)
+    for row, id_ in zip(filled, _ids([cells[row] for row in filled]), strict=True):
+        stops[row]["vehicle"] = id_
 
 
 def _column(frame: Any, names: Sequence[str], *, needed: bool = True) -> _Cells:
@@ -89,7 +105,14 @@ def _column(frame: Any, names: Sequence[str], *, needed: bool = True) -> _Cells:
         raise ValueError(f"stops must have {demand}, got {came}")
     column = columns[plain.index(name)]
     rows = zip(_labels(frame), frame[column], strict=True)
-    return [(f"stops: row {row!r}, column {column!r}", cell) for row, cell in rows]
+    return [(f"stops: row {row!r}, column {column!r}", _plain(cell)) for row, cell in rows]
+
+
+def _plain(cell: Any) -> Any:
+    """Return a cell, or a list if it is an array or a column of polars."""
+    if isinstance(cell, np.ndarray):
+        return cell.tolist()
+    return cell.to_list() if hasattr(cell, "to_list") else cell
 
 
 def _labels(frame: Any) -> list[Any]:
@@ -107,14 +130,35 @@ def _ids(cells: _Cells) -> list[str]:
     return [str(int(each) if whole and isinstance(each, float) else each) for _, each in cells]
 
 
-def _of_fleet(name: str, cell: Any, where: str) -> float | list[float]:
-    """Return a member of a fleet's stop: a number, or a list of numbers."""
-    listed = isinstance(cell, list | tuple | np.ndarray)
-    if name in ("service", "prize"):
+def _of_fleet(name: str, cell: Any, where: str) -> Any:
+    """Return a member of a fleet's stop: a number, or a list of numbers, windows or skills."""
+    if name in _NUMBERS:
         return _number(cell, where)
+    if name == "skills":
+        return _skills(cell, where)
+    listed = isinstance(cell, list | tuple)
     if name == "window" and not listed:
         raise _wrong(where, "two times, as [0, 3600]", cell)
+    if name == "windows":
+        return _windows(cell, where)
     return [_number(each, where) for each in (cell if listed else [cell])]
+
+
+def _windows(cell: Any, where: str) -> list[list[float]]:
+    """Return several windows, each of two times."""
+    windows = [_plain(each) for each in cell] if isinstance(cell, list | tuple) else [cell]
+    if not all(isinstance(each, list | tuple) and len(each) == _ENDS for each in windows):
+        raise _wrong(where, "windows of two times, as [[0, 3600], [7200, 9000]]", cell)
+    return [[_number(time, where) for time in each] for each in windows]
+
+
+def _skills(cell: Any, where: str) -> list[str]:
+    """Return skills, which are texts in a list, or in one text with separators."""
+    if isinstance(cell, str):
+        return [text for each in _SEPARATOR.split(cell) if (text := each.strip())]
+    if not isinstance(cell, list | tuple) or not all(isinstance(each, str) for each in cell):
+        raise _wrong(where, "skills, as ['fridge', 'crane']", cell)
+    return list(cell)
 
 
 def _number(cell: Any, where: str) -> float:
