@@ -35,6 +35,7 @@ _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, p
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
 _BRIEF = 0.25  # seconds for them without a time limit
+_FEW_STOPS = 25  # stops: to insert all of them one by one takes less than a tenth of a second
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
@@ -134,17 +135,28 @@ def _searched(
 def _plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
     """Yield plans that take tenths of a second, for when a search had none: they may break rules.
 
-    One route first, then that route cut in the best places.
+    One route first, then that route cut in the best places; for few stops also the plan into which
+    one after the other is inserted where it costs the least.
     """
     plan = _one_route(fleet)
     yield plan
-    if not plan.routes or fleet.rules.shipments:
-        return
-    try:
-        cutter = Cutter(fleet, [np.array(plan.routes[0].stops, np.int64)], stop)
-    except Refusal:  # too large to be cut
-        return
-    yield from islice(cutter.plans(), 1)
+    if plan.routes and not fleet.rules.shipments:
+        try:
+            cutter = Cutter(fleet, [np.array(plan.routes[0].stops, np.int64)], stop)
+        except Refusal:  # it cannot be cut
+            pass
+        else:
+            yield from islice(cutter.plans(), 1)
+    if len(fleet.rules.clients) <= _FEW_STOPS:
+        yield _with_all_stops(fleet, Plan(()))
+
+
+def _with_all_stops(fleet: Fleet, plan: Plan) -> Plan:
+    """Return a plan with the stops that it leaves out where they cost the least, if they fit."""
+    for stop in unassigned(fleet.rules, plan):
+        if stop not in plan.visited():
+            plan = with_stop(fleet, plan, stop) or plan
+    return plan
 
 
 def _one_route(fleet: Fleet) -> Plan:
@@ -244,10 +256,7 @@ class _Search:
 
         Stops that fit nowhere stay out; then the plan may break a rule, and is not put there.
         """
-        plan = driven
-        for stop in unassigned(self._fleet.rules, driven):
-            if stop not in plan.visited():
-                plan = with_stop(self._fleet, plan, stop) or plan
+        plan = _with_all_stops(self._fleet, driven)
         if not violations(self._fleet, plan):
             self.archive.offer(self._translation.solution(plan), FREE)
 
