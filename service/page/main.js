@@ -7,6 +7,7 @@ import { FileNotes } from "./opening/file_notes.js";
 import { formOf, kindOf } from "./common/kinds.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
+import { withUnits } from "./fleet/units.js";
 import { Placing } from "./inputs/placing.js";
 import { ReplanForm } from "./planning/replan_form.js";
 import { Way } from "./planning/replanning.js";
@@ -128,7 +129,7 @@ function ended() {
 
 function show(state) {
   if (state.answer) {
-    if (state.answer.objectives || state.answer.scale?.length > 2) objectives = namesIn(state.answer);
+    if (state.answer.objectives || state.answer.scale?.length > 2) objectives = withUnits(namesIn(state.answer), input.instance);
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);

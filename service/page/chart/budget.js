@@ -1,7 +1,7 @@
 /** Budget lines on the chart: a limit on one objective, which is dragged or moved by keys. */
 
-import { length } from "../common/numbers.js";
-import { UNNAMED, shortUnit } from "../common/objectives.js";
+import { amount, wordsOf } from "../common/amounts.js";
+import { UNNAMED, isCounted } from "../common/objectives.js";
 
 const STEPS = [
   { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 },
@@ -30,7 +30,7 @@ export class Budget {
 
   name(objectives) {
     this.#objectives = objectives;
-    this.#lines.forEach((line, axis) => line.setAttribute("aria-label", `At most this much ${objectives[axis].name}`));
+    this.#lines.forEach((line, axis) => line.setAttribute("aria-label", `At most this ${wordsOf(objectives[axis]).much} ${objectives[axis].name}`));
     this.place();
   }
 
@@ -53,7 +53,9 @@ export class Budget {
   get said() {
     if (this.#front.length < 2) return "";
     if (!this.#limit) return "For a budget, drag a handle on the edge of the chart.";
-    return `Budget: ${this.#amount(this.#limit.axis, this.#limit.most)} of ${this.#objectives[this.#limit.axis].name}.`;
+    const { axis, most } = this.#limit;
+    const objective = this.#objectives[axis];
+    return `Budget: ${amount(most, objective)}${isCounted(objective) ? "" : ` of ${objective.name}`}.`;
   }
 
   /** Removes the budget if a tour beyond it was chosen. */
@@ -81,7 +83,7 @@ export class Budget {
     line.style.setProperty("--reach", `${axis ? clientWidth : clientHeight}px`);
     const [least, all] = this.#ends(axis);
     for (const [name, value] of Object.entries({ valuemin: least, valuemax: all, valuenow: most })) line.setAttribute(`aria-${name}`, value);
-    line.setAttribute("aria-valuetext", limited ? `at most ${this.#amount(axis, most)}` : "no limit");
+    line.setAttribute("aria-valuetext", limited ? `at most ${amount(most, this.#objectives[axis])}` : "no limit");
   }
 
   #made(axis) {
@@ -116,7 +118,8 @@ export class Budget {
 
   #set(axis, wanted) {
     const [least, most] = this.#ends(axis);
-    this.#limit = wanted >= most ? null : { axis, most: Math.max(wanted, least) };
+    const whole = isCounted(this.#objectives[axis]) ? Math.floor(wanted) : wanted;
+    this.#limit = wanted >= most ? null : { axis, most: Math.max(whole, least) };
     this.place();
     this.#onBudget(this.index ?? (axis ? 0 : this.#front.length - 1));
   }
@@ -124,10 +127,5 @@ export class Budget {
   #ends(axis) {
     const ends = [this.#front[0], this.#front.at(-1)].map(({ lengths }) => lengths[axis]);
     return [Math.min(...ends), Math.max(...ends)];
-  }
-
-  #amount(axis, value) {
-    const unit = shortUnit(this.#objectives[axis]);
-    return `${length(Number(value.toPrecision(5)))}${unit && ` ${unit}`}`;
   }
 }

@@ -2,7 +2,8 @@
 
 import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";
-import { counted, length } from "../common/numbers.js";
+import { figure, stepsOf } from "../common/amounts.js";
+import { counted } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
 import { Budget } from "./budget.js";
 import { Labels } from "./labels.js";
@@ -20,6 +21,7 @@ export class FrontChart {
   #markers = {};
   #marked = {};
   #objectives = UNNAMED;
+  #steps; // between the ticks of each axis, if any suit
 
   /**
    * @param {HTMLElement} names holds the names of both ends and the knee, over the chart
@@ -31,7 +33,8 @@ export class FrontChart {
     this.#element = element;
     this.#labels = new Labels(names, onSelect, onPreview);
     const hooks = { draw: [() => this.#chart && this.#place()] }; // the scales are known from then on
-    this.#chart = new uPlot({ ...options(element), hooks }, [[], [], []], element);
+    this.#chart = new uPlot({ ...options(element, (value, axis) => figure(value, this.#objectives[axis])), hooks }, [[], [], []], element);
+    this.#steps = this.#chart.axes.map(({ incrs }) => incrs);
     this.#budget = new Budget(this.#chart, onBudget);
     for (const name of ["pinned", "selected", "previewed"]) {
       const marker = document.createElement("i");
@@ -49,7 +52,10 @@ export class FrontChart {
 
   name(objectives) {
     this.#objectives = objectives;
-    objectives.forEach((objective, axis) => (this.#chart.axes[axis].label = withUnit(objective)));
+    objectives.forEach((objective, axis) => {
+      const steps = stepsOf(objective);
+      Object.assign(this.#chart.axes[axis], { label: withUnit(objective), incrs: steps ? () => steps : this.#steps[axis] });
+    });
     this.#labels.show(this.#front, objectives);
     this.#budget.name(objectives);
     this.#place();
@@ -126,20 +132,21 @@ const columns = (front) => [
   front.map((item) => item.lengths[1]),
 ];
 
-function options(element) {
+/** The chart's options; `said` returns a value of the first or second objective in words. */
+function options(element, said) {
   return {
     ...size(element),
     legend: { show: false },
     cursor: { show: false },
     padding: [24, 28, 0, 0],
     scales: { x: { time: false, range: roomy }, y: { range: roomy } },
-    axes: [axis(UNNAMED[0], 28, apart), axis(UNNAMED[1], 64, 40)],
+    axes: [axis(0, 28, apart(said), said), axis(1, 64, 40, said)],
     series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],
   };
 }
 
 /** Pixels from one label of the first axis to the next, so that long ones do not touch. */
-const apart = (_chart, _axis, _least, most) => 7 * Math.max(4, length(Math.trunc(most)).length) + 16;
+const apart = (said) => (_chart, axis, _least, most) => 7 * Math.max(4, said(Math.trunc(most), axis).length) + 16;
 
 /** A staircase from each point to the next, around the area that the front dominates. */
 function line(name, width, points) {
@@ -152,9 +159,9 @@ function line(name, width, points) {
   };
 }
 
-function axis(objective, room, space) {
+function axis(at, room, space, said) {
   return {
-    label: withUnit(objective),
+    label: withUnit(UNNAMED[at]),
     size: room,
     space,
     labelSize: 18,
@@ -163,7 +170,7 @@ function axis(objective, room, space) {
     stroke: () => colour("quiet"),
     grid: { stroke: () => colour("line"), width: 1 },
     ticks: { show: false },
-    values: (_, ticks) => ticks.map((tick) => length(tick)),
+    values: (_, ticks) => ticks.map((tick) => said(tick, at)),
   };
 }
 
@@ -175,8 +182,7 @@ function roomy(_, least, most) {
 
 function described(front, objectives, { one, many }) {
   if (!front.length) return NONE;
-  const from = (axis) => length(Math.min(front[0].lengths[axis], front.at(-1).lengths[axis]));
-  const to = (axis) => length(Math.max(front[0].lengths[axis], front.at(-1).lengths[axis]));
-  const ranges = objectives.map(({ name }, axis) => `${name} from ${from(axis)} to ${to(axis)}`);
+  const end = (axis, pick) => figure(pick(front[0].lengths[axis], front.at(-1).lengths[axis]), objectives[axis]);
+  const ranges = objectives.map(({ name }, axis) => `${name} from ${end(axis, Math.min)} to ${end(axis, Math.max)}`);
   return `A front of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;
 }

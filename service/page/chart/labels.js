@@ -1,5 +1,7 @@
 /** Names on the chart for both ends of a front and its knee: buttons that preview and select their tours. */
 
+import { wordsOf } from "../common/amounts.js";
+
 const APART = 48; // pixels between the knee and an end, under which their names would touch
 const BESIDE = 6; // pixels from a point to its name
 
@@ -28,7 +30,8 @@ export class Labels {
   /** Names the tours of a front: fewer names if it has fewer than three tours, or its knee is an end. */
   show(front, objectives) {
     this.#indices = front.length > 1 ? [0, kneeOf(front), front.length - 1] : [];
-    const said = [`least ${objectives[0].name}`, "knee", `least ${objectives[1].name}`];
+    const [first, last] = objectives.map((objective) => `${wordsOf(objective).least} ${objective.name}`);
+    const said = [first, "knee", last];
     this.#buttons.forEach((button, which) => (button.textContent = said[which]));
   }
 

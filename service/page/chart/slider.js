@@ -1,6 +1,6 @@
 /** A slider from the least first length of a front to the least second; arrow keys go tour by tour. */
 
-import { length } from "../common/numbers.js";
+import { figure } from "../common/amounts.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nearest } from "../result/tours.js";
 
@@ -42,7 +42,7 @@ export class BalanceSlider {
     const at = balance.toFixed(2);
     this.#shown.textContent = at;
     const place = `${this.#noun.one} ${index + 1} of ${this.#front.length}`;
-    const said = this.#objectives.map(({ name }, axis) => `${name} ${length(lengths[axis])}`);
+    const said = this.#objectives.map((objective, axis) => `${objective.name} ${figure(lengths[axis], objective)}`);
     this.#input.setAttribute("aria-valuetext", `${at}, ${place}: ${said.join(", ")}`);
   }
 

@@ -1,17 +1,20 @@
 /** The clock of a plan: its times in words, and the marks of an axis. */
 
-const SECONDS = { s: 1, second: 1, seconds: 1, min: 60, minute: 60, minutes: 60, h: 3600, hour: 3600, hours: 3600 };
+import { SECONDS } from "../common/durations.js";
+
 const STEPS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, 86400]; // seconds
+const DAY = 86400; // seconds
 const SHORT = 1800; // seconds in all, up to which seconds are shown
 
 /**
  * The clock of these times, from the first to the last. `said` puts a time into words, and `marks`
- * returns at most `most` round times. If the unit is one of time, times are hours and minutes.
+ * returns at most `most` round times. If the unit is one of time, times are hours and minutes, from
+ * 24 hours on with the number of the day.
  */
 export function clockOf(times, unit) {
   const from = times.reduce((least, time) => Math.min(least, time));
   const to = times.reduce((most, time) => Math.max(most, time));
-  const second = SECONDS[unit];
+  const second = SECONDS.get(unit);
   const short = (to - from) * second < SHORT;
   const said = second ? (time) => hours(time * second, short) : (time) => `${Number(time.toPrecision(6))}${unit && ` ${unit}`}`;
   return { from, to, said, marks: (most) => multiples(from, to, stepOf((to - from) / most, second)) };
@@ -21,7 +24,8 @@ export function clockOf(times, unit) {
 function hours(seconds, short) {
   const two = (value) => String(value).padStart(2, "0");
   const all = short ? Math.round(seconds) : 60 * Math.round(seconds / 60);
-  const minutes = `${Math.floor(all / 3600)}:${two(Math.floor(all / 60) % 60)}`;
+  const day = all < DAY ? "" : `day ${Math.floor(all / DAY) + 1}, `;
+  const minutes = `${day}${Math.floor(all / 3600) % 24}:${two(Math.floor(all / 60) % 60)}`;
   return short ? `${minutes}:${two(all % 60)}` : minutes;
 }
 

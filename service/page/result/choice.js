@@ -1,7 +1,7 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
-import { length } from "../common/numbers.js";
-import { shortUnit } from "../common/objectives.js";
+import { amount, wordsOf } from "../common/amounts.js";
+import { isCounted, shortUnit } from "../common/objectives.js";
 
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
 export function choiceOf(front, tour, objectives, { one }) {
@@ -13,12 +13,19 @@ function sentence(front, tour, objectives, one) {
   if (front.length < 2) return `This ${one} is the best under ${objectives.length > 2 ? "all" : "both"} objectives.`;
   if (objectives.length > 2) return ofSeveral(front, tour, objectives);
   const [first, second] = objectives.map(({ name }) => name);
+  const [{ least: fewest }, words] = objectives.map(wordsOf);
   const least = front[0];
-  const gain = step(least, tour, 1, objectives, "less");
-  if (tour.lengths[0] === least.lengths[0]) return `The least ${first}. Every other ${one} has less ${second}, for more ${first}.`;
+  if (tour.lengths[0] === least.lengths[0]) return `The ${fewest} ${first}. Every other ${one} has ${words.less} ${second}, for more ${first}.`;
   const cost = step(least, tour, 0, objectives, "more");
-  const most = tour.lengths[1] === front.at(-1).lengths[1] ? `: the least ${second} there is` : "";
-  return `${cost} than the least, for ${gain}${most}.`;
+  const gain = step(least, tour, 1, objectives, words.less);
+  return `${cost} than the ${fewest}, for ${gain}${reached(front, tour, objectives[1])}.`;
+}
+
+/** Says that a tour has the least second length of all, or that a measure of plans is 0. */
+function reached(front, tour, objective) {
+  if (tour.lengths[1] !== front.at(-1).lengths[1]) return "";
+  if (objective.measure && tour.lengths[1] === 0) return ": none is left";
+  return isCounted(objective) ? ": the fewest there are" : `: the least ${objective.name} there is`;
 }
 
 /** How much more than the least of the front a tour has of each of three or four objectives. */
@@ -32,14 +39,16 @@ function ofSeveral(front, tour, objectives) {
   return sentence[0].toUpperCase() + sentence.slice(1);
 }
 
-/** How much more or less of an objective one tour has than another: in per cent, and in its unit. */
+/** How much more or less of an objective one tour has than another: in per cent, and in its unit; of a measure of plans in its unit alone. */
 function step(from, to, axis, objectives, word) {
-  const { name } = objectives[axis];
-  const unit = shortUnit(objectives[axis]);
+  const objective = objectives[axis];
+  const { name } = objective;
   const [before, after] = [from.lengths[axis], to.lengths[axis]];
-  const amount = `${length(Number(Math.abs(after - before).toPrecision(3)))}${unit ? ` ${unit}` : ""}`;
-  const share = Math.abs(before) > 0 ? (100 * Math.abs(after - before)) / before : null;
-  return share === null ? `${amount} ${word} ${name}` : `${percent(share)} ${word} ${name}${unit && ` (${amount})`}`;
+  const by = Math.abs(after - before);
+  if (isCounted(objective)) return `${Math.round(by)} ${word} ${Math.round(by) === 1 && name === "vehicles" ? "vehicle" : name}`;
+  const said = amount(by, objective, 3);
+  if (objective.measure || before === 0) return `${said} ${word} ${name}`;
+  return `${percent((100 * by) / before)} ${word} ${name}${shortUnit(objective) && ` (${said})`}`;
 }
 
 const percent = (share) => `${share < 0.1 ? "under 0.1" : share.toFixed(share < 10 ? 1 : 0)} %`;

@@ -1,8 +1,8 @@
 /** One picture of what is on the screen, as SVG or PNG: the front, and the selected tour or plan on its maps. */
 
 import { colour } from "../common/colours.js";
-import { length } from "../common/numbers.js";
-import { withUnit } from "../common/objectives.js";
+import { figure } from "../common/amounts.js";
+import { isCounted, withUnit } from "../common/objectives.js";
 import { mapPanel } from "./picture_map.js";
 import { SIDE, dot, round, text } from "./picture_parts.js";
 
@@ -39,7 +39,7 @@ function chart(front, selected, objectives) {
   const places = front.map(place);
   // The plane of the first two of several objectives has no staircase: tours above it may be better under the others.
   const steps = objectives.length > 2 ? "" : places.map(([x, y], at) => (at ? `H${x}V${y}` : `M${x} ${y}`)).join("");
-  const axes = scales.map((scale, axis) => axisOf(scale, axis, withUnit(objectives[axis]))).join("");
+  const axes = scales.map((scale, axis) => axisOf(scale, axis, objectives[axis])).join("");
   const dots = places.map((at) => dot(at, 2.5, "improved")).join("");
   return `${axes}<path d="${steps}" fill="none" stroke="${colour("improved")}" stroke-width="1.5"/>${dots}${dot(place(selected), 6, "selected")}`;
 }
@@ -51,9 +51,11 @@ function scaleOf(values, axis) {
   return { least, most, at: (value) => round(from + ((value - least) / (most - least || 1)) * (to - from)) };
 }
 
-function axisOf({ least, most, at }, axis, title) {
-  const values = Array.from({ length: TICKS + 1 }, (_, tick) => least + ((most - least) * tick) / TICKS);
-  const said = (value) => length(Number(value.toPrecision(4)));
+function axisOf({ least, most, at }, axis, objective) {
+  const even = Array.from({ length: TICKS + 1 }, (_, tick) => least + ((most - least) * tick) / TICKS);
+  const values = isCounted(objective) ? [...new Set(even.map(Math.round))] : even;
+  const title = withUnit(objective);
+  const said = (value) => figure(Number(value.toPrecision(4)), objective);
   if (axis) {
     const ticks = values.map((value) => text(MARGIN.left - 8, at(value) + 4, said(value), { size: 11, anchor: "end" }));
     return ticks.join("") + text(MARGIN.left, MARGIN.top - 18, title, { size: 12 });

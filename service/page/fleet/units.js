@@ -1,0 +1,17 @@
+/** The units of a fleet's times, and of objectives that are measures of plans. */
+
+/** The unit of the clock of a request: that of an objective, or of times that are no objective; "" if it is not known. */
+export function clockUnit({ clock, objectives }) {
+  const source = typeof clock === "string" ? objectives?.find(({ name }) => name === clock) : clock;
+  return source ? unitOf(source) : "";
+}
+
+/** The unit of the costs of an objective of a request, as the service answers it. */
+export const unitOf = ({ unit, from, speed }) => unit ?? (from ? (speed != null || from === "road_time" ? "s" : "m") : "");
+
+/** These objectives with units for those that are measures of plans of a request. */
+export function withUnits(objectives, request) {
+  const time = clockUnit(request ?? {});
+  const units = { lateness: time, overtime: time, unassigned: objectives[0].unit };
+  return objectives.map((each) => (each.measure && !each.unit ? { ...each, unit: units[each.measure] ?? "" } : each));
+}
