@@ -4,20 +4,23 @@ import { counted, length } from "../common/numbers.js";
 import { shortUnit } from "../common/objectives.js";
 
 /** Says why stops are left out, if any are. The service only says which; robots leave none out. */
-export function reason({ unassigned }, { name }) {
+export function reason({ unassigned }, objectives) {
   if (!unassigned) return "";
   if (!unassigned.length) return "No stop is left out.";
   const stops = counted(unassigned.length, "stop is", "stops are");
-  return `${stops} left out: stops with a prize may be. Their prizes are added to ${name}:`;
+  return `${stops} left out: stops with a prize may be. Their prizes are added to ${paying(objectives).name}:`;
 }
+
+/** The objective to which prizes are added. */
+const paying = (objectives) => objectives.find(({ measure }) => measure === "unassigned") ?? objectives[0];
 
 /**
  * Each stop that is left out, with its prize if it is known.
  *
  * @param {Map<string, object>} asked the stops of the request by id
  */
-export function leftOut({ unassigned = [] }, asked, objective) {
-  const unit = shortUnit(objective);
+export function leftOut({ unassigned = [] }, asked, objectives) {
+  const unit = shortUnit(paying(objectives));
   return unassigned.map((stop) => {
     const prize = asked.get(stop)?.prize;
     return prize == null ? stop : `${stop}: prize ${length(prize)}${unit && ` ${unit}`}`;

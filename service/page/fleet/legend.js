@@ -1,24 +1,24 @@
 /** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, and its lengths. */
 
-import { length } from "../common/numbers.js";
+import { figure } from "../common/amounts.js";
 import { withUnit } from "../common/objectives.js";
 import { stylesOf, swatch } from "./route_styles.js";
-import { namesOf, visits } from "./routes_of_plan.js";
+import { visits } from "./routes_of_plan.js";
 
 /** Fills a table with the routes of a plan, and the plan itself in the last row. */
-export function showLegend(table, plan, movers, asked, objectives) {
-  const names = namesOf(plan.routes, movers);
+export function showLegend(table, plan, movers, asked, objectives, names) {
+  const said = ({ lengths }) => lengths.map((value, axis) => figure(value, objectives[axis]));
   const styles = stylesOf(plan.routes, asked.robots);
   const counts = plan.routes.map((route) => visits(route, movers, asked));
   const rows = plan.routes.map((route, at) => {
     const head = made("th", names[at], "row");
     head.prepend(swatch(styles[at]));
-    return [head, ...cells([counts[at], ...route.lengths.map(length)])];
+    return [head, ...cells([counts[at], ...said(route)])];
   });
   const all = counts.reduce((sum, count) => sum + count, 0);
   table.tHead.replaceChildren(line([movers.one, movers.stops, ...objectives.map(withUnit)].map((title) => made("th", title, "col"))));
   table.tBodies[0].replaceChildren(...rows.map(line));
-  table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...plan.lengths.map(length)])]));
+  table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...said(plan)])]));
 }
 
 const cells = (values) => values.map((value) => made("td", value));

@@ -1,22 +1,33 @@
 /** The selected plan by vehicle or robot: legend, lanes over time, stops, and what is left out. */
 
+import { amount } from "../common/amounts.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nameOf } from "../inputs/names.js";
+import { ChosenVisit } from "./chosen_visit.js";
+import { knownFleet } from "./known_fleet.js";
 import { Lanes } from "./lanes.js";
 import { leftOut, reason } from "./left_out.js";
 import { showLegend } from "./legend.js";
 import { namesOf } from "./routes_of_plan.js";
 import { clockOf } from "./times.js";
+import { clockUnit } from "./units.js";
 import { visitTimes } from "./visit_times.js";
 
 const element = (id) => document.getElementById(id);
 
 export class PlanView {
-  #lanes = new Lanes(element("fleet-lanes"));
+  #lanes;
+  #chosen;
   #asked = {}; // the request, as far as it is known
   #objectives = UNNAMED;
   #plan = null;
   #movers = null; // of its routes
+
+  /** @param {(stop: string | null) => void} onChoose called with the stop that is chosen in a lane */
+  constructor(onChoose) {
+    this.#lanes = new Lanes(element("fleet-lanes"), (lane, at) => this.#chosen.choose({ lane, at }));
+    this.#chosen = new ChosenVisit(element("fleet-stop"), this.#lanes, onChoose);
+  }
 
   /** Takes the request whose plans will be shown. */
   open(asked) {
@@ -32,6 +43,11 @@ export class PlanView {
     this.show(plan, this.#movers);
   }
 
+  /** Takes the stop that is chosen on a map; null if none is. */
+  choose(stop) {
+    this.#chosen.chooseStop(stop);
+  }
+
   /** Shows a plan, whose routes are of these movers; hides everything where there is none. */
   show(plan, movers) {
     if (plan && plan === this.#plan) return;
@@ -41,31 +57,49 @@ export class PlanView {
     this.#movers = movers;
     element("fleet-title").textContent = movers.many;
     element("fleet-listed").textContent = movers.listed;
-    const stops = new Map(this.#asked.stops?.map((stop) => [stop.id, stop]));
-    showLegend(element("fleet-legend"), plan, movers, this.#asked, this.#objectives);
-    this.#showTimes(plan, stops);
-    element("fleet-left-out-title").textContent = reason(plan, this.#objectives[0]);
-    list("fleet-left-out", leftOut(plan, stops, this.#objectives[0]));
+    const known = knownFleet(this.#asked);
+    const names = namesOf(plan.routes, movers, this.#asked);
+    showLegend(element("fleet-legend"), plan, movers, this.#asked, this.#objectives, names);
+    this.#showTimes(plan, names, known);
+    element("fleet-left-out-title").textContent = reason(plan, this.#objectives);
+    list("fleet-left-out", leftOut(plan, known.stops, this.#objectives));
   }
 
   /** Shows a lane for each vehicle if the plan has times, and the stops of each vehicle in order. */
-  #showTimes({ routes }, stops) {
-    const names = namesOf(routes, this.#movers);
+  #showTimes(plan, names, known) {
+    const { routes } = plan;
     const timed = routes.length > 0 && routes.every(({ arrivals }) => arrivals);
-    const lanes = timed ? routes.map((route, at) => ({ name: names[at], visits: visitTimes(route, stops) })) : [];
-    const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end]));
-    const clock = timed ? clockOf(times, this.#unit) : null;
+    const lanes = timed ? routes.map((route, at) => ({ name: names[at], visits: visitTimes(route, known) })) : [];
+    const clock = timed ? this.#clockOf(lanes) : null;
     this.#lanes.show(lanes, clock);
-    element("fleet-lanes-help").hidden = !timed;
+    this.#chosen.show(plan, lanes, clock);
+    showSigns(lanes);
     const visit = (stop, time) => (clock ? `${stop} ${clock.said(time)}` : stop);
     const said = (route) => route[this.#movers.through].map((stop, at) => visit(nameOfStop(stop), route.arrivals?.[at])).join(" → ");
     list("fleet-stops", routes.map((route, at) => `${names[at]}: ${said(route)}`));
   }
 
-  /** The unit of the objective that is time. */
-  get #unit() {
-    return this.#objectives.find(({ name }) => name === this.#asked.clock)?.unit ?? "";
+  /** The clock of these lanes, which also says how long something takes. */
+  #clockOf(lanes) {
+    const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end]));
+    const unit = clockUnit(this.#asked);
+    return { ...clockOf(times, unit), lasting: (time) => amount(time, { measure: "waiting", unit }) };
   }
+}
+
+/** Shows what the signs in the lanes mean, of those that there are. */
+function showSigns(lanes) {
+  const visits = lanes.flatMap((lane) => lane.visits);
+  const there = {
+    drives: visits.length,
+    visits: visits.length,
+    waits: visits.some(({ arrival, begin }) => begin > arrival),
+    loads: visits.some(({ kind }) => kind === "loading"),
+    late: visits.some(({ late }) => late),
+    windows: visits.some(({ windows }) => windows.length),
+  };
+  for (const [name, shown] of Object.entries(there)) element("fleet-signs").querySelector(`.${name}`).hidden = !shown;
+  element("fleet-signs").hidden = !visits.length;
 }
 
 /** Stops of a fleet have ids; places of robots are numbered from 1. */

@@ -1,21 +1,40 @@
 /** The routes of a plan by vehicle or robot: their names, and how much they visit. */
 
-/** The name of each route: its robot, or its type of vehicle, with a number if several routes have that type. */
-export function namesOf(routes, { by }) {
+import { daysOf, knownFleet } from "./known_fleet.js";
+
+/**
+ * The name of each route: its robot, or its type of vehicle and its shift, with a number if several
+ * routes have the same ones.
+ *
+ * @param {object} asked the request, as far as it is known
+ */
+export function namesOf(routes, { by }, asked) {
   const used = new Map();
-  return routes.map(({ [by]: name }) => {
-    if (routes.filter((other) => other[by] === name).length === 1) return name;
-    used.set(name, (used.get(name) ?? 0) + 1);
-    return `${name} ${used.get(name)}`;
+  const alike = (one, other) => one[by] === other[by] && one.shift === other.shift;
+  return routes.map((route) => {
+    const { [by]: name, shift } = route;
+    const during = shift === undefined ? "" : `, ${shiftOf(route, asked)}`;
+    if (routes.filter((other) => alike(route, other)).length === 1) return `${name}${during}`;
+    const key = JSON.stringify([name, shift]);
+    used.set(key, (used.get(key) ?? 0) + 1);
+    return `${name} ${used.get(key)}${during}`;
   });
 }
 
-/** How many stops a route visits, beside those at which it starts and ends. */
+/** The shift of a route: its day, if each shift of its vehicle is on another day, or its number. */
+function shiftOf({ vehicle, shift }, asked) {
+  const days = daysOf(asked, vehicle);
+  return days ? `day ${days[shift]}` : `shift ${shift + 1}`;
+}
+
+/** How many stops a route visits, beside those at which it starts, ends and loads again. */
 export function visits(route, { through }, asked) {
   const stops = route[through];
   const ends = endsOf(route, asked);
   const round = stops.length > 1 && stops[0] === stops.at(-1);
-  return stops.length - (ends ? ends.filter((end) => end != null).length : round ? 2 : 0);
+  const { reload = [] } = knownFleet(asked).types.get(route.vehicle) ?? {};
+  const loads = reload.length ? stops.slice(1, -1).filter((stop) => reload.includes(stop)).length : 0;
+  return stops.length - loads - (ends ? ends.filter((end) => end != null).length : round ? 2 : 0);
 }
 
 /** Where the request wants a route to start and end; undefined if that is not known. */

@@ -8,6 +8,7 @@ const HINTS = matchMedia("(pointer: coarse)").matches
 export class ChosenStop {
   #city = null;
   #editable = false;
+  #choosable = false;
   #count = 0;
   #nameOf = String;
   #onChosen;
@@ -32,16 +33,25 @@ export class ChosenStop {
     return this.#editable;
   }
 
+  /** Whether stops can be chosen: those that can be moved, and those of a fleet. */
+  get choosable() {
+    return this.#choosable;
+  }
+
   /** Sets the names of the stops. */
   name(nameOf) {
     this.#nameOf = nameOf;
   }
 
-  /** Takes the number of stops. The choice stays if the stops are `kept` and none was added or deleted. */
-  show(count, editable, kept) {
+  /**
+   * Takes the number of stops, and whether they can be moved, or only chosen. The choice stays if the
+   * stops are `kept` and none was added or deleted.
+   */
+  show(count, editable, kept, choosable = editable) {
     const chosen = editable && kept && count === this.#count ? this.#city : null;
     this.#count = count;
     this.#editable = editable && count > 0;
+    this.#choosable = choosable && count > 0;
     this.choose(chosen);
   }
 
@@ -53,7 +63,7 @@ export class ChosenStop {
 
   /** Chooses the next stop, or the one before; if none is chosen, the first or the last. */
   turn(by) {
-    if (!this.#editable) return;
+    if (!this.#choosable) return;
     const from = this.#city ?? (by > 0 ? -1 : this.#count);
     this.choose((from + by + this.#count) % this.#count);
   }
@@ -68,6 +78,6 @@ export class ChosenStop {
     const [all, one] = HINTS;
     const said = this.#city === null ? all : `${this.#nameOf(this.#city)} is chosen. ${one}`;
     element("stop-help").textContent = this.#editable ? said : "";
-    element("delete-stop").hidden = this.#city === null;
+    element("delete-stop").hidden = this.#city === null || !this.#editable;
   }
 }

@@ -38,7 +38,7 @@ export class Handling {
   /** A finger moves the stop that it has chosen before, so that any other touch scrolls the page. */
   #press(event) {
     if (event.button !== 0 || !event.isPrimary) return;
-    const city = this.#at(event);
+    const city = this.#chosen.editable ? this.#at(event) : null;
     if (city === null || (event.pointerType === "touch" && city !== this.#chosen.city)) return;
     this.#held = { city, from: this.#point(event), moved: false, panning: this.#map.dragging.enabled() };
     this.#map.dragging.disable();
@@ -84,8 +84,9 @@ export class Handling {
     if (event.target !== this.#map.getContainer()) return; // the zoom buttons have keys of their own
     if (event.key === "Enter") this.#chosen.turn(event.shiftKey ? -1 : 1);
     else if (city === null) return;
-    else if (event.key in ARROWS) this.#nudge(city, ARROWS[event.key], event.shiftKey ? 1 : STEP);
     else if (event.key === "Escape") this.#chosen.choose(null);
+    else if (!this.#chosen.editable) return;
+    else if (event.key in ARROWS) this.#nudge(city, ARROWS[event.key], event.shiftKey ? 1 : STEP);
     else if (event.key === "Delete" || event.key === "Backspace") this.#chosen.remove();
     else return;
     event.preventDefault();
@@ -105,9 +106,9 @@ export class Handling {
     if (this.#chosen.city !== null) this.#plane.drop(this.#chosen.city, point);
   }
 
-  /** The stop at a pointer; null if there is none, or stops cannot be changed. */
+  /** The stop at a pointer; null if there is none, or stops cannot be chosen. */
   #at(event) {
-    if (!this.#chosen.editable) return null;
+    if (!this.#chosen.choosable) return null;
     return this.#plane.near(this.#point(event), REACH[event.pointerType] ?? REACH.mouse);
   }
 

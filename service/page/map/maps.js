@@ -29,6 +29,7 @@ export class Maps {
   #onEarth = false;
   #objectives = UNNAMED;
   #ids = null; // of the stops
+  #asked = {}; // the request, as far as it is known
   #robots = []; // of the request
   #flown = false; // whether both objectives are measured in straight lines
 
@@ -37,10 +38,16 @@ export class Maps {
    *   clicked, in longitude and latitude if it is the only one
    * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
    * @param {(city: number) => void} onDelete called with the stop to delete
+   * @param {(stop: string | null) => void} onChoose called with the id of a fleet's stop that is chosen
    */
-  constructor({ onClick, onMove, onDelete }) {
+  constructor({ onClick, onMove, onDelete, onChoose }) {
     const clicked = (plane, place) => onClick(plane, place, this.#form === "stops");
-    this.#planes = new Planes([element("plane-1"), element("plane-2")], { onClick: clicked, onMove, onDelete });
+    this.#planes = new Planes([element("plane-1"), element("plane-2")], {
+      onClick: clicked,
+      onMove,
+      onDelete,
+      onChoose: (city) => this.#kind.movers && onChoose(city === null ? null : this.#ids?.[city] ?? null),
+    });
     this.#planes.follow((cities) => this.#ways.along(cities));
     this.#grid = new GridMap(element("grid"));
   }
@@ -106,6 +113,7 @@ export class Maps {
   show(instance, fit, editable) {
     this.#kind = kindOf(instance);
     this.#form = formOf(instance);
+    this.#asked = instance;
     this.#robots = instance.robots ?? [];
     this.#flown = Boolean(instance.objectives?.every(({ from }) => from === "great_circle"));
     const { drawn, rows } = placed(instance);
@@ -116,11 +124,18 @@ export class Maps {
     document.querySelector(".wide").hidden = !this.#kind.onGrid;
     if (this.#kind.onGrid) this.#grid.show(instance);
     else this.#planes.show(rows, fit, onEarth);
-    this.#planes.edit(editable && EDITED.includes(this.#form), !fit);
+    const movable = editable && EDITED.includes(this.#form);
+    this.#planes.edit(movable, !fit, movable || Boolean(this.#kind.movers && !this.#kind.onGrid));
     this.#onEarth = onEarth && rows.length > 0;
     this.#ways.lead(this.#onEarth ? rows.map((row) => row.slice(0, 2)) : []);
     this.#sayLines(null);
     this.#sayCredit();
+  }
+
+  /** Chooses a stop of a fleet by its id; null chooses none. */
+  choose(stop) {
+    const city = this.#ids?.indexOf(stop) ?? -1;
+    this.#planes.choose(city < 0 ? null : city);
   }
 
   /** Shows the places that the service laid out on the grid, and what no path leads to. */
@@ -193,7 +208,7 @@ export class Maps {
   /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */
   #routes({ routes }) {
     const index = new Map(this.#ids?.map((id, at) => [id, at]));
-    const names = namesOf(routes, this.#kind.movers);
+    const names = namesOf(routes, this.#kind.movers, this.#asked);
     const styles = stylesOf(routes);
     return routes.map(({ stops }, at) => ({
       name: names[at],

@@ -14,9 +14,14 @@ export class Planes {
    * @param {(plane: number, place: number[]) => void} onClick called with the place where a map was clicked
    * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
    * @param {(city: number) => void} onDelete called with the stop to delete
+   * @param {(city: number | null) => void} onChoose called with the stop that is chosen on a map
    */
-  constructor(elements, { onClick, onMove, onDelete }) {
-    this.#chosen = new ChosenStop((city) => this.#highlight(city), onDelete);
+  constructor(elements, { onClick, onMove, onDelete, onChoose }) {
+    const chosen = (city) => {
+      this.#highlight(city);
+      onChoose(city);
+    };
+    this.#chosen = new ChosenStop(chosen, onDelete);
     this.#maps = elements.map((element, plane) => {
       const onHover = (city) => this.#highlight(city ?? this.#chosen.city);
       const moved = (city, place) => onMove(plane, city, place);
@@ -35,9 +40,14 @@ export class Planes {
     this.#chosen.name((city) => this.#nameOf(city));
   }
 
-  /** Whether the cities that are shown can be moved and deleted, and are `kept`, so that the chosen one stays chosen. */
-  edit(editable, kept) {
-    this.#chosen.show(this.#maps[0].places.length, editable, kept);
+  /** Whether the cities that are shown can be moved and deleted, or only chosen, and are `kept`, so that the chosen one stays chosen. */
+  edit(editable, kept, choosable) {
+    this.#chosen.show(this.#maps[0].places.length, editable, kept, choosable);
+  }
+
+  /** Chooses a city; null chooses none. */
+  choose(city) {
+    if (this.#chosen.choosable && city !== this.#chosen.city) this.#chosen.choose(city);
   }
 
   /** Draws map tiles under the first map, while places on the earth are shown. */

@@ -1,18 +1,18 @@
-/** Compare the figures of the selected tour with those of the pinned one. */
+/** Compare the lengths of the selected tour, and the measures of a plan, with those of the pinned one. */
 
-import { difference, length } from "../common/numbers.js";
+import { change, figure } from "../common/amounts.js";
 import { withUnit } from "../common/objectives.js";
 
-export function compare(table, objectives, selected, pinned) {
-  const rows = objectives.map((objective, axis) => [withUnit(objective), (item) => item.lengths[axis]]);
+/** Fills a table with the lengths, and with measures, each `{ name, objective, value }`, whose `value` takes a plan. */
+export function compare(table, objectives, selected, pinned, measures = []) {
+  const lengths = objectives.map((objective, axis) => ({ name: withUnit(objective), objective, value: (item) => item.lengths[axis] }));
   table.classList.toggle("alone", !pinned);
-  table.tBodies[0].replaceChildren(
-    ...rows.map(([name, value]) => {
-      const said = (item) => (item ? length(value(item)) : "–");
-      const beside = selected && pinned ? difference(value(selected), value(pinned)) : "";
-      return row(name, [said(selected), said(pinned), beside]);
-    }),
-  );
+  const filled = ({ name, objective, value }) => {
+    const said = (item) => (item ? figure(value(item), objective) : "–");
+    const beside = selected && pinned ? change(value(selected), value(pinned), objective) : "";
+    return row(name, [said(selected), said(pinned), beside]);
+  };
+  [lengths, measures].forEach((rows, at) => table.tBodies[at].replaceChildren(...rows.map(filled)));
 }
 
 function row(name, cells) {

@@ -1,6 +1,7 @@
 /** Show a front: chart, slider, figures and maps, which select a tour together. */
 
 import { FrontChart } from "../chart/chart.js";
+import { figure, wordsOf } from "../common/amounts.js";
 import { choiceOf } from "./choice.js";
 import { compare } from "./comparison.js";
 import { showFigures, showTourFigures } from "./figures.js";
@@ -9,6 +10,7 @@ import { nameOf } from "../inputs/names.js";
 import { shadeOf } from "../map/gridmap.js";
 import { Maps } from "../map/maps.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
+import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
@@ -27,7 +29,8 @@ export class Result {
   #growth;
   #slider;
   #several;
-  #planView = new PlanView();
+  #planView = new PlanView((stop) => this.#maps.choose(stop));
+  #asked = {}; // the request, as far as it is known
   #kind = kindOf({}); // of the front
   #front = [];
   #closed = true;
@@ -45,7 +48,7 @@ export class Result {
   /** @param {object} edited callbacks for clicks on the maps, and for stops moved and deleted: see Maps */
   constructor(edited) {
     const onSelect = (index) => this.#choose(index);
-    this.#maps = new Maps(edited);
+    this.#maps = new Maps({ ...edited, onChoose: (stop) => this.#planView.choose(stop) });
     const onPreview = (index) => this.#preview(index);
     const told = { onSelect, onPreview, onBudget: (index) => this.#choose(index) };
     this.#chart = new FrontChart(element("front-chart"), element("front-labels"), told);
@@ -67,7 +70,7 @@ export class Result {
     this.#chart.name(objectives);
     this.#slider.name(objectives);
     objectives.forEach((objective, plane) => {
-      element(`less-${plane + 1}`).textContent = `less ${objective.name}`;
+      element(`less-${plane + 1}`).textContent = `${wordsOf(objective).less} ${objective.name}`;
     });
   }
 
@@ -76,6 +79,7 @@ export class Result {
     cancelAnimationFrame(this.#frame);
     this.#maps.show(instance, fit, editable);
     this.#planView.open(instance);
+    this.#asked = instance;
     this.#kind = kindOf(instance);
     element("uncovered").textContent = "";
     element("shade").textContent = shadeOf(instance) ? `shaded: ${this.#objectives[1].name}` : "";
@@ -236,11 +240,12 @@ export class Result {
     this.#mark("previewed", this.#previewed);
     this.#maps.draw("selected", shown, this.#closed);
     this.#planView.show(this.#kind.movers ? shown : null, this.#kind.movers);
-    compare(element("comparison"), this.#objectives, shown, this.#pinned);
+    const measures = shown ? measuresOf(shown, this.#objectives, this.#asked) : [];
+    compare(element("comparison"), this.#objectives, shown, this.#pinned, measures);
     showTourFigures(element("tour-figures"), shown);
     element("choice").textContent = shown ? choiceOf(this.#front, shown, this.#objectives, this.#kind.noun) : "";
     for (const objective of [0, 1]) {
-      const said = shown ? length(shown.lengths[objective]) : "";
+      const said = shown ? figure(shown.lengths[objective], this.#objectives[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
     }
     this.#order();

@@ -1,0 +1,26 @@
+/** Look up the stops and vehicles of a request for a fleet by their ids. */
+
+import { SECONDS } from "../common/durations.js";
+import { clockUnit } from "./units.js";
+
+const DAY = 86400; // seconds
+
+/**
+ * The stops and the types of vehicles of a request by id, as far as it is known. Each type has its
+ * `start`, `end` and `reload` as ids of stops, and its `shifts`.
+ */
+export function knownFleet({ stops = [], vehicles = [] }) {
+  const idOf = (stop) => (typeof stop === "number" ? stops[stop]?.id : stop);
+  const typed = vehicles.map(({ id, start, end, reload = [], shift, shifts = shift ? [shift] : [], ...others }) => {
+    return [id, { ...others, start: idOf(start), end: idOf(end), reload: reload.map(idOf), shifts }];
+  });
+  return { stops: new Map(stops.map((stop) => [stop.id, stop])), types: new Map(typed) };
+}
+
+/** The day of each shift of a type of vehicles, from 1; null if that is not known, or two are on the same day. */
+export function daysOf(request, vehicle) {
+  const second = SECONDS.get(clockUnit(request));
+  const { shifts = [] } = knownFleet(request).types.get(vehicle) ?? {};
+  const days = shifts.map(([begin]) => Math.floor((begin * second) / DAY) + 1);
+  return second && days.length && new Set(days).size === days.length ? days : null;
+}

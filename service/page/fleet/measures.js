@@ -1,0 +1,39 @@
+/** The measures of a plan, as rows of a table. */
+
+import { withUnit } from "../common/objectives.js";
+import { clockUnit, unitOf } from "./units.js";
+
+const NAMES = {
+  vehicles: "Vehicles used",
+  driving: "Driving",
+  service: "At stops",
+  waiting: "Waiting",
+  lateness: "Late in all",
+  overtime: "Overtime in all",
+  longest: "Longest route",
+  shortest: "Shortest route",
+  imbalance: "Longest less shortest",
+  unassigned: "Prizes left out",
+};
+
+/**
+ * The measures of a plan that are not objectives, each `{ name, objective, value }`, whose `value`
+ * takes a plan; none if it has none.
+ */
+export function measuresOf({ measures = {} }, objectives, request) {
+  const shown = Object.keys(NAMES).filter((name) => name in measures && objectives.every(({ measure }) => measure !== name));
+  return shown.map((measure) => {
+    const unit = unitsOf(objectives, request)[measure] ?? "";
+    const objective = { name: NAMES[measure], unit, measure };
+    return { name: withUnit(objective), objective, value: (plan) => plan.measures[measure] };
+  });
+}
+
+/** Routes are compared by the clock, or else by the objective that is a maximum. */
+function unitsOf(objectives, request) {
+  const time = clockUnit(request);
+  const most = request.objectives?.find(({ over }) => over === "max");
+  const route = request.clock || !most ? time : unitOf(most);
+  const times = { driving: time, service: time, waiting: time, lateness: time, overtime: time };
+  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit };
+}
