@@ -22,15 +22,16 @@ export function csv({ kind, front }, objectives) {
   return [[...angle, ...titles, "tour"], ...rows].map(line).join("");
 }
 
-/** A route on each line, after the members of its plan. */
+/** A route on each line, after the members of its plan; with its shift, if its vehicle has several. */
 function csvOfPlans(plans, titles, { one, stops, by, through }) {
+  const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
   const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
     routes.map((route) => {
       const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
-      return [plan, balance, ...lengths, route[by], ...route.lengths, places];
+      return [plan, balance, ...lengths, route[by], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places];
     }),
   );
-  const head = ["plan", "balance", ...titles, one.toLowerCase(), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
+  const head = ["plan", "balance", ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
   return [head, ...rows].map(line).join("");
 }
 

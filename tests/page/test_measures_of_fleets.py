@@ -1,0 +1,284 @@
+"""Measures of plans on the page, from a stored front: lateness, shifts, trips, late stops."""
+
+import base64
+import json
+import re
+import zlib
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.accessibility import check_on_a_phone
+from tests.helpers.browsing import (
+    copied,
+    needs_chromium,
+    open_page,
+    saved,
+    wait_for_next_frame,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+HOUR, MINUTE, DAY = 3600, 60, 86400
+MINUS = "\N{MINUS SIGN}"
+ID = 32 * "a"
+MATRIX = [[600] * 5] * 5
+REQUEST: dict[str, Any] = {
+    "stops": [
+        {"id": "depot", "location": [24.941, 60.171]},
+        {"id": "order-9", "location": [24.952, 60.169], "service": 300},
+        {
+            "id": "order-17",
+            "location": [24.933, 60.165],
+            "due": 9 * HOUR + 12 * MINUTE,
+            "windows": [[8 * HOUR, 10 * HOUR]],
+        },
+        {"id": "order-4", "location": [24.925, 60.18], "release": 10 * HOUR},
+        {
+            "id": "far",
+            "location": [24.96, 60.175],
+            "prize": 900,
+            "windows": [[9 * HOUR, 9.5 * HOUR]],
+        },
+    ],
+    "vehicles": [
+        {
+            "id": "van",
+            "start": "depot",
+            "end": 0,
+            "shifts": [[9 * HOUR, 12 * HOUR], [DAY + 9 * HOUR, DAY + 12 * HOUR]],
+            "max_overtime": HOUR,
+            "reload": ["depot"],
+        }
+    ],
+    "objectives": [
+        {"name": "distance", "from": "great_circle"},
+        {"name": "lateness", "measure": "lateness"},
+    ],
+    "clock": {"unit": "s", "matrix": MATRIX},
+    "time_limit": 0.2,
+}
+
+
+def route(stops: list[str], shift: int, *times: tuple[int, int]) -> dict[str, Any]:
+    arrivals = [DAY * shift + hour * HOUR + minute * MINUTE for hour, minute in times]
+    lengths = [4000.0, 0.0]
+    return {
+        "vehicle": "van",
+        "stops": stops,
+        "lengths": lengths,
+        "shift": shift,
+        "arrivals": arrivals,
+    }
+
+
+TIMES = {"driving": 3000.0, "service": 300.0, "waiting": 35 * MINUTE, "overtime": 0.0}
+LATE = {
+    "balance": 0.0,
+    "lengths": [4000.0, 13.0 * MINUTE],
+    "measures": {
+        **{"vehicles": 1, "lateness": 13.0 * MINUTE, "unassigned": 900, **TIMES},
+        **{"longest": 3900.0, "shortest": 3900.0, "imbalance": 0.0},
+    },
+    "routes": [
+        route(
+            ["depot", "order-9", "order-17", "depot", "order-4", "depot"],
+            0,
+            *((9, 0), (9, 10), (9, 25), (9, 35), (10, 10), (10, 20)),
+        )
+    ],
+    "unassigned": ["far"],
+}
+IN_TIME = {
+    "balance": 1.0,
+    "lengths": [5000.0, 0.0],
+    "measures": {
+        **LATE["measures"],
+        "vehicles": 2,
+        "lateness": 0.0,
+        "unassigned": 0,
+        "waiting": 0.0,
+    },
+    "routes": [
+        route(["depot", "order-17", "far", "depot"], 0, (8, 50), (9, 0), (9, 10), (9, 20)),
+        route(["depot", "order-9", "order-4", "depot"], 1, (9, 0), (9, 10), (9, 25), (9, 35)),
+    ],
+    "unassigned": [],
+}
+
+
+def answer(measure: str, values: list[float]) -> dict[str, Any]:
+    """Return a stored front of both plans under distance and a measure with these values."""
+    plans = [
+        {**plan, "lengths": [plan["lengths"][0], value]}
+        for plan, value in zip((LATE, IN_TIME), values, strict=True)
+    ]
+    return {
+        **{"id": ID, "status": "done", "kind": "fleet", "cities": 5, "points": 2},
+        **{"hypervolume": 0.5, "hypervolume_bound": None, "reference_point": [9000, 9000]},
+        **{"scale": [1, 1], "timings_ms": {"total": 200}, "terminated": "time_limit"},
+        "stops": [{"id": s["id"], "location": s["location"]} for s in REQUEST["stops"]],
+        "objectives": [
+            {"name": "distance", "unit": "m", "over": "sum"},
+            {"name": measure, "unit": None, "over": "sum", "measure": measure},
+        ],
+        "front": plans,
+        "actor": None,
+    }
+
+
+def open_stored(page: Page, released: str, measure: str, values: list[float]) -> None:
+    """Open a stored front by a link that has its request, and wait until it is shown."""
+    objectives = [REQUEST["objectives"][0], {"name": measure, "measure": measure}]
+    asked = {"request": {**REQUEST, "objectives": objectives}, "objectives": objectives}
+    packer = zlib.compressobj(wbits=-15)
+    packed = packer.compress(json.dumps(asked).encode()) + packer.flush()
+    text = base64.urlsafe_b64encode(packed).decode().rstrip("=")
+    page.route(re.compile(f"/front/{ID}$"), lambda each: each.fulfill(json=answer(measure, values)))
+    page.goto(f"{released}/#front={ID}&balance=0&asked={text}")
+    wait_until_planned(page)
+
+
+@pytest.fixture(scope="module")
+def late(browser: Browser, released: str) -> Iterator[Page]:
+    """The page with a front of lateness, from one late plan to one that is in time."""
+    with open_page(browser, "about:blank") as page:
+        open_stored(page, released, "lateness", [13.0 * MINUTE, 0.0])
+        yield page
+
+
+def select(page: Page, key: str) -> None:
+    page.get_by_role("slider", name="Balance").press(key)
+    wait_for_next_frame(page)
+
+
+def rows(page: Page) -> dict[str, list[str]]:
+    """The table of lengths and measures, by the name of each row."""
+    lines = page.locator("#comparison tbody tr").all()
+    return {
+        line.locator("th").inner_text(): line.locator("td").all_text_contents() for line in lines
+    }
+
+
+def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> None:
+    select(late, "Home")
+    late.get_by_role("button", name="Pin to compare").click()
+    select(late, "End")
+    found = rows(late)
+    late.get_by_role("button", name="Unpin").click()
+    assert found == {
+        "Distance, m": ["5,000", "4,000", "+25.0 %"],
+        "Lateness": ["0 min", "13 min", f"{MINUS}13 min"],
+        "Vehicles used": ["2", "1", "+1"],
+        "Driving": ["50 min", "50 min", "same"],
+        "At stops": ["5 min", "5 min", "same"],
+        "Waiting": ["0 min", "35 min", f"{MINUS}35 min"],
+        "Overtime in all": ["0 min", "0 min", "same"],
+        "Longest route": ["1 h 5 min", "1 h 5 min", "same"],
+        "Shortest route": ["1 h 5 min", "1 h 5 min", "same"],
+        "Longest less shortest": ["0 min", "0 min", "same"],
+        "Prizes left out, m": ["0", "900", f"{MINUS}900"],
+    }
+
+
+def test_lateness_is_said_as_a_time(late: Page) -> None:
+    select(late, "End")
+    expect(late.locator("#choice")).to_have_text(
+        "25 % more distance (1,000 m) than the least, for 13 min less lateness: none is left."
+    )
+    chart = late.get_by_label(re.compile("A front of 2 plans"))
+    expect(chart).to_have_attribute("aria-label", re.compile("lateness from 0 min to 13 min$"))
+    assert "13 min" in saved(late, "SVG").decode()
+
+
+def test_a_stop_says_why_it_is_late_by_a_click_and_by_keys(late: Page) -> None:
+    select(late, "Home")
+    said = late.locator("#fleet-stop")
+    why = (
+        "order-17: open 8:00 to 10:00, due 9:12, begins 9:25, 13 min late;"
+        " van, day 1, arrives at 9:25 from order-9."
+    )
+    late.locator("#fleet-lanes .visit").nth(2).click()
+    expect(said).to_have_text(why)
+    expect(late.locator("#fleet-lanes .window")).to_have_count(1)
+    expect(late.locator("#fleet-lanes .late")).to_have_count(1)
+    late.keyboard.press("ArrowRight")
+    late.keyboard.press("Enter")
+    expect(said).to_have_text(
+        "depot: van, day 1, loads again at 10:00, when its load is released;"
+        " it arrives at 9:35 from order-17 and waits 25 min."
+    )
+    box = late.locator("#plane-1")
+    box.focus()
+    for key in ("Escape", "Enter", "Enter"):
+        box.press(key)
+    expect(said).to_contain_text("order-9: begins 9:10")
+    box.press("Enter")
+    expect(said).to_have_text(why)
+    expect(late.locator("#fleet-lanes [aria-pressed=true]")).to_have_attribute(
+        "aria-label", "van, day 1, order-17, 9:25, 13 min late"
+    )
+    box.press("Enter")
+    box.press("Enter")
+    expect(said).to_have_text("far is left out of this plan.")
+    # The same stop stays chosen in another plan.
+    select(late, "End")
+    expect(said).to_contain_text("far: open 9:00 to 9:30, begins 9:10")
+    expect(late.locator("#handling")).to_be_hidden()
+
+
+def test_routes_name_their_day_and_count_no_depot_as_a_stop(late: Page) -> None:
+    select(late, "Home")
+    assert late.locator("#fleet-legend tbody tr").inner_text().split("\t")[:2] == [
+        "van, day 1",
+        "3",
+    ]
+    select(late, "End")
+    names = late.locator("#fleet-legend tbody th").all_inner_texts()
+    assert names == ["van, day 1", "van, day 2"]
+    expect(late.locator("#fleet-stops")).to_contain_text("depot day 2, 9:00 → order-9 day 2, 9:10")
+
+
+def test_exports_have_the_shift_and_the_depot_in_the_middle(late: Page) -> None:
+    head, first, *_ = saved(late, "CSV").decode().splitlines()
+    assert head.split(",")[4:6] == ["vehicle", "shift"]
+    assert first.split(",")[4:6] == ["van", "0"]
+    assert first.endswith(",depot order-9 order-17 depot order-4 depot")
+    program = copied(late, "as Python")
+    compile(program, "program", "exec")
+    assert '"measure": "lateness"' in program
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_in_the_lanes(late: Page, scheme: Any) -> None:
+    late.emulate_media(color_scheme=scheme)
+    select(late, "Home")
+    late.locator("#fleet-lanes .visit").nth(2).click()
+    width = late.viewport_size
+    check_on_a_phone(late)
+    late.set_viewport_size(width or {"width": 1440, "height": 900})
+    late.emulate_media(color_scheme="light")
+
+
+def test_vehicles_are_counted(browser: Browser, released: str) -> None:
+    with open_page(browser, "about:blank") as page:
+        open_stored(page, released, "vehicles", [7.0, 5.0])
+        select(page, "Home")
+        expect(page.locator("#choice")).to_have_text(
+            "The least distance. Every other plan has fewer vehicles, for more distance."
+        )
+        select(page, "End")
+        expect(page.locator("#choice")).to_have_text(
+            "25 % more distance (1,000 m) than the least,"
+            " for 2 fewer vehicles: the fewest there are."
+        )
+        expect(page.get_by_role("button", name="fewest vehicles")).to_be_visible()
+        line = page.get_by_role("slider", name="At most this many vehicles")
+        line.press("Home")
+        expect(page.locator("#budget")).to_have_text("Budget: 5 vehicles.")
+        assert rows(page)["Vehicles"][0] == "5"
+        drawing = saved(page, "SVG").decode()
+        assert not re.search(r">[567]\.\d+<", drawing)
