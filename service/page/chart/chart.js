@@ -1,6 +1,6 @@
 /** The chart of the front: the points of the network's tours under those of the improved ones. */
 
-import uPlot from "../vendor/uplot/uPlot.esm.js";
+import uPlot from "./uplot.js";
 import { colour, onSchemeChange } from "../common/colours.js";
 import { figure, stepsOf } from "../common/amounts.js";
 import { counted } from "../common/numbers.js";

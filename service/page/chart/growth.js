@@ -1,6 +1,6 @@
 /** A chart of the hypervolume's growth during a search. */
 
-import uPlot from "../vendor/uplot/uPlot.esm.js";
+import uPlot from "./uplot.js";
 import { colour, onSchemeChange } from "../common/colours.js";
 import { share } from "../common/numbers.js";
 
