@@ -82,6 +82,14 @@ def _served_elsewhere(
     return Serving(stop, serving[best], (float(grown[best, 0]), float(grown[best, 1])))
 
 
+def with_all_stops(fleet: Fleet, plan: Plan) -> Plan:
+    """Return a plan with the stops that it leaves out where they cost the least, if they fit."""
+    for stop in unassigned(fleet.rules, plan):
+        if stop not in plan.visited():
+            plan = with_stop(fleet, plan, stop) or plan
+    return plan
+
+
 def with_stop(fleet: Fleet, plan: Plan, stop: int) -> Plan | None:
     """Return a plan with one more stop where it costs the least; None if it fits nowhere.
 

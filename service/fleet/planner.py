@@ -12,11 +12,12 @@ import numpy as np
 from service.construction.first_tours import SHARE, Constructor
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
+from service.fleet.conflicts import FEW_STOPS, no_plan
 from service.fleet.enumeration import exact_plans, is_enumerable
-from service.fleet.evaluation import points_of, unassigned, violations
+from service.fleet.evaluation import points_of, violations
 from service.fleet.first_plans import Cutter, network_sequences
 from service.fleet.fleet import Array, Fleet
-from service.fleet.left_out import with_stop
+from service.fleet.left_out import with_all_stops
 from service.fleet.measure_sweep import MeasureSweep
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan, Route
@@ -35,7 +36,6 @@ _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, p
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
 _BRIEF = 0.25  # seconds for them without a time limit
-_FEW_STOPS = 25  # stops: to insert all of them one by one takes less than a tenth of a second
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
@@ -99,7 +99,9 @@ def plan_fleet(
         all_plans = exact_plans(fleet, lambda: stop() or time.monotonic() > until)
         if all_plans is not None:
             if not all_plans:
-                raise Refusal("no-plan", reason="no plan keeps every rule: all were tried")
+                ends = began + (options.time_limit or 2 * _BRIEF)
+                sentence = "no plan keeps every rule: all were tried"
+                raise no_plan(fleet, sentence, lambda: stop() or time.monotonic() > ends)
             return _front(fleet, options, all_plans, "converged", began)
     if options.time_limit == 0:
         plans = _constructed(fleet, constructor, stop)
@@ -147,16 +149,8 @@ def _plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
             pass
         else:
             yield from islice(cutter.plans(), 1)
-    if len(fleet.rules.clients) <= _FEW_STOPS:
-        yield _with_all_stops(fleet, Plan(()))
-
-
-def _with_all_stops(fleet: Fleet, plan: Plan) -> Plan:
-    """Return a plan with the stops that it leaves out where they cost the least, if they fit."""
-    for stop in unassigned(fleet.rules, plan):
-        if stop not in plan.visited():
-            plan = with_stop(fleet, plan, stop) or plan
-    return plan
+    if len(fleet.rules.clients) <= FEW_STOPS:
+        yield with_all_stops(fleet, Plan(()))
 
 
 def _one_route(fleet: Fleet) -> Plan:
@@ -256,7 +250,7 @@ class _Search:
 
         Stops that fit nowhere stay out; then the plan may break a rule, and is not put there.
         """
-        plan = _with_all_stops(self._fleet, driven)
+        plan = with_all_stops(self._fleet, driven)
         if not violations(self._fleet, plan):
             self.archive.offer(self._translation.solution(plan), FREE)
 
@@ -289,7 +283,7 @@ class _Search:
             raise Cancelled
         if not plans:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
-            raise Refusal("no-plan", reason=sentence)
+            raise no_plan(self._fleet, sentence, self._stop)
         front = _front(
             self._fleet, self._options, plans, terminated, self._began, self._constructed
         )

@@ -11,7 +11,7 @@ from service.errors import Refusal
 from service.jobs.task_runner import TaskRunner
 from service.requests.parser import parse_task
 from service.requests.task import TaskSource
-from tests.fuzz.fleets import extreme_fleet
+from tests.fuzz.fleets import bounded_fleet, extreme_fleet
 from tests.helpers.fleet_requests import LIMITS
 
 NUMBERS = [0.0, 1.0, 3.5, 0.1, 123456.789, 7e16, *(10.0**each for each in (-300, -150, -9, 9, 150))]
@@ -60,6 +60,11 @@ def test_extreme_numbers_are_planned_or_refused(seed: int) -> None:
 def test_legs_of_almost_no_cost_beside_outliers_are_planned_or_refused(seed: int) -> None:
     """Their typical leg is below the least normal double."""
     check(extreme_fleet(random.Random(seed)))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_bounds_of_any_size_are_kept_or_refused(seed: int) -> None:
+    check(bounded_fleet(random.Random(seed)))
 
 
 def check(source: TaskSource) -> None:

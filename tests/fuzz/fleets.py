@@ -24,6 +24,41 @@ def extreme_fleet(rng: random.Random) -> TaskSource:
     return TaskSource("fleet", json.dumps(request).encode())
 
 
+def bounded_fleet(rng: random.Random) -> TaskSource:
+    """Return a request of common or extreme numbers with any of the bounds of dispatchers."""
+    scales = rng.choice([(1, 10, 100), EXTREMES])
+    request = _request(rng, lambda: rng.choice(scales) * rng.choice((1, rng.random())))
+    _add_bounds(rng, request, lambda: rng.choice(scales) * rng.choice((1, 5, rng.random())))
+    return TaskSource("fleet", json.dumps(request).encode())
+
+
+def _add_bounds(rng: random.Random, request: dict[str, Any], number: Number) -> None:
+    """Add any of the bounds to the stops and vehicles of a request, and a measure."""
+    timed = "clock" in request
+    for stop in request["stops"][1:]:
+        times = {"due": number(), "release": number()} if timed else {}
+        if timed and "window" not in stop:
+            times["windows"] = _spans(number)
+        bounds = {"skills": ["cold"], "vehicle": rng.choice("01"), **times}
+        stop |= {name: bounds[name] for name in bounds if rng.random() < 1 / 5}
+    for vehicle in request["vehicles"]:
+        times = {"max_overtime": number()} if timed else {}
+        if timed and "shift" not in vehicle:
+            times["shifts"] = _spans(number)
+        trips = rng.choice([{"max_stops": rng.choice((1, 4))}, {"reload": [0], "max_trips": 2}])
+        bounds = {"skills": ["cold"], "initial_load": [rng.choice((0, 5))], **trips, **times}
+        vehicle |= {name: bounds[name] for name in bounds if rng.random() < 1 / 2}
+    if request.get("clock") != "b" and rng.random() < 2 / 3:
+        names = ("vehicles", "unassigned", "overtime", "lateness")
+        request["objectives"][1] = {"name": "b", "measure": rng.choice(names)}
+
+
+def _spans(number: Number) -> list[list[float]]:
+    """Return two windows or shifts, in order but for equal times."""
+    times = sorted(number() for _ in range(4))
+    return [times[:2], times[2:]]
+
+
 def _request(rng: random.Random, number: Number) -> dict[str, Any]:
     """Return a request of up to eleven stops, with any of the members that there are."""
     n = rng.randint(1, 11)
