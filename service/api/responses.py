@@ -227,6 +227,9 @@ class RouteItem(BaseModel):
         description="if there is a clock: when it reaches each stop. At the first stop: when it"
         " leaves, as late as possible without finishing later",
     )
+    breaks: list[float] | SkipJsonSchema[None] = Field(
+        default=None, description="when each break on the way begins"
+    )
 
 
 class ReasonItem(BaseModel):

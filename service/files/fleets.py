@@ -43,6 +43,11 @@ def in_shifts(vehicles: Sequence[Vehicle]) -> bool:
     return any(each.keys() & {"shift", "shifts"} for each in vehicles)
 
 
+def have_times(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> bool:
+    """Return whether stops or vehicles have times, which need a clock."""
+    return timed(stops) or in_shifts(vehicles) or any("breaks" in each for each in vehicles)
+
+
 def spans(name: str, found: Sequence[list[float]]) -> dict[str, Any]:
     """Return windows or shifts as a member: `window`, or `windows` if there are several."""
     if len(found) > 1:
@@ -101,7 +106,7 @@ def fleet_request(
 ) -> Request:
     """Return the request of a fleet, with a clock if stops or vehicles have times."""
     request: Request = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
-    if timed(stops) or in_shifts(vehicles):
+    if have_times(stops, vehicles):
         request["clock"] = objectives[1]["name"]
     return request
 

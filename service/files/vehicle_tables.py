@@ -15,11 +15,10 @@ from service.files.fleets import (
     Vehicle,
     at_depots,
     fleet_request,
-    in_shifts,
+    have_times,
     measured,
     planar,
     spans,
-    timed,
     with_measure,
 )
 from service.files.places import check_range
@@ -58,7 +57,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     visits.report()
     stops, vehicles = at_depots(stops, vehicles)
     add_bounds(columns, vehicles)
-    clock = timed(stops) or in_shifts(vehicles)
+    clock = have_times(stops, vehicles)
     objectives = planar({"coordinates": plane}) if plane else measured(source, clock)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from service.files.fleets import Stop, Vehicle, fleet_request, in_shifts, measured, spans, timed
+from service.files.fleets import Stop, Vehicle, fleet_request, have_times, measured, spans
 from service.files.places import check_range, note_places
 from service.files.reading import Reading, Source, quoted
 
@@ -13,7 +13,7 @@ _LEFT_OUT = {
     "shipments": ("priority",),
     "vehicles": ("speed_factor", "max_travel_time", "max_distance", "steps", "type"),
 }
-_NO_BREAKS = "breaks of vehicles were left out: plans have no breaks, so drivers get none."
+_NO_BREAKS = "breaks of vehicles without exactly one time window were left out."
 
 
 @dataclass
@@ -73,7 +73,7 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
         _shipment(problem, each, where) for each, where in _items(source, value, "shipments")
     ]
     source.check_count("stops", source.bounds.cities, len(problem.stops))
-    clock = timed(problem.stops) or in_shifts(vehicles)
+    clock = have_times(problem.stops, vehicles)
     objectives = _objectives(problem, value, clock)
     request = fleet_request(problem.stops, vehicles, objectives)
     if shipments:
@@ -101,8 +101,6 @@ def _vehicles(problem: _Problem, value: dict[str, Any]) -> list[Vehicle]:
     items = list(_items(source, value, "vehicles"))
     vehicles = [_vehicle(problem, each, where) for each, where in items]
     _number_same(source, vehicles)
-    if any(each.get("breaks") for each, _ in items):
-        source.note("left-out", _NO_BREAKS)
     if value.get("shipments") and any("max_stops" in each for each in vehicles):
         source.note(
             "left-out", "max_tasks of vehicles was left out: it is not supported beside shipments."
@@ -139,12 +137,32 @@ def _vehicle(problem: _Problem, vehicle: dict[str, Any], where: str) -> Vehicle:
         "capacity": vehicle.get("capacity"),
         "shift": _window(problem.source, window, f"{where}/time_window") if window else None,
         "skills": _skills(problem.source, vehicle, where),
+        "breaks": _breaks(problem.source, vehicle, where),
         "fixed": fixed,
     }
     made |= {name: member for name, member in members.items() if member}
     if (most := vehicle.get("max_tasks")) is not None:
         made["max_stops"] = most
     return made
+
+
+def _breaks(source: Source, vehicle: dict[str, Any], where: str) -> list[dict[str, Any]]:
+    """Return the breaks of a vehicle that have one time window, by ascending time."""
+    breaks = vehicle.get("breaks") or []
+    if not isinstance(breaks, list) or not all(isinstance(each, dict) for each in breaks):
+        raise source.refusal(f"{where}/breaks must be a list of objects", breaks)
+    found = []
+    for index, each in enumerate(breaks):
+        windows, length = each.get("time_windows"), each.get("service", 0)
+        if not isinstance(windows, list) or len(windows) != 1:
+            source.note("left-out", _NO_BREAKS)
+            continue
+        part = f"{where}/breaks/{index}"
+        if not _are_numbers([length], 1):
+            raise source.refusal(f"{part}/service must be a time in seconds", length)
+        window = _window(source, windows[0], f"{part}/time_windows/0")
+        found.append({"window": window, "length": length})
+    return sorted(found, key=lambda each: each["window"][0])
 
 
 def _shipment(problem: _Problem, shipment: dict[str, Any], where: str) -> dict[str, str]:

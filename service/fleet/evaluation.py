@@ -159,6 +159,9 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:
     yield from _trips_broken(rules, route)
     if rules.clock is not None:
         times = schedule(fleet, route)
+        if times.late == inf:
+            yield Broken("break", "has no time for a break")
+            return
         rounding = 2 * _ROUNDING * len(times.arrivals) * times.end
         if times.late > _TOLERANCE * times.duration + rounding:
             over = times.end - vehicle.way[1] >= times.late

@@ -97,8 +97,8 @@ class Cutter:
         stop: Called often; once it returns True, no further cuts are made.
 
     Raises:
-        Refusal: The fleet has shipments, stops with several windows, or too many types and numbers
-            of vehicles.
+        Refusal: The fleet has shipments, stops with several windows, breaks, or too many types and
+            numbers of vehicles.
     """
 
     def __init__(
@@ -110,6 +110,8 @@ class Cutter:
         if any(len(visit.windows) > 1 for visit in fleet.rules.visits):
             reason = "stops with several windows need a time_limit over 0"
             raise Refusal("no-plan", reason=reason)
+        if any(vehicle.breaks for vehicle in fleet.rules.vehicles):
+            raise Refusal("no-plan", reason="breaks need a time_limit over 0")
         self._fleet = fleet
         self._stop = stop
         arrays = _from_begin(fleet, arrays_of(fleet))

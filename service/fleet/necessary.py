@@ -126,6 +126,9 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
     rules = fleet.rules
     if not rules.has_bounds:
         return
+    # With another stop on the way, there may be a place for a break.
+    vehicles = tuple(replace(each, breaks=()) for each in rules.vehicles)
+    fleet = Fleet(rules=replace(rules, vehicles=vehicles), costs=fleet.costs)
     triangle = cache(partial(_triangle_holds, fleet, ended))
     deliveries = {each.pickup: (each.delivery,) for each in rules.shipments}
     pinned = any(visit.vehicles for visit in rules.visits)

@@ -16,8 +16,18 @@ Measure = Literal["vehicles", "unassigned", "overtime", "lateness"]
 Span = tuple[float, float]
 # The rules that a route can break by itself.
 Rule = Literal[
-    "skills", "vehicle", "way", "capacity", "max_stops", "max_trips", "window", "shift", "longest"
+    "skills",
+    "vehicle",
+    "way",
+    "capacity",
+    "max_stops",
+    "max_trips",
+    "window",
+    "shift",
+    "longest",
+    "break",
 ]
+Break = tuple[float, float, float]  # the earliest and the latest begin, and how long it takes
 ALWAYS: Span = (0.0, inf)
 _UNSUMMED = "is added to the first objective, so that must be over sum, got max"
 _UNTIMED = "needs the name of the objective that is time, in clock"
@@ -78,6 +88,7 @@ class VehicleType:
         initial_load: The load on board at the start, in each dimension, or empty. It is unloaded at
             the first stop for reloading, or at the end.
         max_overtime: How much later than its shift a route may end.
+        breaks: The breaks of a driver who is on the way then, by ascending time.
         leaves_by: The latest departure: of a vehicle on its way, the present time.
     """
 
@@ -95,6 +106,7 @@ class VehicleType:
     initial_load: tuple[int, ...] = ()
     max_overtime: float = 0.0
     leaves_by: float = inf
+    breaks: tuple[Break, ...] = ()
 
     @property
     def way(self) -> Span:
@@ -227,6 +239,7 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
         raise invalid(f"{part}/max_overtime", "needs a shift that ends")
     _check_initial_load(rules, vehicle, part)
     _check_trips(rules, vehicle, part)
+    _check_breaks(rules, vehicle, part)
     if vehicle.fixed and rules.over[0] == "max":
         raise invalid(f"{part}/fixed", _UNSUMMED)
     if rules.limited is None and vehicle.longest != inf:
@@ -243,6 +256,18 @@ def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
         if loaded > most:
             demand = f"must be at most the capacity, {most}, got {loaded}"
             raise invalid(f"{part}/initial_load/{dimension}", demand)
+
+
+def _check_breaks(rules: Rules, vehicle: VehicleType, part: str) -> None:
+    free = -inf
+    for index, (opens, closes, length) in enumerate(vehicle.breaks):
+        where = f"{part}/breaks/{index}/window"
+        if rules.clock is None:
+            raise invalid(where, _UNTIMED)
+        if closes < opens or opens < free:
+            demand = "must begin after the break before it has ended, and not end before it begins"
+            raise invalid(where, f"{demand}, got {opens:g} to {closes:g}")
+        free = closes + length
 
 
 def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:

@@ -104,6 +104,10 @@ class Units:
                 fixed=_scaled(vehicle.fixed, extra),
                 max_overtime=_scaled(vehicle.max_overtime, time),
                 leaves_by=_scaled_bound(vehicle.leaves_by, time),
+                breaks=tuple(
+                    (_scaled(opens, time), _scaled(closes, time), _scaled(length, time))
+                    for opens, closes, length in vehicle.breaks
+                ),
             )
             for vehicle in rules.vehicles
         )

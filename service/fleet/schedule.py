@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from math import inf
-from typing import NamedTuple
 
+from service.fleet.breaks import Stay, place_breaks, with_breaks
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route, path_of
-from service.fleet.rules import ALWAYS, Rules, Span
+from service.fleet.rules import ALWAYS, Rules, VehicleType
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,7 @@ class Schedule:
         windows: The number of the window used at each stop of `path_of`.
         tightest: The place in `path_of` of the stop that limits the slack by a window that is not
             its last; -1 if something else does.
+        breaks: When each break on the way begins.
     """
 
     arrivals: tuple[float, ...]
@@ -37,6 +38,7 @@ class Schedule:
     lateness: float
     windows: tuple[int, ...]
     tightest: int
+    breaks: tuple[float, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -44,15 +46,7 @@ class Schedule:
         return self.end - self.arrivals[0]
 
 
-class _Stay(NamedTuple):
-    """What a route asks of its vehicle at a stop."""
-
-    windows: tuple[Span, ...]
-    service: float
-    due: float
-
-
-_FREE = _Stay((ALWAYS,), 0.0, inf)
+_FREE = Stay((ALWAYS,), 0.0, inf)
 
 
 def schedule(fleet: Fleet, route: Route) -> Schedule:
@@ -68,11 +62,51 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
         raise ValueError("a fleet without a clock has no times")
     driven = legs(fleet, route, fleet.rules.clock)
     vehicle = fleet.rules.vehicles[route.vehicle]
-    begin, last = vehicle.way
     trips = trips_of(fleet.rules, route)
-    begin = max(begin, _released(fleet.rules, trips[0]))
-    drive = partial(_drive, _stays(fleet.rules, route, trips), driven, last=last)
-    best = drive([0] * len(path_of(fleet.rules, route)), begin)
+    begin = max(vehicle.way[0], _released(fleet.rules, trips[0]))
+    stays = _stays(fleet.rules, route, trips)
+    if vehicle.breaks:
+        return _with_breaks(stays, driven, begin, vehicle)
+    return _timed(stays, driven, begin, vehicle)
+
+
+def _with_breaks(
+    stays: Sequence[Stay], driven: Sequence[float], begin: float, vehicle: VehicleType
+) -> Schedule:
+    """Return the times of a route with the breaks of its vehicle; late by inf if one fits nowhere.
+
+    The vehicle leaves after breaks that it can take at its start.
+    """
+    placed = place_breaks(stays, driven, begin, vehicle.way[1], vehicle.breaks)
+    if placed is None:
+        plain = _timed(stays, driven, begin, vehicle)
+        return replace(plain, late=plain.late or inf)
+    first = [each for each in placed if each.place == 0 and (not each.after or stays[0] == _FREE)]
+    for each in first:
+        opens, _, length = vehicle.breaks[each.number]
+        if max(begin, opens) + length > vehicle.leaves_by:
+            break
+        begin = max(begin, opens) + length
+        placed = placed[1:]
+    extended, legs_between, begins, places = with_breaks(stays, driven, vehicle.breaks, placed)
+    times = _timed(extended, legs_between, begin, vehicle)
+    rests = [place for place in range(len(extended)) if place not in places]
+    opens_of = [extended[place].windows[0][0] for place in rests]
+    taken = zip([times.arrivals[place] for place in rests], opens_of, strict=True)
+    return replace(
+        times,
+        arrivals=tuple(times.arrivals[place] for place in begins),
+        windows=tuple(times.windows[place] for place in places),
+        breaks=tuple(max(arrival, opens) for arrival, opens in taken),
+    )
+
+
+def _timed(
+    stays: Sequence[Stay], driven: Sequence[float], begin: float, vehicle: VehicleType
+) -> Schedule:
+    """Return the times of a route that may begin at a time, as in `schedule`."""
+    drive = partial(_drive, stays, driven, last=vehicle.way[1])
+    best = drive([0] * len(stays), begin)
     if best.late or begin > vehicle.leaves_by:
         return replace(best, late=max(best.late, begin - vehicle.leaves_by))
     # A later window at the stop that keeps the vehicle from leaving later may not delay the end.
@@ -90,7 +124,7 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
 
 
 def _drive(
-    stays: Sequence[_Stay],
+    stays: Sequence[Stay],
     driven: Sequence[float],
     allowed: Sequence[int],
     departure: float,
@@ -132,18 +166,18 @@ def _drive(
     return Schedule(tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest)
 
 
-def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[_Stay]:
+def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[Stay]:
     """Return what is asked for at each stop of `path_of`.
 
     A trip begins when all that it brings is released.
     """
     vehicle, visits = rules.vehicles[route.vehicle], rules.visits
-    stays = [_Stay(v.windows, v.service, v.due) for v in map(visits.__getitem__, route.stops)]
+    stays = [Stay(v.windows, v.service, v.due) for v in map(visits.__getitem__, route.stops)]
     if len(trips) > 1:
         released = iter(trips[1:])
         for place, stop in enumerate(route.stops):
             if stop in vehicle.reload:
-                stays[place] = _Stay(((_released(rules, next(released)), inf),), 0.0, inf)
+                stays[place] = Stay(((_released(rules, next(released)), inf),), 0.0, inf)
     start, end = ([] if each is None else [_FREE] for each in (vehicle.start, vehicle.end))
     return [*start, *stays, *end]
 

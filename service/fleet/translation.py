@@ -120,6 +120,7 @@ class Translation:
         too_late |= any(visit.release > visit.windows[0][1] for visit in rules.visits)
         changed = self.fleet.forbids or self.squeezed.changed
         trips = any(vehicle.reload for vehicle in rules.vehicles)
+        trips |= any(vehicle.breaks for vehicle in rules.vehicles)
         several = any(len(visit.windows) > 1 for visit in rules.visits)
         timed = rules.measure in ("overtime", "lateness")
         return self._slack > 0 or changed or too_late or trips or several or timed
@@ -320,7 +321,10 @@ class Translation:
             fixed_cost=fixed if count else _MOST_EXTRA,
             tw_early=early,
             tw_late=max(
-                early, self._late(vehicle.shift[1] + min(vehicle.max_overtime, goal.overtime))
+                early,
+                self._late(
+                    vehicle.shift[1] + min(vehicle.max_overtime, goal.overtime) - _rest(vehicle)
+                ),
             ),
             shift_duration=longest_duration,
             max_distance=longest_distance,
@@ -400,6 +404,17 @@ def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
 def _longest(routes: list[pyvrp.Route], most: int) -> list[pyvrp.Route]:
     """Return the routes with the most visits."""
     return sorted(routes, key=len, reverse=True)[:most]
+
+
+def _rest(vehicle: VehicleType) -> float:
+    """Return how long the breaks take that a route to the end of the shift has.
+
+    PyVRP knows no breaks: its routes end earlier by this much, so that there is time for them.
+    """
+    begin, end = vehicle.way
+    total = sum(length for _, _, length in vehicle.breaks)
+    needed = (each for each in vehicle.breaks if begin < each[0] and each[1] <= end - total)
+    return sum(length for _, _, length in needed)
 
 
 def _most_reloads(vehicle: VehicleType) -> int:

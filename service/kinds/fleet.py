@@ -171,5 +171,8 @@ def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
     numbers = {"shift": name.shift, "route": name.route}
     members |= {member: number for member, number in numbers.items() if number is not None}
     if fleet.rules.clock is not None:
-        members["arrivals"] = list(schedule(fleet, route).arrivals)
+        times = schedule(fleet, route)
+        members["arrivals"] = list(times.arrivals)
+        if times.breaks:
+            members["breaks"] = list(times.breaks)
     return members

@@ -41,6 +41,7 @@ _MOST_WINDOWS = 20
 _MOST_SHIFTS = 31
 _MOST_RELOADS = 20
 _MOST_SKILLS = 50
+_MOST_BREAKS = 10
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
 Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
 Skills = Annotated[list[Text], Field(max_length=_MOST_SKILLS, fail_fast=True)]
@@ -122,6 +123,13 @@ class ShipmentItem(StrictModel):
         return Shipment(pickup, find_index(self.delivery, ids, f"{part}/delivery", len(ids)))
 
 
+class BreakItem(StrictModel):
+    """A break that a driver takes who is on the way then."""
+
+    window: TimeSpan = Field(description="when it may begin, from and to")
+    length: Cost = Field(description="how long it takes")
+
+
 class VehicleItem(StrictModel):
     """A type of vehicle, and how many of it there are."""
 
@@ -145,6 +153,11 @@ class VehicleItem(StrictModel):
     )
     max_overtime: Cost = Field(
         default=0.0, description="how much later than its shift a route may end"
+    )
+    breaks: Annotated[list[BreakItem], Field(max_length=_MOST_BREAKS, fail_fast=True)] = Field(
+        default_factory=list,
+        description="up to 10, by ascending time. Each is taken between two visits, before the"
+        " departure or after the end; not while the vehicle drives",
     )
     skills: Skills = Field(default_factory=list, description="what it is able to do")
     max_stops: PositiveInteger | None = optional("the most stops of a route")
@@ -195,6 +208,7 @@ class VehicleItem(StrictModel):
                 max_trips=self.max_trips,
                 initial_load=tuple(self.initial_load),
                 max_overtime=self.max_overtime,
+                breaks=tuple((each.window[0], each.window[1], each.length) for each in self.breaks),
             )
             for shift in _spans(self.shift, self.shifts, f"{part}/shift")
         ]

@@ -101,7 +101,7 @@ def fleet_schemas(limits: Limits) -> dict[str, Schema]:
     named = fields["clock"]["anyOf"][0]["oneOf"][0]
     description = fields["clock"]["description"]
     fields["clock"] = {"anyOf": [named, one_of(_CLOCKS)], "description": description}
-    items = [parts[name] for name in ("FleetStopItem", "ShipmentItem", "VehicleItem")]
+    items = [parts[name] for name in ("FleetStopItem", "ShipmentItem", "VehicleItem", "BreakItem")]
     objectives = _objectives(parts["FleetObjectiveItem"], limits, _FLEET_OBJECTIVES)
     clocks = _objectives(parts["ClockItem"], limits, _CLOCKS)
     return _by_title(*map(_without_null, (*items, whole)), *objectives, *clocks)

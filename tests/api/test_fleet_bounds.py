@@ -64,6 +64,7 @@ def request(measure: str | None = "lateness", **members: Any) -> dict[str, Any]:
                 "shift": [9 * HOURS, 12 * HOURS],
                 "max_overtime": 600,
                 "max_stops": 3,
+                "breaks": [{"window": [9.2 * HOURS, 9.4 * HOURS], "length": 300}],
             },
         ],
         "objectives": [first, second if measure is None else {"name": measure, "measure": measure}],
@@ -132,12 +133,28 @@ def check_route(stops: dict[str, Any], route: dict[str, Any]) -> None:
         metres = metres_between(stops[a]["location"], stops[b]["location"])
         served = opened(stops[a], left) + stops[a].get("service", 0)
         assert arrived >= served + metres / SPEED - 1e-6
+    check_break(stops, route)
     loaded = route["arrivals"][0]
     for stop, arrived in zip(route["stops"], route["arrivals"], strict=True):
         loaded = arrived if stop in DEPOTS else loaded
         metres = metres_between(stops["depot"]["location"], stops[stop]["location"])
         if "release" in stops[stop] and len(trips) == 1:
             assert loaded >= stops[stop]["release"] - 1e-6
+
+
+def check_break(stops: dict[str, Any], route: dict[str, Any]) -> None:
+    """Check that the driver of a bike stands still for 300 s from 9.2 to 9.4 hours on."""
+    begins = route.get("breaks", [])
+    leaves, ends = route["arrivals"][0], route["arrivals"][-1]
+    if route["vehicle"] == "van" or leaves >= 9.2 * HOURS + 300 or ends <= 9.4 * HOURS:
+        assert not begins
+        return
+    (begin,) = begins
+    assert 9.2 * HOURS <= begin <= 9.4 * HOURS
+    ways = zip(pairwise(route["stops"]), pairwise(route["arrivals"]), strict=True)
+    for (a, b), (_, arrived) in ways:
+        driving = metres_between(stops[a]["location"], stops[b]["location"]) / SPEED
+        assert begin >= arrived - 1e-6 or begin + 300 <= arrived - driving + 1e-6
 
 
 REFUSED = [
@@ -150,6 +167,7 @@ REFUSED = [
     ({"stops": {2: {"skills": ["fly"]}}}, "/stops"),
     ({"vehicles": {0: {"shift": [0, 1]}}}, "/vehicles/0/shift"),
     ({"vehicles": {0: {"max_stops": 3}}}, "/vehicles/0/max_stops"),
+    ({"vehicles": {1: {"breaks": [{"window": [2, 1], "length": 1}]}}}, "/vehicles/1/breaks/0"),
     ({"vehicles": {1: {"max_trips": 3}}}, "/vehicles/1/max_trips"),
     ({"vehicles": {1: {"reload": ["nowhere"]}}}, "/vehicles/1/reload/0"),
     ({"vehicles": {1: {"initial_load": [7]}}}, "/vehicles/1/initial_load/0"),

@@ -16,7 +16,7 @@ def test_the_service_takes_what_is_read(name: str) -> None:
     assert len(request.subject().rules.visits) == len(request.stops)
 
 
-def test_vroom_s_skills_and_windows_are_read_and_its_breaks_are_not() -> None:
+def test_vroom_s_skills_windows_and_breaks_are_read() -> None:
     reading = read("vroom-skills.json")
     _, first, second, third = reading.request["stops"]
     assert first["skills"] == ["1", "14"]
@@ -26,8 +26,9 @@ def test_vroom_s_skills_and_windows_are_read_and_its_breaks_are_not() -> None:
     day, evening = reading.request["vehicles"]
     assert (day["id"], evening["id"]) == ("264", "264 (2)")
     assert day["max_stops"] == 3
+    assert day["breaks"] == [{"window": [43200, 46800], "length": 1800}]
     notes = [note.text for note in reading.notes]
-    assert "breaks of vehicles were left out: plans have no breaks, so drivers get none." in notes
+    assert "breaks of vehicles without exactly one time window were left out." not in notes
     for name in ("speed_factor of vehicles", "steps of vehicles", "priority of jobs"):
         assert f"{name} was not used: it is not supported for fleets." in notes
 

@@ -42,7 +42,8 @@ def _add_bounds(rng: random.Random, request: dict[str, Any], number: Number) -> 
         bounds = {"skills": ["cold"], "vehicle": rng.choice("01"), **times}
         stop |= {name: bounds[name] for name in bounds if rng.random() < 1 / 5}
     for vehicle in request["vehicles"]:
-        times = {"max_overtime": number()} if timed else {}
+        rest = {"window": _span(number), "length": number()}
+        times = {"max_overtime": number(), "breaks": [rest]} if timed else {}
         if timed and "shift" not in vehicle:
             times["shifts"] = _spans(number)
         trips = rng.choice([{"max_stops": rng.choice((1, 4))}, {"reload": [0], "max_trips": 2}])

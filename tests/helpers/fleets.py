@@ -10,7 +10,7 @@ import numpy as np
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.rules import ALWAYS, Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import ALWAYS, Break, Rules, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 
 Point = tuple[float, float]
@@ -102,6 +102,13 @@ def bounded_fleet(seed: int) -> Fleet:
             vehicles=(whole(0, 2),) if likely(0.15) else (),
         )
 
+    def breaks() -> tuple[Break, ...]:
+        opens, wide, length = whole(5, 40), whole(0, 10), whole(3, 12)
+        first = (float(opens), float(opens + wide), float(length))
+        later = first[1] + first[2] + whole(1, 20)
+        found = (first, (later, later + whole(0, 10), 5.0))
+        return found[: whole(1, 3)] if likely(0.25) else ()
+
     def vehicle() -> VehicleType:
         begin, capacity = whole(0, 10), whole(5, 13)
         reload = ((0,), (n + 1,), (0, n + 1))[whole(0, 3)] if likely(0.5) else ()
@@ -118,6 +125,7 @@ def bounded_fleet(seed: int) -> Fleet:
             initial_load=(whole(0, capacity),) if likely(0.2) else (),
             max_overtime=float(whole(1, 30)) if measure == "overtime" or likely(0.2) else 0.0,
             leaves_by=float(begin + whole(0, 20)) if likely(0.2) else inf,
+            breaks=breaks(),
         )
 
     over = ("sum", ["sum", "max"][whole(0, 2)] if measure is None else measure)
@@ -193,13 +201,16 @@ def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
     begins, ends = fleet.rules.vehicles[route.vehicle].way
     path = path_of(fleet.rules, route)
     numbers = [range(len(fleet.rules.visits[stop].windows)) for stop in path]
+    slots = [None, *product(range(len(path)), (0, 1))]
+    breaks = fleet.rules.vehicles[route.vehicle].breaks
+    latest = min(ends, fleet.rules.vehicles[route.vehicle].leaves_by)
     found = []
-    latest = min(200.0, fleet.rules.vehicles[route.vehicle].leaves_by)
     for departure in range(int(begins), int(latest) + 1):
         for windows in product(*numbers):
-            driven = _driven(fleet, route, windows, float(departure))
-            if driven is not None and driven[0] <= ends:
-                found.append((*driven, -departure))
+            for rests in product(slots, repeat=len(breaks)):
+                driven = _driven(fleet, route, windows, rests, float(departure))
+                if driven is not None and driven[0] <= ends:
+                    found.append((*driven, -departure))
     if not found:
         return None
     end, lateness, departure = min(found)
@@ -207,13 +218,19 @@ def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
 
 
 def _driven(
-    fleet: Fleet, route: Route, windows: Sequence[int], departure: float
+    fleet: Fleet,
+    route: Route,
+    windows: Sequence[int],
+    rests: Sequence[tuple[int, int] | None],
+    departure: float,
 ) -> tuple[float, float] | None:
     """Return when a route is done that begins at a time, and its lateness.
 
-    None where it misses one of these windows, or leaves before its load is released.
+    Each break is taken before or after the visit at a place, or not on the way. None where a window
+    or a break is missed, or where it leaves before its load is released.
     """
     rules = fleet.rules
+    breaks = list(zip(rules.vehicles[route.vehicle].breaks, rests, strict=True))
     path, reload = path_of(rules, route), rules.vehicles[route.vehicle].reload
     time, lateness = departure, 0.0
     if time < _released(rules, route.stops, reload):
@@ -222,14 +239,27 @@ def _driven(
         visit, (opens, closes) = rules.visits[stop], rules.visits[stop].windows[windows[place]]
         if place:
             time += fleet.costs[rules.clock, path[place - 1], stop]
+        time = _rested(time, breaks, (place, 0))
         if stop in reload and 0 < place < len(path) - 1:
             time = max(time, _released(rules, path[place + 1 :], reload))
         time = max(time, opens)
-        if time > closes:
+        if time > closes or time == inf:
             return None
         lateness += max(0.0, time - visit.due)
-        time += visit.service
-    return float(time), float(lateness)
+        time = _rested(time + visit.service, breaks, (place, 1))
+    free = [each for each, taken in breaks if taken is None]
+    missed = any(departure < each[0] + each[2] and time > each[1] for each in free)
+    return None if missed or time == inf else (float(time), float(lateness))
+
+
+def _rested(
+    time: float, breaks: list[tuple[Break, tuple[int, int] | None]], slot: tuple[int, int]
+) -> float:
+    """Return the time after the breaks that are taken here; infinite if one is missed."""
+    for (opens, closes, length), taken in breaks:
+        if taken == slot:
+            time = max(time, opens) + length if time <= closes else inf
+    return time
 
 
 def _released(rules: Rules, stops: Sequence[int], reload: Sequence[int]) -> float:

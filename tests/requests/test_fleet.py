@@ -168,6 +168,7 @@ def test_schemas_have_names_and_limits() -> None:
     assert set(schemas) == {
         "FleetStopItem",
         "ShipmentItem",
+        "BreakItem",
         "VehicleItem",
         "FleetMatrixObjective",
         "FleetPlaneObjective",

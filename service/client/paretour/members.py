@@ -112,6 +112,13 @@ class ShipmentRequest(TypedDict):
     delivery: int | str
 
 
+class BreakRequest(TypedDict):
+    """A break of a vehicle's driver: when it may begin, from and to, and how long it takes."""
+
+    window: ArrayLike
+    length: float
+
+
 class VehicleRequest(TypedDict, total=False):
     """A number of equal vehicles."""
 
@@ -130,6 +137,7 @@ class VehicleRequest(TypedDict, total=False):
     reload: Sequence[int | str]
     max_trips: int | None
     initial_load: Sequence[int]
+    breaks: Sequence[BreakRequest]
 
 
 class FleetObjectiveRequest(ObjectiveRequest, total=False):

@@ -32,6 +32,7 @@ class FleetRoute:
         lengths: Its lengths, shape (2,).
         arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
             (len(stops),). None without a clock.
+        breaks: When each break on the way begins.
         shift: The number of its shift, if its vehicle has several.
         route: Of a vehicle on its way, the number of its route in the plan that is driven.
     """
@@ -40,6 +41,7 @@ class FleetRoute:
     stops: tuple[str, ...]
     lengths: Array
     arrivals: Array | None
+    breaks: tuple[float, ...] = ()
     shift: int | None = None
     route: int | None = None
 
@@ -203,6 +205,7 @@ def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
         stops=stops,
         lengths=route.read("lengths", floats(PAIR)),
         arrivals=route.maybe("arrivals", floats(len(stops))),
+        breaks=route.maybe("breaks", each(number)) or (),
         shift=route.maybe("shift", count),
         route=route.maybe("route", count),
     )
