@@ -78,11 +78,6 @@ def test_a_front_of_plans_is_stored_and_forgotten(client: httpx.Client) -> None:
     assert client.get(path).status_code == 404
 
 
-def test_a_fleet_cannot_be_replanned(client: httpx.Client, answer: dict[str, Any]) -> None:
-    refused = client.post(f"/front/{answer['id']}/replan", json={})
-    assert "POST /fleet" in problem(refused, 409, "not-replannable")["detail"]
-
-
 def test_a_job_tells_its_progress_and_is_repeated_by_its_key(client: httpx.Client) -> None:
     headers = {"Prefer": "respond-async", "Idempotency-Key": uuid.uuid4().hex}
     accepted = client.post("/fleet", json=fleet_request(), headers=headers)

@@ -26,6 +26,10 @@ class Found:
     lengths: Array
     places: Sequence[Sequence[int]] | None = None
 
+    def split(self) -> list[bytes]:
+        """Return the JSON of each tour; none is needed to replan tours."""
+        return []
+
 
 @dataclass(frozen=True, eq=False)
 class Change:

@@ -28,11 +28,6 @@ ROBOTS = {
     **{name: value for name, value in MAP.items() if name != "cost_layer"},
     "robots": [{"id": "one", "start": 0}, {"id": "two", "start": 2}],
 }
-FLEET = {
-    "stops": [{"id": f"{i}", "location": [25.0, 60.0 + i / 100]} for i in range(4)],
-    "vehicles": [{"id": "van", "start": "0"}],
-    "objectives": [{"name": "way", "from": "great_circle"}, {"name": "m", "from": "great_circle"}],
-}
 FRONT = {"coordinates": np.eye(4).tolist()}
 TOURS = np.array([[0, 1, 2, 3], [0, 2, 1, 3]])
 FOUND = Found(TOURS, np.array([[1.0, 2.0], [2.0, 1.0]]), CELLS)
@@ -71,14 +66,13 @@ def _found_of(task: Task) -> Found:
 @pytest.mark.parametrize(
     ("source", "reason"),
     [
-        (source("fleet", FLEET), "only those of POST /front and /coverage can be"),
         (source("coverage", ROBOTS), "it is of plans for several robots"),
         (TaskSource("task", b"{}"), "what it was planned from is damaged"),
         (TaskSource("task", b"\x80\x00"), "what it was planned from is damaged"),
         (source("front", {"coordinates": "x"}), "what it was planned from is refused now"),
         (source("front", {"coordinates": np.eye(4)[:3].tolist()}), "are not of its stops"),
     ],
-    ids=["fleet", "robots", "no task", "no JSON", "refused", "of others"],
+    ids=["robots", "no task", "no JSON", "refused", "of others"],
 )
 def test_a_front_that_cannot_be_replanned_is_named_with_the_reason(
     source: TaskSource, reason: str
