@@ -13,6 +13,7 @@ _NAMES = (
     "asymmetric",
     "attack",
     "behind",
+    "bounds",
     "concave",
     "coverage",
     "curves",
