@@ -15,14 +15,13 @@ from service.api.body import receive_source
 from service.api.body_budget import BodyAllowance, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
+from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
     CoverageAnswer,
-    FleetAnswer,
     FrontAnswer,
-    RobotsAnswer,
     json_response,
     problem_bytes,
     problem_responses,
@@ -91,7 +90,7 @@ class PlanRoutes:
         }
         with_roads = {200: CONTENT, **problem_responses(502)}
         of_earlier = {**with_roads, **problem_responses(404, 409, 410)}
-        rest = FrontAnswer | CoverageAnswer
+        rest = FrontAnswer | CoverageAnswer | FleetAnswer
         for path, endpoint, answer, body, more in (
             ("/front", self.plan_front, FrontAnswer, FRONT_BODY, with_roads),
             ("/coverage", self.plan_coverage, CoverageAnswer | RobotsAnswer, COVERAGE_BODY, {}),

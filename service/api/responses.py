@@ -19,7 +19,6 @@ from starlette.responses import Response
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
 from service.files.reading import Kind
-from service.fleet.rules import Measure, Over, Rule
 from service.front import Termination
 from service.jobs.record import Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
@@ -207,115 +206,6 @@ class CoverageAnswer(MapAnswer):
     """A front of tours through places on a map, by ascending length."""
 
     front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
-
-
-class RouteItem(BaseModel):
-    """The route of one vehicle."""
-
-    vehicle: str = Field(description="the id of its type")
-    stops: list[str] = Field(description="ids in order, with the start and end that are stops")
-    lengths: Lengths
-    shift: int | SkipJsonSchema[None] = Field(
-        default=None, description="the number of its shift, if its vehicle has several"
-    )
-    route: int | SkipJsonSchema[None] = Field(
-        default=None,
-        description="of a vehicle on its way: the number of its route in the plan that is driven",
-    )
-    arrivals: list[float] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="if there is a clock: when it reaches each stop. At the first stop: when it"
-        " leaves, as late as possible without finishing later",
-    )
-    breaks: list[float] | SkipJsonSchema[None] = Field(
-        default=None, description="when each break on the way begins"
-    )
-
-
-class ReasonItem(BaseModel):
-    """What keeps the vehicles of a type from a stop."""
-
-    vehicle: str = Field(description="the id of the type")
-    rule: Rule
-    detail: str = Field(description="what a vehicle would do that the rule forbids")
-
-
-class LeftOutItem(BaseModel):
-    """How a stop can be served that a plan leaves out, or why not."""
-
-    stop: str
-    plan: int | SkipJsonSchema[None] = Field(
-        default=None, description="the number of the plan of this front that serves it"
-    )
-    price: list[float] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="what both lengths grow by in that plan, or if the stop is inserted here",
-    )
-    reasons: list[ReasonItem] | SkipJsonSchema[None] = Field(
-        default=None, description="if no vehicle can serve it: for each type the rule that forbids"
-    )
-
-
-class PlanItem(BaseModel):
-    """A plan of a fleet and where it stands."""
-
-    balance: Balance
-    lengths: Lengths
-    kept: float | SkipJsonSchema[None] = Field(
-        default=None,
-        description="of a replanned fleet: the share of the stops left that the same vehicles visit"
-        " after the same stops as in the plan that is driven",
-    )
-    measures: dict[str, float] = Field(
-        description="what plans are compared by, as far as the request allows: vehicles, driving,"
-        " service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned"
-    )
-    routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
-    unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")
-    left_out: list[LeftOutItem] | SkipJsonSchema[None] = Field(
-        default=None, description="for each of these, once the search has ended"
-    )
-
-
-class FleetObjectiveName(ObjectiveName):
-    """An objective of a fleet's front."""
-
-    over: Over = Field(description="whether the routes of a plan are added, or the longest counts")
-    measure: Measure | SkipJsonSchema[None] = Field(
-        default=None, description="of plans, if it is not of costs"
-    )
-
-
-class FleetAnswer(FrontAnswer):
-    """A front of plans for a fleet, by ascending first length."""
-
-    front: list[PlanItem]  # type: ignore[assignment]  # a list for reading only
-    objectives: list[FleetObjectiveName]  # type: ignore[assignment]
-    stops: list[StopItem]
-
-
-class RobotRouteItem(BaseModel):
-    """The route of one robot."""
-
-    robot: str = Field(description="its id")
-    tour: list[int] = Field(description="its places in order, from its start to its end")
-    lengths: Lengths
-    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` is true")
-
-
-class RobotPlanItem(BaseModel):
-    """A plan of several robots and where it stands."""
-
-    balance: Balance
-    lengths: Lengths
-    routes: list[RobotRouteItem] = Field(description="one for each robot that leaves")
-
-
-class RobotsAnswer(MapAnswer):
-    """A front of plans for several robots on a map, by ascending first length."""
-
-    front: list[RobotPlanItem]  # type: ignore[assignment]  # a list for reading only
-    objectives: list[FleetObjectiveName]  # type: ignore[assignment]
 
 
 class ActorItem(ActorName):

@@ -14,14 +14,8 @@ from starlette.responses import Response, StreamingResponse
 
 from service.api.auth import caller_of, client_of
 from service.api.geojson.answers import CONTENT, FrontAnswers
-from service.api.responses import (
-    FleetAnswer,
-    FrontAnswer,
-    RobotsAnswer,
-    TourAnswer,
-    json_bytes,
-    problem_responses,
-)
+from service.api.plan_responses import FleetAnswer, RobotsAnswer
+from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
 from service.jobs.record import Record

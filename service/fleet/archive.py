@@ -7,8 +7,9 @@ from operator import itemgetter
 import pyvrp
 
 from service.fleet.evaluation import plan_lengths, violations
+from service.fleet.goal import Goal
 from service.fleet.plans import Plan
-from service.fleet.translation import Goal, Translation
+from service.fleet.translation import Translation
 
 Point = tuple[float, float]
 _FIRST = itemgetter(0)

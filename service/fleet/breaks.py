@@ -1,4 +1,4 @@
-"""Where a vehicle takes its breaks on a route, so that the route is done as early as possible."""
+"""Place the breaks of a vehicle on its route, so that it is done as early as possible."""
 
 from collections.abc import Sequence
 from math import inf

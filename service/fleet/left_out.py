@@ -78,7 +78,8 @@ def _served_elsewhere(
     """Return the plan that serves a stop and is the least longer than one that leaves it out."""
     serving = [other for other, stops in enumerate(left_out) if stop not in stops]
     grown = points[serving] - points[index]
-    best = int((grown.clip(min=0.0) / fleet.scale).sum(axis=1).argmin())
+    with np.errstate(over="ignore"):
+        best = int((grown.clip(min=0.0) / fleet.scale).sum(axis=1).argmin())
     return Serving(stop, serving[best], (float(grown[best, 0]), float(grown[best, 1])))
 
 
@@ -100,7 +101,8 @@ def with_stop(fleet: Fleet, plan: Plan, stop: int) -> Plan | None:
 
 
 def _cost(fleet: Fleet, plan: Plan) -> float:
-    return float((np.array(plan_lengths(fleet, plan)) / fleet.scale).sum())
+    with np.errstate(over="ignore"):
+        return float((np.array(plan_lengths(fleet, plan)) / fleet.scale).sum())
 
 
 def _inserted(fleet: Fleet, plan: Plan, stop: int) -> Serving:

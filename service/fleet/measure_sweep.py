@@ -14,8 +14,9 @@ import numpy as np
 import pyvrp
 
 from service.fleet.archive import SolutionArchive
+from service.fleet.goal import Goal
 from service.fleet.solver import Step
-from service.fleet.translation import Goal, Translation
+from service.fleet.translation import Translation
 
 _FIRST_ITERATIONS = 100
 _MOST_DOUBLINGS = 10

@@ -17,15 +17,16 @@ from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
 from service.fleet.first_plans import Cutter, network_sequences
 from service.fleet.fleet import Array, Fleet
+from service.fleet.goal import FREE
 from service.fleet.left_out import with_all_stops
 from service.fleet.measure_sweep import MeasureSweep
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan, Route
-from service.fleet.rules import Rules
+from service.fleet.reference_point import default_reference_point
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
-from service.fleet.translation import FREE, Translation
+from service.fleet.translation import Translation
 from service.front import Progress, ReportOf, Termination
 from service.pareto import hypervolume, nondominated
 from service.search.best_subset import best_subset, selection_seconds
@@ -104,9 +105,27 @@ def plan_fleet(
                 raise no_plan(fleet, sentence, lambda: stop() or time.monotonic() > ends)
             return _front(fleet, options, all_plans, "converged", began)
     if options.time_limit == 0:
-        plans = _constructed(fleet, constructor, stop)
-        return _front(fleet, options, plans, "converged", began, constructed=len(plans))
+        return _without_search(fleet, options, constructor, stop, began)
     return _searched(fleet, options, constructor, stop, report, began)
+
+
+def _without_search(
+    fleet: Fleet,
+    options: FleetOptions,
+    constructor: Constructor | None,
+    stop: Callable[[], bool],
+    began: float,
+) -> FleetFront:
+    """Return the front of the plans of the network, and of the plan that is driven, if one is."""
+    driven = [] if options.driven is None else [with_all_stops(fleet, options.driven)]
+    kept = [plan for plan in driven if not violations(fleet, plan)]
+    try:
+        plans = _constructed(fleet, constructor, stop)
+    except Refusal:
+        if not kept:
+            raise
+        plans = []
+    return _front(fleet, options, [*kept, *plans], "converged", began, constructed=len(plans))
 
 
 def _searched(
@@ -213,7 +232,7 @@ class _Search:
         self._began = self._reported = began
         self._deadline = self._began + options.time_limit
         units = Units.of(fleet)
-        self._reference_point = units.points(reference_point_of(fleet, options))
+        self._reference_point = units.points(_reference_point(fleet, options))
         self._translation = Translation(units.fleet, loose)
         give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
@@ -338,7 +357,7 @@ def _front(
 ) -> FleetFront:
     """Return the front of plans that break no rule."""
     points = points_of(fleet, plans)
-    reference_point = reference_point_of(fleet, options)
+    reference_point = _reference_point(fleet, options)
     front = nondominated(points)
     kept = front[best_subset(points[front], options.size, reference_point)]
     return FleetFront(
@@ -355,30 +374,6 @@ def _front(
     )
 
 
-def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
-    """Return the requested reference point; by default lengths above those of sensible plans.
-
-    The default is the number of stops times the scale, plus what else can add to a length. In the
-    first objective these are all prizes and fixed costs. In the clock's objective, and in lateness,
-    they are all services, and the time from the first shift or window to the end of the last, in
-    which a vehicle may wait: once, or for each vehicle if times are summed.
-    """
-    if options.reference_point is not None:
-        return options.reference_point
-    rules = fleet.rules
-    point = rules.n * fleet.scale
-    prizes = sum(visit.prize or 0.0 for visit in rules.visits)
-    point[0] += 0.0 if rules.measure == "unassigned" else prizes
-    point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
-    for objective, over in enumerate(rules.over):
-        if over == "lateness" or (over in ("sum", "max") and objective == rules.clock):
-            vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
-            point[objective] += sum(visit.service for visit in rules.visits)
-            point[objective] += _waiting(rules) * (1 if over == "max" else vehicles)
-    return point
-
-
-def _waiting(rules: Rules) -> float:
-    """Return the longest time that a vehicle may wait between two bounds of times."""
-    bounds = [time for span in rules.spans for time in span if time < inf]
-    return max(bounds, default=0.0) - min(bounds, default=0.0)
+def _reference_point(fleet: Fleet, options: FleetOptions) -> Array:
+    given = options.reference_point
+    return default_reference_point(fleet) if given is None else given

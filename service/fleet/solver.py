@@ -16,8 +16,9 @@ from pyvrp.IteratedLocalSearch import (
 )
 from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
 
+from service.fleet.goal import Goal, Weights
 from service.fleet.scales import Penalties
-from service.fleet.translation import Goal, Translation, Weights
+from service.fleet.translation import Translation
 
 _FEW = 100  # stops: a search of their whole neighbourhood takes at most about 50 ms
 _EXHAUSTIVE = 5e-6  # seconds per pair of stops, more than a 2.5 GHz Xeon needs

@@ -13,9 +13,10 @@ import pyvrp
 
 from service.fleet.archive import Point, SolutionArchive
 from service.fleet.fleet import least_paths
+from service.fleet.goal import Goal
 from service.fleet.scales import STEEPEST, UNBOUNDED
 from service.fleet.solver import Step
-from service.fleet.translation import Goal, Translation
+from service.fleet.translation import Translation
 
 FEW_STOPS = 12  # up to this number of stops, the sweep looks for every point
 _FIRST_ITERATIONS = 100

@@ -8,7 +8,6 @@ numbers are rounded against the plan, so that a plan of PyVRP breaks no rule.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 
 from service.fleet.evaluation import unassigned
 from service.fleet.fleet import Fleet
+from service.fleet.goal import FREE, Goal, Weights
 from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import VehicleType
@@ -28,32 +28,6 @@ from service.objectives import OBJECTIVES
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
 _PRIZE_DIGITS = 6  # the digits of the largest prize where prizes are an objective
 _MANY = 2**30  # reloads of a vehicle without a limit
-Weights = tuple[int, int]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Goal:
-    """The goal of a search: a weighted sum to minimise, and limits.
-
-    Args:
-        weights: The weights of distance and duration. That of the first objective is also the
-            weight of fixed costs, and of prizes if they belong to it.
-        prizes: The weight of prizes if they are the second objective.
-        limit: The limit on the length of each route in the objective that is a maximum.
-        vehicles: The most vehicles of each type; None for all.
-        overtime: The limit on the overtime of each route.
-        lateness: The limit on how much later than due a visit begins.
-    """
-
-    weights: Weights
-    prizes: int = 0
-    limit: int = UNBOUNDED
-    vehicles: tuple[int, ...] | None = None
-    overtime: float = inf
-    lateness: float = inf
-
-
-FREE = Goal(weights=(1, 1))  # the goal of solutions that were not found by a search
 
 
 class Translation:

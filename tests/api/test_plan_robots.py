@@ -8,7 +8,7 @@ from typing import Any
 import httpx
 import pytest
 
-from service.api.responses import RobotsAnswer
+from service.api.plan_responses import RobotsAnswer
 from tests.api.test_plan_coverage import GRID, PLACES, png
 from tests.helpers.robot_plans import check_answer
 from tests.helpers.serving import app_of, problem, serving

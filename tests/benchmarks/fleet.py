@@ -29,11 +29,12 @@ import service
 from service.actor import OnnxActor, load_actors
 from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
+from service.fleet.goal import Goal
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
 from service.fleet.rules import Rules, VehicleType, Visit
 from service.fleet.scales import UNBOUNDED
-from service.fleet.translation import Goal, Translation
+from service.fleet.translation import Translation
 from service.pareto import hypervolume, nondominated
 from tests.benchmarks import printed
 from tests.benchmarks.fleet_table import OURS, PLAIN, compared

@@ -14,8 +14,9 @@ from service.errors import Cancelled, InvalidInstance, Refusal
 from service.fleet.enumeration import exact_plans
 from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
-from service.fleet.planner import FleetOptions, plan_fleet, reference_point_of
+from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront, path_of
+from service.fleet.reference_point import default_reference_point
 from service.fleet.rules import ALWAYS, Rules, Shipment, VehicleType, Visit
 from service.fleet.schedule import schedule
 from service.instance import Instance
@@ -169,7 +170,7 @@ def test_the_default_reference_point_leaves_room_for_waiting() -> None:
     front = plan_fleet(Fleet(rules=rules, costs=costs), FleetOptions(time_limit=1))
     assert front.hypervolume > 0
     assert (front.points < front.reference_point).all()
-    assert reference_point_of(front.fleet, FleetOptions(time_limit=1))[1] > 4 * 7200
+    assert default_reference_point(front.fleet)[1] > 4 * 7200
 
 
 @pytest.mark.parametrize("limit", [0.0, 0.01])

@@ -41,7 +41,7 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
     if case.path.endswith("/replan") and case.meta.generation.mode.is_positive:
         _change_nothing(case.body)
-    if isinstance(case.body, dict) and _are_directions(case.body.get("preferences")):
+    if isinstance(case.body, dict) and _depend_on_objectives(case.body):
         case.body["preferences"] = len(case.body["preferences"])
     _correct_body(case.body, positive=case.meta.generation.mode.is_positive)
 
@@ -74,13 +74,10 @@ def _in_two_planes(body: dict[str, Any], rows: list[Any]) -> None:
 
 
 def _change_nothing(body: Any) -> None:
-    """Leave only those members of a request to replan that hold for any front."""
+    """Leave only those members of a request to replan that hold for any front, also of a fleet."""
     if isinstance(body, dict):
-        of_stops = ("costs", "objectives", "geometry")
-        of_a_map = ("pose", "grid", "blocked", "freed", "cost_layer", "cost_layers", "paths")
-        of_some_front = ("done", "position", "add", "remove", "tour", *of_stops, *of_a_map)
-        for name in (*of_some_front, "actor", "reference_point"):
-            body.pop(name, None)
+        for name in set(body) - {"time_limit", "size", "seed"}:
+            del body[name]
 
 
 def _make_coverable(body: dict[str, Any]) -> None:
@@ -208,6 +205,21 @@ def _are_rows(value: list[Any]) -> bool:
     return all(
         isinstance(row, list) and 4 <= len(row) <= 8 and all(map(_is_number, row)) for row in value
     )
+
+
+def _depend_on_objectives(body: dict[str, Any]) -> bool:
+    """Whether preferences are directions, or angles under more than two objectives."""
+    preferences = body.get("preferences")
+    several = any(
+        isinstance(body.get(name), list) and len(body[name]) > 2
+        for name in ("objectives", "matrices")
+    )
+    angles = (
+        isinstance(preferences, list)
+        and preferences != []
+        and all(_is_number(angle) and 0 <= angle <= 90 for angle in preferences)
+    )
+    return _are_directions(preferences) or (several and angles)
 
 
 def _are_directions(value: Any) -> bool:

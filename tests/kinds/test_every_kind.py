@@ -192,7 +192,7 @@ def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
     done = first.get("stops", first.get("tour", [0]))[:1]
     changes = {"done": done}
     if asked.kind == "fleet":
-        changes = {"routes": [{"route": 0, "done": first["routes"][0]["stops"][1:2]}]}
+        changes = {"plan": 0, "routes": [{"route": 0, "done": first["routes"][0]["stops"][1:2]}]}
     answer = client.post(f"/front/{front['id']}/replan", json={**changes, "time_limit": 0})
     if answer.is_success:
         assert all("kept" in each for each in answer.json()["front"])
