@@ -1,4 +1,4 @@
-"""What a search of PyVRP minimises, and its limits."""
+"""Say what a search of PyVRP minimises, and under which limits."""
 
 from dataclasses import dataclass
 from math import inf
