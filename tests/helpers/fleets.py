@@ -203,7 +203,7 @@ def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
     numbers = [range(len(fleet.rules.visits[stop].windows)) for stop in path]
     slots = [None, *product(range(len(path)), (0, 1))]
     breaks = fleet.rules.vehicles[route.vehicle].breaks
-    latest = min(ends, fleet.rules.vehicles[route.vehicle].leaves_by)
+    latest = min(200.0, ends, fleet.rules.vehicles[route.vehicle].leaves_by)
     found = []
     for departure in range(int(begins), int(latest) + 1):
         for windows in product(*numbers):
