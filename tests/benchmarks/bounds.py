@@ -4,7 +4,7 @@ Instances are our own: depot in the middle and stops uniform in a square of 100 
 100 minutes to cross; half of the stops have a window of two hours, half are due, a fifth need a
 skill that half of the vans have, some are released during the day. There is a van for each 20
 stops; together they hold three quarters of the demand on one trip, may load again once, work nine
-hours with a break of half an hour, and an hour longer at most.
+hours with a break of half an hour between the second and the seventh, and an hour longer at most.
 
 Prints for each second objective the seconds until the first plan and until ten are found, and the
 plans and their hypervolume after ten seconds. Then a stop is added to a plan that is driven: how
@@ -75,7 +75,7 @@ def instance(n: int, seed: int, over: Over | Measure) -> Fleet:
         reload=(0,),
         max_trips=2,
         max_overtime=60.0,
-        breaks=((180.0, 270.0, 30.0),),
+        breaks=((120.0, 420.0, 30.0),),
     )
     able = VehicleType(**{**vars(van), "skills": ("cold",), "count": vans // 2})
     others = VehicleType(**{**vars(van), "count": vans - vans // 2})
