@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from service.errors import Refusal
 from service.fleet.evaluation import violations
 from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
@@ -121,8 +122,11 @@ def measured(n: int, over: Over | Measure, seed: int) -> dict[str, Any]:
     }
 
 
-def replanned(fleet: Fleet, front: FleetFront) -> dict[str, float]:
-    """What the nearest plan keeps when the last stop is added to the knee, and how good it is."""
+def replanned(fleet: Fleet, front: FleetFront) -> dict[str, float | None]:
+    """What the nearest plan keeps when the last stop is added to the knee, and how good it is.
+
+    None where no plan is found in time.
+    """
     added = fleet.rules.n - 1
     routes = [
         Route(route.vehicle, tuple(stop for stop in route.stops if stop != added))
@@ -130,7 +134,10 @@ def replanned(fleet: Fleet, front: FleetFront) -> dict[str, float]:
     ]
     driven = Plan(tuple(route for route in routes if route.stops))
     began = time.perf_counter()
-    brief = plan_fleet(fleet, FleetOptions(time_limit=BRIEF, driven=driven))
+    try:
+        brief = plan_fleet(fleet, FleetOptions(time_limit=BRIEF, driven=driven))
+    except Refusal:
+        return dict.fromkeys(("replanned in", "kept", "excess"))
     seconds = time.perf_counter() - began
     kept = [kept_share(driven, plan) for plan in brief.plans]
     nearest = brief.points[int(np.argmax(kept))]
@@ -161,17 +168,22 @@ def rows(n: int) -> tuple[list[str], list[list[str]]]:
         entries = of(stored.get(f"{n} stops, {over}"))
         if not entries:
             continue
-        tens = [each["ten"] for each in entries]
         found.append(
             [
                 over,
-                f"{np.mean([each['first'] for each in entries]):.2f} s",
-                "-" if None in tens else f"{np.mean(tens):.1f} s",
-                f"{np.mean([each['plans'] for each in entries]):.0f}",
-                f"{100 * np.mean([each['hypervolume'] for each in entries]):.2f} %",
-                f"{np.mean([each['replanned in'] for each in entries]):.2f} s",
-                f"{100 * np.mean([each['kept'] for each in entries]):.1f} %",
-                f"{100 * np.mean([each['excess'] for each in entries]):.2f} %",
+                _mean(entries, "first", "{:.2f} s"),
+                _mean(entries, "ten", "{:.1f} s"),
+                _mean(entries, "plans", "{:.0f}"),
+                _mean(entries, "hypervolume", "{:.2%}"),
+                _mean(entries, "replanned in", "{:.2f} s"),
+                _mean(entries, "kept", "{:.1%}"),
+                _mean(entries, "excess", "{:.2%}"),
             ]
         )
     return head, found
+
+
+def _mean(entries: list[dict[str, Any]], name: str, form: str) -> str:
+    """The mean over all instances, "-" where one has no such number."""
+    numbers = [each[name] for each in entries]
+    return "-" if None in numbers else form.format(np.mean(numbers))
