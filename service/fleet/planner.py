@@ -117,8 +117,8 @@ def _without_search(
     began: float,
 ) -> FleetFront:
     """Return the front of the plans of the network, and of the plan that is driven, if one is."""
-    driven = [] if options.driven is None else [with_all_stops(fleet, options.driven)]
-    kept = [plan for plan in driven if not violations(fleet, plan)]
+    driven = None if options.driven is None else _completed(fleet, options.driven)
+    kept = [] if driven is None else [driven]
     try:
         plans = _constructed(fleet, constructor, stop)
     except Refusal:
@@ -126,6 +126,14 @@ def _without_search(
             raise
         plans = []
     return _front(fleet, options, [*kept, *plans], "converged", began, constructed=len(plans))
+
+
+def _completed(fleet: Fleet, plan: Plan) -> Plan | None:
+    """Return a plan if it breaks no rule, else with the stops that it lacks; None if that does."""
+    if not violations(fleet, plan):
+        return plan
+    whole = with_all_stops(fleet, plan)
+    return None if violations(fleet, whole) else whole
 
 
 def _searched(
@@ -269,8 +277,8 @@ class _Search:
 
         Stops that fit nowhere stay out; then the plan may break a rule, and is not put there.
         """
-        plan = with_all_stops(self._fleet, driven)
-        if not violations(self._fleet, plan):
+        plan = _completed(self._fleet, driven)
+        if plan is not None:
             self.archive.offer(self._translation.solution(plan), FREE)
 
     def run(self) -> Termination:
