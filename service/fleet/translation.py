@@ -67,6 +67,7 @@ class Translation:
             if stop not in rules.shipped
             for number in range(len(rules.visits[stop].windows))
         ]
+        self._has_choice = any(number for _, number in self._clients)  # of a window
         self.squeezed = Squeezed.of(fleet)
         self._horizon = Horizon.of(rules, float(self.squeezed.largest[rules.clock or 0]))
         scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
@@ -95,9 +96,8 @@ class Translation:
         changed = self.fleet.forbids or self.squeezed.changed
         trips = any(vehicle.reload for vehicle in rules.vehicles)
         trips |= any(vehicle.breaks for vehicle in rules.vehicles)
-        several = any(len(visit.windows) > 1 for visit in rules.visits)
         timed = rules.measure in ("overtime", "lateness")
-        return self._slack > 0 or changed or too_late or trips or several or timed
+        return self._slack > 0 or changed or too_late or trips or self._has_choice or timed
 
     def plan(self, solution: pyvrp.Solution) -> Plan:
         """Return the plan of a solution."""
@@ -180,9 +180,12 @@ class Translation:
 
         For a stop with several windows PyVRP also counts those that were not chosen.
         """
-        unused = [len(visit.windows) - 1 for visit in self.fleet.rules.visits]
-        counted = sum(self._prize(stop, goal) * times for stop, times in enumerate(unused) if times)
-        return solution.uncollected_prizes() - counted
+        uncollected = solution.uncollected_prizes()
+        if not self._has_choice:
+            return uncollected
+        return uncollected - sum(
+            self._prize(stop, goal) for stop, number in self._clients if number
+        )
 
     def data(self, goal: Goal) -> pyvrp.ProblemData:
         """Return PyVRP's data for a goal."""

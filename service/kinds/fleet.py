@@ -37,14 +37,13 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
     assert isinstance(subject, UnmeasuredFleet)
     assert task.labels is not None
     known = subject.members(task.labels)
-    ids = [stop.id for stop in task.labels.stops]
+    names = Names(subject.vehicles, [stop.id for stop in task.labels.stops])
+    driven = Plan(subject.driven) if subject.driven else None
 
     def encoded(front: FleetFront) -> FrontDocument:
         # While the search runs, plans come without reasons for what they leave out.
         ended = front.terminated is not None
         servings = iter(explain(front.fleet, front.plans, front.points) if ended else ())
-        names = Names(subject.vehicles, ids)
-        driven = Plan(subject.driven) if subject.driven else None
         return document_of_plans(
             front,
             lambda plan, members: _encode_plan(
@@ -60,7 +59,6 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
     fleet = subject.fleet()
     timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
     try:
-        driven = Plan(subject.driven) if subject.driven else None
         front = plan_front(task, fleet, actor, stop, reporting(report, encoded), driven)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None

@@ -36,7 +36,7 @@ from service.requests.stop_fields import (
     read_stops,
 )
 from service.requests.stops import Labels, Source, Stop, Stops, locations_of
-from service.requests.task import UnmeasuredFleet, VehicleName
+from service.requests.task import UnmeasuredFleet, VehicleName, types_by_id
 from service.requests.validation import parse_json, show, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
@@ -91,10 +91,7 @@ class FleetRequest(SearchFields):
         ids = {stop.id: index for index, stop in enumerate(labels.stops)}
         check_unique([item.id for item in self.vehicles], "vehicles")
         vehicles, names = self._vehicles(ids)
-        types = {
-            item.id: tuple(index for index, name in enumerate(names) if name.id == item.id)
-            for item in self.vehicles
-        }
+        types = types_by_id(names)
         first, second = self.objectives
         rules = Rules(
             visits=tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops)),

@@ -1,6 +1,6 @@
 """Tasks: what a request asks for, checked and ready to be planned."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -35,6 +35,14 @@ class VehicleName:
     id: str
     shift: int | None = None
     route: int | None = None
+
+
+def types_by_id(names: Sequence[VehicleName]) -> dict[str, tuple[int, ...]]:
+    """Return the types of vehicles of each id: one for each of its shifts."""
+    types: dict[str, tuple[int, ...]] = {}
+    for index, name in enumerate(names):
+        types[name.id] = (*types.get(name.id, ()), index)
+    return types
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,21 +50,11 @@ def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> 
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_a_handful_of_stops_has_the_front_of_brute_force(seed: int) -> None:
-    fleet = random_fleet(seed)
-    if expected := exact_front(fleet):
-        front = plan_fleet(fleet, FleetOptions(time_limit=inf))
-        assert points_of(front) == expected
-        assert front.terminated == "converged"
-    else:
-        with pytest.raises(Refusal) as refused:
-            plan_fleet(fleet, FleetOptions(time_limit=inf))
-        assert refused.value.code == "no-plan"
-
-
-@pytest.mark.parametrize("seed", range(60))
-def test_a_handful_of_stops_under_all_bounds_has_the_front_of_brute_force(seed: int) -> None:
-    fleet = bounded_fleet(seed)
+@pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet])
+def test_a_handful_of_stops_has_the_front_of_brute_force(
+    fleet_of: Callable[[int], Fleet], seed: int
+) -> None:
+    fleet = fleet_of(seed)
     if expected := exact_front(fleet):
         front = plan_fleet(fleet, FleetOptions(time_limit=inf))
         assert points_of(front) == expected

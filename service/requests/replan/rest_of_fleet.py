@@ -27,7 +27,7 @@ from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.way import StoredFront
 from service.requests.stop_fields import find_index
 from service.requests.stops import Labels, Source, Stops, locations_of
-from service.requests.task import Task, UnmeasuredFleet, VehicleName
+from service.requests.task import Task, UnmeasuredFleet, VehicleName, types_by_id
 from service.requests.validation import show, too_many_cities
 
 _LATER = 1e-6  # of the greatest time: what cannot be loaded now is released this much later
@@ -193,13 +193,9 @@ class _Rest:
         if stop in self._ends:
             return Visit()
         if stop >= self._all.n:
-            item = self._request.add[stop - self._all.n]
-            ids = {name.id for name in self._fleet.vehicles}
-            types = {
-                each: tuple(i for i, name in enumerate(self._fleet.vehicles) if name.id == each)
-                for each in ids
-            }
-            visit = item.visit(f"add/{stop - self._all.n}", types)
+            index = stop - self._all.n
+            types = types_by_id(self._fleet.vehicles)
+            visit = self._request.add[index].visit(f"add/{index}", types)
         else:
             visit = self._known_visit(stop)
         return replace(
@@ -239,8 +235,13 @@ class _Rest:
         return () if len(able) == len(self._types) else tuple(able)
 
     def _must_be_loaded(self, stop: int, visit: Visit) -> bool:
-        shipped = {i for each in self._left_shipments() for i in (each.pickup, each.delivery)}
-        return any(visit.demand) and stop not in shipped and stop not in self._carried
+        return any(visit.demand) and stop not in self._shipped and stop not in self._carried
+
+    @cached_property
+    def _shipped(self) -> frozenset[int]:
+        """The stops of the shipments that nobody has picked up."""
+        left = self._left_shipments()
+        return frozenset(stop for each in left for stop in (each.pickup, each.delivery))
 
     def _release(self, stop: int, visit: Visit) -> float:
         """Return when what is brought to a stop can be loaded: not by who is on the way now."""
