@@ -234,3 +234,14 @@ def test_a_list_of_angles_in_a_file_is_asked_for(opened: Page) -> None:
     opened.get_by_text("More settings").click()
     opened.get_by_label("Directions of the network").fill("7")
     assert curl_body(opened)["preferences"] == 7
+
+
+def test_settings_of_a_file_go_with_it_and_those_typed_stay(opened: Page) -> None:
+    cities = {"coordinates": [[0, 0, 5, 5], [3, 1, 9, 1]]}
+    settings = {"seed": 7, "size": 8, "time_limit": 2}
+    open_files(opened, {"set.json": json.dumps({**cities, **settings})})
+    assert curl_body(opened).items() >= settings.items()
+    opened.get_by_label("Tours", exact=True).fill("9")
+    open_files(opened, {"plain.json": json.dumps(cities)})
+    assert curl_body(opened).items() >= {"seed": 0, "size": 9, "time_limit": 3}.items()
+    opened.get_by_label("Tours", exact=True).fill("100")

@@ -24,6 +24,7 @@ export class Fields {
   #coverage;
   #plans = false; // whether the request is for plans
   #ids = null; // the ids of the stops, if they have them
+  #brought = {}; // the settings that the request before named
 
   constructor(form) {
     this.#form = form;
@@ -69,6 +70,7 @@ export class Fields {
     this.#show(Boolean(movers));
     this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
     if (!this.#plans) this.#takeRoute(rest);
+    this.#forget();
     for (const field of FIELDS) {
       const { name, where, box, stop } = field;
       if (box || stop || !this.#has(field)) continue;
@@ -76,10 +78,18 @@ export class Fields {
       // What is there and no number, as a list of angles, is left as it is, unless one is typed.
       if (request[name] != null) this.#form[name].value = "";
       if (typeof request[name] !== "number") continue;
-      this.#form[name].value = request[name];
+      this.#brought[name] = this.#form[name].value = String(request[name]);
       delete rest[name];
     }
     return rest;
+  }
+
+  /** Puts back what the request before brought, as an example its seed. What was typed since stays. */
+  #forget() {
+    for (const { name, value = "" } of FIELDS) {
+      if (this.#form[name].value === this.#brought[name]) this.#form[name].value = value;
+    }
+    this.#brought = {};
   }
 
   /** Shows the fields that requests for plans have, or all; the size is of what is planned. */
