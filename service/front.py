@@ -120,6 +120,10 @@ class Front:
         closed: Whether the tours return to where they began.
         kept: In a replanned front, the share of the driven tour's legs that each tour keeps, shape
             (k,).
+        departures: Over a day, when each tour begins, in seconds of the day, shape (k,).
+        reached: Over a day, all lengths of each tour up to each of its places, and to its end,
+            shape (k, n + 1, m).
+        clock: Over a day, the index of the objective that is seconds.
     """
 
     tours: NDArray[np.integer]
@@ -135,6 +139,19 @@ class Front:
     gained: float | None = None
     closed: bool = True
     kept: Array | None = None
+    departures: Array | None = None
+    reached: Array | None = None
+    clock: int = 0
+
+    @property
+    def times(self) -> Array | None:
+        """Over a day, when each tour reaches each of its places and its end, shape (k, n + 1).
+
+        In seconds of the day. An open route ends when its last visit has ended.
+        """
+        if self.departures is None or self.reached is None:
+            return None
+        return self.departures[:, np.newaxis] + self.reached[:, :, self.clock]
 
     @property
     def n(self) -> int:

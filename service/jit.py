@@ -82,7 +82,9 @@ _PACKAGE = Path(__file__).parent
 
 def _digest() -> str:
     """Return a digest of the modules whose functions and numbers are compiled."""
-    folders = (_PACKAGE / name for name in ("coverage", "fleet", "replanning", "search"))
+    folders = (
+        _PACKAGE / name for name in ("coverage", "fleet", "over_the_day", "replanning", "search")
+    )
     modules = [*_PACKAGE.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
     return sha256(b"".join(path.read_bytes() for path in sorted(modules))).hexdigest()
 

@@ -123,4 +123,4 @@ def test_all_compiled_code_lies_where_a_change_is_noticed() -> None:
         path for path in package.rglob("*.py") if "from service.jit import" in path.read_text()
     ]
     folders = {path.relative_to(package).parts[0] for path in users}
-    assert folders <= {"coverage", "fleet", "replanning", "search"}
+    assert folders <= {"coverage", "fleet", "over_the_day", "replanning", "search"}

@@ -77,12 +77,21 @@ class TourItem(BaseModel):
         description="only in a front that was replanned: the share of the driven tour's remaining"
         " legs that this tour keeps, in either direction if costs are symmetric",
     )
+    departure: float | SkipJsonSchema[None] = Field(
+        default=None,
+        description="where costs change over the day: when the tour begins, in seconds of the day",
+    )
     lengths: Lengths
     tour: list[int]
     arrivals: list[Lengths] | SkipJsonSchema[None] = Field(
         default=None,
         description="only if `arrivals` is true: all lengths up to each stop, and up to the return"
         " of a closed tour",
+    )
+    times: list[float] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="where costs change over the day: when it reaches each stop, in seconds of the"
+        " day, and when it ends",
     )
     stops: list[str] | SkipJsonSchema[None] = Field(
         default=None, description="the ids of its stops, if the request has ids"

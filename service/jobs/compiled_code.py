@@ -25,6 +25,7 @@ from service import jit, own_code
 from service.coverage import shortest_paths
 from service.jobs.parts import Compiling, Part
 from service.kinds import fleet
+from service.over_the_day import warm_up as over_the_day
 from service.replanning import insertion
 from service.search import warm_up as search
 from service.search.several import warm_up as several
@@ -55,6 +56,7 @@ _WORK: Mapping[Part, _Work] = {
     Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 10),
     Part.SEVERAL_OBJECTIVES: _Work(several.warm_up, (several.warm_up,), 25),
     Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 12),
+    Part.OVER_THE_DAY: _Work(over_the_day.warm_up, (over_the_day.warm_up,), 12),
 }
 _PIECES = [(part, piece) for part, work in _WORK.items() for piece in work.pieces]
 _A_FUNCTION = 0.25  # seconds that one of the functions takes, on average

@@ -28,6 +28,7 @@ class Part(Enum):
     FLEETS = "fleets"
     SEVERAL_OBJECTIVES = "several-objectives"  # three and four
     MANY_CITIES = "many-cities"
+    OVER_THE_DAY = "over-the-day"
 
 
 @dataclass(frozen=True)
@@ -58,24 +59,29 @@ def parts_of(task: Task) -> frozenset[Part]:
     """Return the parts that a task needs."""
     match task.subject:
         case SharedCoverage():
-            return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES}
+            return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY}
         case UnmeasuredFleet():
             return frozenset({Part.FEW_CITIES, Part.FLEETS})
         case Stops() as stops:
-            if not task.needs_compiled_code:
-                return frozenset()
-            if len(stops.sources) > OBJECTIVES:
-                return _of_several(replanned=task.earlier is not None)
-            few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
-            parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
-            if stops.n >= _MANY[stops.kind]:
-                parts.add(Part.MANY_CITIES)
-            if task.earlier is not None:
-                parts.add(Part.CHANGES)
-            return frozenset(parts)
+            return _of_stops(stops, task) if task.needs_compiled_code else frozenset()
     assert isinstance(task.subject, Coverage)
     several = set() if task.subject.objectives > OBJECTIVES else {Part.SEVERAL_OBJECTIVES}
-    return frozenset(Part) - {Part.FLEETS} - several
+    return frozenset(Part) - {Part.FLEETS, Part.OVER_THE_DAY} - several
+
+
+def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
+    """Return the parts that a search for tours through stops needs."""
+    if stops.hours is not None:
+        return frozenset(Part) - {Part.MAPS, Part.FLEETS}
+    if len(stops.sources) > OBJECTIVES:
+        return _of_several(replanned=task.earlier is not None)
+    few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
+    parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
+    if stops.n >= _MANY[stops.kind]:
+        parts.add(Part.MANY_CITIES)
+    if task.earlier is not None:
+        parts.add(Part.CHANGES)
+    return frozenset(parts)
 
 
 def _of_several(*, replanned: bool) -> frozenset[Part]:

@@ -86,9 +86,11 @@ def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, 
         "balance": balances(front.points) if flat else None,
         "losses": None if flat else losses(front.points),
         "kept": front.kept,
+        "departure": front.departures,
         "lengths": front.points,
         "tour": front.tours,
         "arrivals": arrivals,
+        "times": front.times,
     }
     given = {name: values.tolist() for name, values in columns.items() if values is not None}
     return [dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True)]

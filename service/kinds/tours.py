@@ -16,6 +16,7 @@ from service.instance import Instance, step_lengths, tour_steps
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
+from service.over_the_day.plan import plan_over_the_day
 from service.planner import plan
 from service.replanning.replan import replan
 from service.requests.limits import Limits, within_network
@@ -100,16 +101,19 @@ def _plan(
     surveyed: Survey | None = None,
 ) -> Front:
     """Plan or replan the front of a task; `surveyed` is the map, if it has one."""
-    actor = tools.actors[task.actor]
+    actor, options = tools.actors[task.actor], task.options
+    day = task.subject.day if isinstance(task.subject, Stops) else None
 
     def encoded(front: Front) -> FrontDocument:
         return encode_front(front, actor.info.identity, surveyed, labels=task.labels)
 
     report_encoded = reporting(report, encoded)
     try:
+        if day is not None:
+            return plan_over_the_day(actor, day, options, task.earlier, stop, report_encoded)
         if task.earlier is not None:
-            return replan(actor, instance, task.options, task.earlier, stop, report_encoded)
-        return plan(actor, instance, task.options, stop, report_encoded)
+            return replan(actor, instance, options, task.earlier, stop, report_encoded)
+        return plan(actor, instance, options, stop, report_encoded)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
 
@@ -125,6 +129,8 @@ def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> NDArray
 
 def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
     """Return all lengths of each tour up to each of its stops, if the task asks for them."""
+    if task.arrivals and front.reached is not None:
+        return front.reached if front.closed else front.reached[:, :-1]
     return cumulated_lengths(instance, front.tours) if task.arrivals else None
 
 

@@ -3,7 +3,7 @@
 They stored a request to plan a front or to cover a map, with the tours of the earlier front.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated
 
 import numpy as np
@@ -14,11 +14,11 @@ from service.actor_info import ActorInfo
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.arrays import costs_array
 from service.requests.coverage import CoverageRequest, parse_coverage_as
+from service.requests.day_fields import DayObjectiveItem
 from service.requests.fields import Cost, Items, OneEach
 from service.requests.front import FrontRequest, parse_front_as
 from service.requests.limits import Limits
 from service.requests.parser import coverage_task, front_task
-from service.requests.stop_fields import ObjectiveItem
 from service.requests.stops import Changed, Matrix, Source, Stop, changed_costs
 from service.requests.task import Task, TaskSource
 
@@ -76,7 +76,7 @@ class EarlierMembers(BaseModel):
 _Step = tuple[Index, Index, Cost | None]
 
 
-class RestObjective(ObjectiveItem):
+class RestObjective(DayObjectiveItem):
     """An objective with the costs of some steps changed, each as origin, destination and cost.
 
     A cost is null if there is no longer a way.
@@ -84,9 +84,9 @@ class RestObjective(ObjectiveItem):
 
     changed: Items[_Step] = Field(default_factory=list)
 
-    def source(self, part: str, stops: tuple[Stop, ...]) -> Source:  # type: ignore[override]
+    def source(self, part: str, stops: Sequence[Stop]) -> Source:
         """Return the source of the costs between these stops, with the changed costs."""
-        base = super().source(part, stops)
+        base = self.fixed_source(part, stops)
         if not self.changed:
             return base
         steps = np.array([step[:2] for step in self.changed], np.int64)

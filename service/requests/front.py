@@ -11,6 +11,7 @@ from service.errors import Refusal, invalid
 from service.instance import PLANE, Kind
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.arrays import array_field, check_costs, stack_matrices
+from service.requests.day_fields import DayFields, DayObjectiveItem, ServedStopItem, read_hours
 from service.requests.fields import (
     END,
     GEOMETRY,
@@ -28,8 +29,6 @@ from service.requests.fields import (
 from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
 from service.requests.stop_fields import (
-    ObjectiveItem,
-    StopItem,
     StopReference,
     find_index,
     read_objectives,
@@ -37,6 +36,7 @@ from service.requests.stop_fields import (
     read_stops,
 )
 from service.requests.stops import (
+    Hours,
     Labels,
     Matrix,
     Plane,
@@ -58,7 +58,7 @@ _MatrixRows = OneEach[CostRows]
 Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRows)]
 
 
-class FrontRequest(PlanRequest):
+class FrontRequest(DayFields, PlanRequest):
     """Cities or stops under two to four objectives, and the options of their front.
 
     A request is complete only after `parse_front_request` has checked it.
@@ -74,10 +74,10 @@ class FrontRequest(PlanRequest):
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: SomeItems[StopItem] = Field(
+    stops: SomeItems[ServedStopItem] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
-    objectives: OneEach[ObjectiveItem] = Field(
+    objectives: OneEach[DayObjectiveItem] = Field(
         default_factory=list, description="two to four, each with the costs between the stops"
     )
     # In a checked request these hold only indexes, as in every PlanRequest.
@@ -101,6 +101,8 @@ class FrontRequest(PlanRequest):
     @property
     def kind(self) -> Kind:
         """The kind of instance that an actor has to read."""
+        if self.departure is not None:
+            return "matrices"
         if self.stops:
             return kind_of(self.sources)
         return "coordinates" if self.coordinates else "matrices"
@@ -137,14 +139,30 @@ class FrontRequest(PlanRequest):
             if item.sources:
                 demand = "must have no source where the part matrices holds them, got"
                 raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
-        return tuple(Matrix(matrix) for matrix in self.matrices)
+        matrices = [Matrix(matrix) for matrix in self.matrices]
+        if not self.objectives:
+            return tuple(matrices)
+        each = zip(self.objectives, matrices, strict=True)
+        return tuple(item.over(f"objectives/{m}", base) for m, (item, base) in enumerate(each))
+
+    @cached_property
+    def hours(self) -> Hours | None:
+        """When tours begin, if costs change over the day."""
+        for name in ("departure", "clock"):
+            if name in self.model_fields_set and not self.stops:
+                raise invalid(name, "needs stops with objectives")
+        objectives = () if self.labels is None else self.labels.objectives
+        hours = read_hours(self, self.stops, self.objectives, objectives)
+        if hours is not None and self.bound:
+            raise invalid("bound", "must be false with a departure, for which there is no bound")
+        return hours
 
     @property
     def subject(self) -> Stops:
         """The stops of a checked request, in which the ends of tours are indexes."""
         stops = () if self.labels is None else self.labels.stops
         locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
-        return Stops(locations, self.sources, self.ends)
+        return Stops(locations, self.sources, self.ends, self.hours)
 
 
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)

@@ -25,7 +25,7 @@ Schema = dict[str, Any]
 JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
 FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
 _CITIES = (*FORMS, "objectives")
-_SOURCES = ("matrix", "coordinates", "from", "measure")
+_SOURCES = ("matrix", "coordinates", "from", "measure", "slices")
 # A speed is an option of one measure.
 _OF_A_SPEED: Schema = {"speed": {"properties": {"from": {"const": "great_circle"}}}}
 _SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
@@ -35,6 +35,10 @@ _OBJECTIVES: _Described = {
     "MatrixObjective": ("An objective whose costs are a matrix.", ["matrix"]),
     "PlaneObjective": ("An objective whose costs are distances in a plane.", ["coordinates"]),
     "MeasuredObjective": ("An objective that is measured between locations.", ["from"]),
+}
+_FRONT_OBJECTIVES: _Described = {
+    **_OBJECTIVES,
+    "SlicesObjective": ("An objective with a matrix for each slice of the day.", ["slices"]),
 }
 _FLEET_OBJECTIVES: _Described = {
     **{f"Fleet{name}": described for name, described in _OBJECTIVES.items()},
@@ -71,7 +75,7 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     rows["minItems"], rows["maxItems"] = 1, limits.most_cities("matrices")
     fields["coordinates"]["maxItems"] = fields["stops"]["maxItems"] = limits.cities
     cities = _by_index(whole)
-    stops = _with(whole, objectives={**fields["objectives"], "items": one_of(_OBJECTIVES)})
+    stops = _with(whole, objectives={**fields["objectives"], "items": one_of(_FRONT_OBJECTIVES)})
     named = reference_to("NamedObjective")
     file_stops = _with(whole, objectives={**fields["objectives"], "items": named})
     forms = [
@@ -81,8 +85,10 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         _form(cities, "MatricesFileRequest", "Cities by costs in a file", []),
         _form(file_stops, "StopsFileRequest", "Stops by costs in a file", ["stops", "objectives"]),
     ]
-    objectives = _objectives(parts["ObjectiveItem"], limits, {**_OBJECTIVES, **_IN_A_FILE})
-    return _by_title(_without_null(parts["StopItem"]), *objectives, *forms)
+    kinds = {**_FRONT_OBJECTIVES, **_IN_A_FILE}
+    objectives = _objectives(parts["DayObjectiveItem"], limits, kinds)
+    items = [parts[name] for name in ("ServedStopItem", "SliceItem", "DepartureRange")]
+    return _by_title(*map(_without_null, items), *objectives, *map(_without_null, forms))
 
 
 def _of_two(schema: Schema) -> Schema:
@@ -114,9 +120,9 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     """
     whole = limited_schema(ReplanRequest, limits, actors)
     parts = whole.pop("$defs")
-    del parts["ObjectiveItem"]
+    del parts["DayObjectiveItem"]
     fields = whole["properties"]
-    fields["objectives"]["items"] = one_of(_OBJECTIVES)
+    fields["objectives"]["items"] = one_of(_FRONT_OBJECTIVES)
     fields["grid"]["items"]["items"] = {"enum": [0, 1]}
     for name in ("blocked", "freed"):
         fields[name]["maxItems"] = limits.cells
@@ -273,7 +279,8 @@ def _by_index(schema: Schema) -> Schema:
         reference, null = fields[name]["anyOf"]
         ends[name] = {**fields[name], "anyOf": [reference["oneOf"][0], null]}
     found = _with(schema, **ends, initial_tours=tours)
-    del found["properties"]["geometry"]  # cities without stops have no locations
+    for name in ("geometry", "departure", "clock"):  # cities have no locations and no names
+        del found["properties"][name]
     return found
 
 
@@ -289,7 +296,11 @@ def _objectives(schema: Schema, limits: Limits, kinds: _Described) -> list[Schem
         known = [measure for measure in measures if measure not in ROAD_MEASURES]
         schema = _with(schema, **{"from": {**schema["properties"]["from"], "enum": known}})
     measured = {**schema, "dependentSchemas": _OF_A_SPEED}
-    others = {"from": _SOURCES, "measure": (*_SOURCES, "speed", "over")}
+    others = {
+        "from": _SOURCES,
+        "measure": (*_SOURCES, "speed", "over"),
+        "slices": (*_SOURCES, "speed", "over_the_day"),
+    }
     return [
         _variant(
             measured if "from" in source else schema,

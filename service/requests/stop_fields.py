@@ -1,7 +1,7 @@
 """The fields of stops and objectives in requests, and their conversion to stops and sources."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
@@ -19,7 +19,16 @@ from service.requests.fields import (
     Text,
     optional,
 )
-from service.requests.stops import UNITS, Matrix, Measure, Measured, Plane, Source, Stop
+from service.requests.stops import (
+    UNITS,
+    FixedSource,
+    Matrix,
+    Measure,
+    Measured,
+    Plane,
+    Source,
+    Stop,
+)
 from service.requests.validation import nearest, show
 
 StopReference = Annotated[
@@ -65,6 +74,8 @@ class ObjectiveItem(StrictModel):
         " speed"
     )
 
+    choices: ClassVar[str] = "matrix, coordinates and from"
+
     @property
     def sources(self) -> list[str]:
         """The names of the members that are sources of costs."""
@@ -102,6 +113,10 @@ class ObjectiveItem(StrictModel):
         Raises:
             Refusal: There is not exactly one source, or it does not fit the stops.
         """
+        return self.fixed_source(part, stops)
+
+    def fixed_source(self, part: str, stops: Sequence[Stop]) -> FixedSource:
+        """Return the source of costs that are the same all day, as `source` does."""
         match self.sources:
             case ["matrix"]:
                 return self._matrix(f"{part}/matrix", len(stops))
@@ -113,7 +128,7 @@ class ObjectiveItem(StrictModel):
                 return Measured(self.measure, self.speed)
             case sources:
                 came = " and ".join(sources) or "none"
-                raise invalid(part, f"must have one of matrix, coordinates and from, got {came}")
+                raise invalid(part, f"must have one of {self.choices}, got {came}")
 
     def _matrix(self, part: str, n: int) -> Matrix:
         _check_rows(part, n, len(self.matrix))

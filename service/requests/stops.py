@@ -1,6 +1,6 @@
 """Stops and objectives as a request names them, and the instance made from their costs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -12,6 +12,7 @@ from pydantic_core import to_json
 from service.errors import CityNames
 from service.instance import CLOSED, Instance, Kind, RouteEnds
 from service.objectives import Objective
+from service.over_the_day.day import CostsOfDay, Day
 from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]
@@ -99,7 +100,55 @@ class Changed:
     costs: Array
 
 
-Source = Matrix | Plane | Measured | Changed
+FixedSource = Matrix | Plane | Measured | Changed
+
+
+@dataclass(frozen=True, eq=False)
+class OverTheDay:
+    """A source of costs: those of another source, times a factor that changes over the day.
+
+    Args:
+        base: The other source.
+        begins: From when each factor holds, shape (s,), ascending seconds of the day.
+        factors: Shape (s,), positive.
+    """
+
+    base: FixedSource
+    begins: Array
+    factors: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Slices:
+    """A source of costs: a matrix of them in each slice of the day.
+
+    Args:
+        begins: When each slice begins, shape (s,), ascending seconds of the day.
+        costs: Shape (s, n, n).
+    """
+
+    begins: Array
+    costs: Array
+
+
+Source = FixedSource | OverTheDay | Slices
+
+
+@dataclass(frozen=True, eq=False)
+class Hours:
+    """When tours begin and how long visits take, where costs change over the day.
+
+    Args:
+        clock: The index of the objective whose costs are seconds of travel.
+        service: The seconds of a visit to each stop, shape (n,).
+        earliest: The first second of the day at which a tour may begin.
+        latest: The last one.
+    """
+
+    clock: int
+    service: Array
+    earliest: float
+    latest: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,11 +160,13 @@ class Stops:
             has none, which no measure allows.
         sources: The source of the costs of each objective.
         ends: Whether tours are closed, and the fixed ends of open routes.
+        hours: When tours begin, if their costs depend on that.
     """
 
     locations: Array
     sources: Sequence[Source]
     ends: RouteEnds = CLOSED
+    hours: Hours | None = None
 
     @property
     def n(self) -> int:
@@ -125,7 +176,7 @@ class Stops:
     @property
     def kind(self) -> Kind:
         """The kind of instance that they become."""
-        return kind_of(self.sources)
+        return "matrices" if self.hours is not None else kind_of(self.sources)
 
     @property
     def measured(self) -> bool:
@@ -136,14 +187,26 @@ class Stops:
     def instance(self) -> Instance:
         """The stops and the costs between them as an instance. O(n^2) unless all are planes.
 
+        Where costs change over the day, these are the mean ones.
+
         Raises:
             InvalidInstance: The costs are too large, or too far apart, to be planned.
         """
         planes = [source.points for source in self.sources if isinstance(source, Plane)]
+        if self.day is not None:
+            return self.day.instance
         ends = self.ends._asdict()
         if len(planes) == len(self.sources):
             return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
         return Instance(matrices=cost_matrices(self), **ends)
+
+    @cached_property
+    def day(self) -> Day | None:
+        """The costs over the day, all of them measured; None if they do not depend on the time."""
+        if self.hours is None:
+            return None
+        costs = [_over_the_day(source, self.locations) for source in self.sources]
+        return Day(costs=costs, ends=self.ends, **vars(self.hours))
 
     @cached_property
     def known_scale(self) -> tuple[Array, Array] | None:
@@ -155,7 +218,7 @@ class Stops:
 
         The scale goes with the stops, once it is known.
         """
-        return {name: value for name, value in vars(self).items() if name != "instance"}
+        return {k: value for k, value in vars(self).items() if k not in ("instance", "day")}
 
     @property
     def road_measures(self) -> frozenset[RoadMeasure]:
@@ -167,7 +230,7 @@ class Stops:
     def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "Stops":
         """Return these stops with a matrix, shape (n, n), in place of each measure by road."""
 
-        def measured(source: Source) -> Source:
+        def measured(source: FixedSource) -> FixedSource:
             match source:
                 case Measured("road_time" | "road_distance" as measure):
                     return Matrix(costs[measure])
@@ -175,7 +238,7 @@ class Stops:
                     return Matrix(changed_costs(costs[measure], source.steps, source.costs))
             return source
 
-        return replace(self, sources=[measured(source) for source in self.sources])
+        return replace(self, sources=[with_base(each, measured) for each in self.sources])
 
 
 def kind_of(sources: Sequence[Source]) -> Kind:
@@ -184,9 +247,24 @@ def kind_of(sources: Sequence[Source]) -> Kind:
     return "coordinates" if in_planes else "matrices"
 
 
+def with_base(source: Source, change: Callable[[FixedSource], FixedSource]) -> Source:
+    """Return a source that is changed; of one that changes over the day, what the factors are of.
+
+    Matrices of slices stay as they are.
+    """
+    match source:
+        case OverTheDay(base):
+            return replace(source, base=change(base))
+        case Slices():
+            return source
+    return change(source)
+
+
 def base_of(source: Source) -> Source:
-    """Return the source before single costs were changed."""
-    return source.base if isinstance(source, Changed) else source
+    """Return the source before single costs were changed, and before it changes over the day."""
+    while isinstance(source, Changed | OverTheDay):
+        source = source.base
+    return source
 
 
 def changed_costs(matrix: Array, steps: NDArray[np.int64], costs: Array) -> Array:
@@ -206,6 +284,17 @@ def cost_matrices(stops: Stops) -> Array:
     return np.stack([_costs(source, stops.locations) for source in stops.sources])
 
 
+def _over_the_day(source: Source, locations: Array) -> CostsOfDay:
+    """Return the costs between all stops over the day."""
+    match source:
+        case OverTheDay(base, begins, factors):
+            layers = np.zeros(len(begins), np.int64)
+            return CostsOfDay(begins, factors, layers, _costs(base, locations)[np.newaxis])
+        case Slices(begins, costs):
+            return CostsOfDay(begins, np.ones(len(begins)), np.arange(len(begins)), costs)
+    return CostsOfDay.constant(_costs(source, locations))
+
+
 def _costs(source: Source, locations: Array) -> Array:
     """Return the costs between all stops, shape (n, n)."""
     match source:
@@ -221,3 +310,5 @@ def _costs(source: Source, locations: Array) -> Array:
             return changed_costs(_costs(base, locations), source.steps, source.costs)
         case Measured(measure):
             raise ValueError(f"{measure} must be measured before, by a routing engine")
+        case OverTheDay() | Slices():
+            raise ValueError("costs that change over the day are not one matrix")

@@ -177,8 +177,10 @@ class Task:
 
     @property
     def needs_compiled_code(self) -> bool:
-        """Whether planning needs more than the network: search, bound, best subset, or a map."""
+        """Whether planning needs more than the network: search, bound, best subset, map or day."""
         if not isinstance(self.subject, Stops):
+            return True
+        if self.subject.hours is not None:
             return True
         options = self.options
         constructed = len(options.directions) * (TOURS_REPAIRED if options.repairs > 0 else 1)

@@ -28,10 +28,13 @@ from service.requests.limits import Limits
 from service.requests.parser import parse_task
 from service.requests.stops import (
     Changed,
+    Hours,
     Labels,
     Matrix,
     Measured,
+    OverTheDay,
     Plane,
+    Slices,
     Stop,
     Stops,
 )
@@ -44,6 +47,7 @@ _TYPES: Mapping[str, type[Any]] = {
     for each in (
         *(Task, PlanOptions, EarlierTours, Labels),
         *(Stops, Matrix, Plane, Measured, Changed),
+        *(OverTheDay, Slices, Hours),
         *(Coverage, SharedCoverage, UnmeasuredFleet, Rules),
     )
 }

@@ -53,8 +53,10 @@ def test_an_objective_has_one_source() -> None:
     for name, source in {**kinds, "MeasuredObjective": "from"}.items():
         assert SCHEMAS[name]["required"] == ["name", source]
         speed = {"speed"} if source == "from" else set()
-        assert SCHEMAS[name]["properties"].keys() == {"name", "unit", source, *speed}
-    assert SCHEMAS["NamedObjective"]["properties"].keys() == {"name", "unit"}
+        members = {"name", "unit", source, "over_the_day", *speed}
+        assert SCHEMAS[name]["properties"].keys() == members
+    assert SCHEMAS["NamedObjective"]["properties"].keys() == {"name", "unit", "over_the_day"}
+    assert SCHEMAS["SlicesObjective"]["properties"].keys() == {"name", "unit", "slices"}
 
 
 def test_the_schema_says_which_speeds_there_are() -> None:

@@ -10,7 +10,18 @@ from service.errors import invalid
 from service.requests.arrays import costs_array
 from service.requests.replan.fields import CostEntry, NewStop
 from service.requests.stop_fields import find_index
-from service.requests.stops import Changed, Matrix, Measured, Plane, Source, Stop, changed_costs
+from service.requests.stops import (
+    Changed,
+    FixedSource,
+    Matrix,
+    Measured,
+    Plane,
+    Slices,
+    Source,
+    Stop,
+    changed_costs,
+    with_base,
+)
 from service.requests.validation import show
 
 Array = NDArray[np.float64]
@@ -63,7 +74,7 @@ def extended_sources(
     """
     _check_counts(stops, len(names))
     return [
-        _extended(source, m, name, stops)
+        _extended_over_the_day(source, m, name, stops)
         for m, (source, name) in enumerate(zip(sources, names, strict=True))
     ]
 
@@ -79,7 +90,7 @@ def changed_sources(
     changed = _changes(entries, names, stops)
     steps = [stop for each in changed for step in each for stop in step]
     found = [
-        _changed(source, each) if each else source
+        _changed_over_the_day(source, each) if each else source
         for source, each in zip(sources, changed, strict=True)
     ]
     return found, np.array(steps, np.int64)
@@ -96,6 +107,12 @@ def _check_counts(stops: AllStops, objectives: int) -> None:
 
 def between(source: Source, chosen: NDArray[np.int64]) -> Source:
     """Return the source of the costs between some of the stops, in this order."""
+    if isinstance(source, Slices):
+        return Slices(source.begins, source.costs[:, chosen[:, np.newaxis], chosen])
+    return with_base(source, lambda base: _between(base, chosen))
+
+
+def _between(source: FixedSource, chosen: NDArray[np.int64]) -> FixedSource:
     match source:
         case Matrix(costs):
             return Matrix(costs[np.ix_(chosen, chosen)])
@@ -105,14 +122,21 @@ def between(source: Source, chosen: NDArray[np.int64]) -> Source:
             place = np.full(max(int(steps.max()), int(chosen.max())) + 1, -1)
             place[chosen] = np.arange(len(chosen))
             left = (place[steps] >= 0).all(axis=1)
-            rest = between(base, chosen)
+            rest = _between(base, chosen)
             assert isinstance(rest, Plane | Measured)
             return Changed(rest, place[steps[left]], costs[left]) if left.any() else rest
     return source
 
 
-def _extended(source: Source, m: int, name: str, stops: AllStops) -> Source:
+def _extended_over_the_day(source: Source, m: int, name: str, stops: AllStops) -> Source:
     """Return the source of an objective between all stops."""
+    if isinstance(source, Slices) and stops.new:
+        demand = "needs objectives, as the costs of {} are a matrix for each slice of the day"
+        raise invalid(next(iter(stops.new)), demand.format(show(name)))
+    return with_base(source, lambda base: _extended(base, m, name, stops))
+
+
+def _extended(source: FixedSource, m: int, name: str, stops: AllStops) -> FixedSource:
     for part, item in stops.new.items():
         _check_given(source, part, item, m, name)
     match source:
@@ -128,7 +152,7 @@ def _extended(source: Source, m: int, name: str, stops: AllStops) -> Source:
     return source
 
 
-def _check_given(source: Source, part: str, item: NewStop, m: int, name: str) -> None:
+def _check_given(source: FixedSource, part: str, item: NewStop, m: int, name: str) -> None:
     """Raise a refusal unless a new stop has exactly the costs that an objective needs."""
     base = source.base if isinstance(source, Changed) else source
     given = {
@@ -194,7 +218,16 @@ def _changes(
     return changed
 
 
-def _changed(source: Source, entries: Mapping[tuple[int, int], float]) -> Source:
+def _changed_over_the_day(source: Source, entries: Mapping[tuple[int, int], float]) -> Source:
+    """Return a source with changed costs: in all slices, or before the factors of the day."""
+    if isinstance(source, Slices):
+        steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))
+        matrices = [changed_costs(matrix, steps, costs) for matrix in source.costs]
+        return Slices(source.begins, np.stack(matrices))
+    return with_base(source, lambda base: _changed(base, entries))
+
+
+def _changed(source: FixedSource, entries: Mapping[tuple[int, int], float]) -> FixedSource:
     if isinstance(source, Changed):
         known = zip(source.steps.tolist(), source.costs.tolist(), strict=True)
         return _changed(source.base, {(i, j): cost for (i, j), cost in known} | dict(entries))

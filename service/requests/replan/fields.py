@@ -7,6 +7,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
 from service.requests.coverage import Cell, RobotPose
+from service.requests.day_fields import DayObjectiveItem, TimeOfDay
 from service.requests.fields import (
     GEOMETRY,
     Cost,
@@ -19,9 +20,10 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    optional,
 )
 from service.requests.maps.fields import CostLayers, Layer, empty_array
-from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
+from service.requests.stop_fields import Latitude, Longitude, StopReference
 
 _Row = SomeItems[Cost | None]
 _References = Items[StopReference]
@@ -63,6 +65,9 @@ class NewStop(NewCosts):
     location: tuple[Longitude, Latitude] | None = Field(
         default=None,
         description="longitude and latitude in degrees, where an objective is measured",
+    )
+    service: TimeOfDay | None = optional(
+        "the seconds of a visit, where costs change over the day; by default 0"
     )
 
 
@@ -127,11 +132,14 @@ class ReplanRequest(PlanFields):
     costs: Items[CostEntry] = Field(
         default_factory=list, description="single costs that have changed"
     )
-    objectives: OneEach[ObjectiveItem] = Field(
+    objectives: OneEach[DayObjectiveItem] = Field(
         default_factory=list,
         description="both objectives again, where more than single costs has changed: with the"
         " costs between the stops of the front, then those of `add`, then `position` if that"
         " is a place",
+    )
+    now: TimeOfDay | None = optional(
+        "where costs change over the day: the second of the day at which the way goes on"
     )
     tour: _References = Field(
         default_factory=list,
@@ -174,7 +182,7 @@ class ReplanRequest(PlanFields):
 
 
 _OF_MAPS = ("pose", "grid", "blocked", "freed", "cost_layer", "cost_layers", "paths")
-_OF_STOPS = ("costs", "objectives", "geometry")
+_OF_STOPS = ("costs", "objectives", "geometry", "now")
 
 
 def check_fields(request: ReplanRequest, *, on_map: bool) -> None:

@@ -22,6 +22,7 @@ from service.requests.replan.fields import NewStop, ReplanRequest, check_fields
 from service.requests.replan.way import EarlierFront, RestOfWay, rest_of_way
 from service.requests.stop_fields import read_objectives, read_sources
 from service.requests.stops import (
+    Hours,
     Labels,
     Source,
     Stops,
@@ -64,13 +65,43 @@ def rest_of_stops(
     check_router(sources_of_rest, limits)
     task = front_task(
         lower_defaults(request, n, limits, id_bytes),
-        Stops(locations_of(labels.stops), sources_of_rest, rest.ends_in_rest),
+        Stops(
+            locations_of(labels.stops),
+            sources_of_rest,
+            rest.ends_in_rest,
+            _hours_of_rest(front, request, stops, rest),
+        ),
         limits,
         actors,
         labels=labels,
         earlier=rest.earlier_tours(front, request, None if request.objectives else changed),
     )
     return replace(task, options=replace(task.options, start=rest.begin or 0))
+
+
+def _hours_of_rest(
+    front: EarlierFront, request: ReplanRequest, stops: AllStops, rest: RestOfWay
+) -> Hours | None:
+    """Return the hours of the rest, which begins now; None if costs do not change over the day.
+
+    Raises:
+        Refusal: The present time is missing, or a time is given where none counts.
+    """
+    service = {part: item.service for part, item in stops.new.items()}
+    if front.hours is None:
+        given = {"now": request.now, **{f"{part}/service": s for part, s in service.items()}}
+        for part, seconds in given.items():
+            if seconds is not None:
+                raise invalid(part, "must be left out, as costs do not change over the day")
+        if any(item.changes for item in request.objectives):
+            raise invalid("objectives", "must be the same all day, as those of the front are")
+        return None
+    if request.now is None:
+        raise invalid("now", "is required, as costs change over the day")
+    seconds_of_all = np.append(front.hours.service, [s or 0.0 for s in service.values()])
+    if rest.start is not None:
+        seconds_of_all[rest.start] = 0.0  # the visit has ended
+    return Hours(front.hours.clock, seconds_of_all[rest.stops], request.now, request.now)
 
 
 def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:

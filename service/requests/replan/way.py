@@ -16,7 +16,7 @@ from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
-from service.requests.stops import Labels, Source, Stop, Stops
+from service.requests.stops import Hours, Labels, Source, Stop, Stops
 from service.requests.task import Task, TaskSource
 from service.requests.validation import show
 from service.search.open_routes import rotated
@@ -66,6 +66,7 @@ class EarlierFront:
         start: The stop that closed tours are reported from.
         tours: The stops of each tour in order, shape (m, n); closed tours begin at `start`.
         lengths: The lengths of each tour, shape (m, 2).
+        hours: When its tours began, if costs change over the day.
     """
 
     labels: Labels
@@ -74,6 +75,7 @@ class EarlierFront:
     start: int
     tours: Indices
     lengths: Array
+    hours: Hours | None = None
 
     @property
     def knee(self) -> Indices:
@@ -116,7 +118,7 @@ def earlier_front(stored: StoredFront, task: Task, stops: Stops) -> EarlierFront
     labels, start = task.labels or _numbered(stops.n), task.options.start
     if stops.ends.closed:
         tours = _from_stop(start, tours)
-    return EarlierFront(labels, stops.sources, stops.ends, start, tours, lengths)
+    return EarlierFront(labels, stops.sources, stops.ends, start, tours, lengths, stops.hours)
 
 
 def earlier_front_of_map(stored: StoredFront, coverage: Coverage) -> EarlierFront:

@@ -1,0 +1,1 @@
+"""Plan tours whose costs change with the time of day."""

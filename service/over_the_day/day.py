@@ -1,0 +1,109 @@
+"""The values of a day: costs in each of its slices, service at stops, and when tours may begin."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import CLOSED, Instance, RouteEnds
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CostsOfDay:
+    """The costs between n stops under one objective, in each slice of the day.
+
+    In slice s the cost of going from i to j is factors[s] * matrices[layers[s], i, j].
+
+    Args:
+        begins: When each slice begins, shape (s,), ascending seconds of the day. The first slice
+            holds before that too, and the last one without end.
+        factors: Shape (s,), positive.
+        layers: Shape (s,), the index of the matrix of each slice.
+        matrices: Shape (k, n, n). Infinity means that there is no way from i to j, at any time.
+    """
+
+    begins: Array
+    factors: Array
+    layers: NDArray[np.int64]
+    matrices: Array
+
+    @classmethod
+    def constant(cls, matrix: Array) -> "CostsOfDay":
+        """Return costs that are the same all day, from a matrix of them, shape (n, n)."""
+        return cls(np.zeros(1), np.ones(1), np.zeros(1, np.int64), matrix[np.newaxis])
+
+    def mean(self, earliest: float, latest: float) -> Array:
+        """Return the mean costs from one time of the day to a later one, shape (n, n)."""
+        ends = np.append(self.begins[1:], np.inf)
+        begins = np.append(-np.inf, self.begins[1:])
+        seconds = np.maximum(0.0, np.minimum(ends, latest) - np.maximum(begins, earliest))
+        shares = seconds / seconds.sum() if latest > earliest else self._at(earliest)
+        means = np.zeros_like(self.matrices[0])
+        for layer, matrix in enumerate(self.matrices):
+            share = float((shares * self.factors).sum(where=self.layers == layer))
+            finite = np.isfinite(matrix)
+            means[finite] += share * matrix[finite]
+            means[~finite] = np.inf  # whatever its share
+        return means
+
+    def _at(self, time: float) -> Array:
+        shares = np.zeros(len(self.begins))
+        shares[max(0, int(np.searchsorted(self.begins, time, "right")) - 1)] = 1.0
+        return shares
+
+
+@dataclass(frozen=True, eq=False)
+class Day:
+    """What tours need to know of a day.
+
+    Args:
+        costs: The costs under each of m objectives.
+        clock: The index of the objective whose costs are seconds of travel.
+        service: The seconds of a visit to each stop, shape (n,).
+        earliest: When a tour may begin at the earliest, in seconds of the day.
+        latest: When it may begin at the latest.
+        ends: Whether tours are closed, and the fixed ends of open routes.
+    """
+
+    costs: Sequence[CostsOfDay]
+    clock: int
+    service: Array
+    earliest: float
+    latest: float
+    ends: RouteEnds = CLOSED
+
+    @cached_property
+    def instance(self) -> Instance:
+        """The stops under mean costs.
+
+        Raises:
+            InvalidInstance: The costs are too large, or too far apart, to be planned.
+        """
+        return Instance(matrices=self.mean_matrices, **self.ends._asdict())
+
+    @cached_property
+    def mean_matrices(self) -> Array:
+        """The mean costs over the hours that tours take, shape (m, n, n)."""
+        ends = self.latest + self._typical_duration()
+        return np.stack([each.mean(self.earliest, ends) for each in self.costs])
+
+    def _typical_duration(self) -> float:
+        """Return the seconds that a tour by nearest neighbours takes, under mean costs. O(n^2)."""
+        travel = self.costs[self.clock]
+        matrix = travel.mean(float(travel.begins[0]), float(travel.begins[-1]))
+        left = np.ones(len(matrix), np.bool_)
+        stop, seconds = 0, float(self.service.sum())
+        for _ in range(len(matrix) - 1):
+            left[stop] = False
+            steps = np.where(left, matrix[stop], np.inf)
+            following = int(steps.argmin())
+            if np.isinf(steps[following]):  # there is no way to any stop that is left
+                following = int(left.argmax())
+            else:
+                seconds += float(steps[following])
+            stop = following
+        return seconds

@@ -1,0 +1,278 @@
+"""Local search of one weighted sum over the day: descents, and descents from changed tours."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.jit import compiled, inlined
+from service.over_the_day.moves import (
+    DrivenTour,
+    Move,
+    estimate,
+    estimated_gain,
+    load,
+    make,
+    make_driven_tour,
+    value_after,
+    write_moved,
+)
+from service.over_the_day.travel import Cities, Traffic, sum_lengths
+from service.search.local_search import random_below
+from service.search.several.archive import BlockArchive, insert
+
+Array = NDArray[np.float64]
+
+_LONGEST_PART = 3  # cities that are moved elsewhere together
+_CANDIDATES = 8  # cities that may follow each
+_KINDS = 4 * (_LONGEST_PART + 1)  # of moves
+_LEAST_GAIN = 1e-12  # of the value of a tour
+_NEAR = 8  # places: how far apart the ends of the parts are that are swapped at random
+
+
+class WeightedSearch(NamedTuple):
+    """The search of one weighted sum.
+
+    `candidates`: shape (n, k), the cities that are cheap to go to from each. `dirty`: by city,
+    whether moves at it have to be tried. `places`: the first place that may change, and the one
+    after the last. `cursor`: where to look for the next dirty city. `saved` and `saved_value`: the
+    best tour, and what `DrivenTour.value` was. `random`: the state of the random numbers.
+    `archive`: is offered every tour on the way.
+    """
+
+    walk: DrivenTour
+    traffic: Traffic
+    weights: Array
+    candidates: Cities
+    dirty: NDArray[np.bool_]
+    places: NDArray[np.int64]
+    cursor: NDArray[np.int64]
+    saved: Cities
+    saved_value: Array
+    random: NDArray[np.int64]
+    archive: BlockArchive
+
+
+def make_weighted_search(
+    traffic: Traffic,
+    means: Array,
+    weights: Array,
+    archive: BlockArchive,
+    places: tuple[int, int],
+    seed: int,
+) -> WeightedSearch:
+    """Return a search under weights, shape (m,), that knows no tour yet. O(n^2 log n).
+
+    Args:
+        traffic: The day.
+        means: The mean costs, shape (m, n, n).
+        weights: The weight of each length.
+        archive: Is offered every tour on the way.
+        places: The first place that may change, and the one after the last.
+        seed: Of its random numbers.
+    """
+    n = means.shape[1]
+    costs = np.tensordot(weights, means, axes=1)
+    np.fill_diagonal(costs, np.inf)
+    nearest = np.argsort(costs, axis=1)[:, : min(_CANDIDATES, n - 1)]
+    return WeightedSearch(
+        walk=make_driven_tour(n),
+        traffic=traffic,
+        weights=weights,
+        candidates=np.ascontiguousarray(nearest, np.int32),
+        dirty=np.zeros(n, np.bool_),
+        places=np.array(places),
+        cursor=np.zeros(1, np.int64),
+        saved=np.zeros(n, np.int32),
+        saved_value=np.zeros(2),
+        random=np.array([seed], np.int64),
+        archive=archive,
+    )
+
+
+@compiled
+def take(search: WeightedSearch, tour: Cities, departure: float) -> None:
+    """Take a tour, which has moves to be tried at every city."""
+    load(search.walk, search.traffic, search.weights, tour, departure)
+    search.dirty[:] = True
+    save(search)
+
+
+@compiled
+def save(search: WeightedSearch) -> None:
+    """Remember the tour as the best one."""
+    for k in range(len(search.saved)):
+        search.saved[k] = search.walk.tour[k]
+    search.saved_value[0], search.saved_value[1] = search.walk.value
+
+
+@compiled
+def insert_driven(archive: BlockArchive, traffic: Traffic, tour: Cities, departure: float) -> bool:
+    """Offer a tour that leaves at a time to the archive; return whether it was inserted."""
+    sum_lengths(traffic, tour, departure, archive.lengths)
+    return insert(archive, archive.lengths, tour)
+
+
+@compiled
+def descend(search: WeightedSearch, steps: int) -> bool:
+    """Try moves at so many dirty cities, at most; return whether no city is dirty any more."""
+    n = len(search.dirty)
+    for _ in range(steps):
+        looked = 0
+        while looked < n and not search.dirty[search.cursor[0]]:
+            search.cursor[0] = (search.cursor[0] + 1) % n
+            looked += 1
+        if looked == n:
+            return True
+        city = int(search.cursor[0])
+        search.dirty[city] = False
+        while improved_at(search, city) or improved_at_ends(search, city):
+            pass
+    return False
+
+
+@compiled
+def iterate(search: WeightedSearch, steps: int) -> None:
+    """Change the best tour at random and descend, so many times; keep what is no worse."""
+    for _ in range(steps):
+        if not perturb(search):
+            return
+        while not descend(search, len(search.dirty)):
+            pass
+        if search.walk.value[0] <= search.saved_value[0]:
+            save(search)
+        else:
+            load(search.walk, search.traffic, search.weights, search.saved, search.saved_value[1])
+
+
+@compiled
+def perturb(search: WeightedSearch) -> bool:
+    """Swap two parts that are near to each other; return False where there are no two."""
+    lowest, highest = search.places
+    if highest - lowest < 2:
+        return False
+    first = lowest + random_below(search.random, highest - lowest - 1)
+    middle = first + 1 + random_below(search.random, min(_NEAR, highest - first - 1))
+    last = middle + 1 + random_below(search.random, min(_NEAR, highest - middle))
+    apply(search, Move(first, middle, last, False, False))
+    return True
+
+
+@compiled
+def apply(search: WeightedSearch, move: Move) -> None:
+    """Make a move, whatever it is worth."""
+    write_moved(search.walk, move)
+    make(search.walk, search.traffic, search.weights, move)
+    mark(search, move)
+
+
+@compiled
+def mark(search: WeightedSearch, move: Move) -> None:
+    """Note that moves are to be tried at the ends of all parts."""
+    n = len(search.dirty)
+    begins_b = move.first + move.last - move.middle  # now
+    for place in (move.first, begins_b, move.last):
+        search.dirty[search.walk.tour[max(0, place - 1)]] = True
+        search.dirty[search.walk.tour[place % n]] = True
+
+
+@inlined
+def attempt(search: WeightedSearch, move: Move) -> bool:
+    """Make a move if it is possible and shortens the tour; return whether it did."""
+    lowest, highest = search.places
+    if not lowest <= move.first < move.middle <= move.last <= highest:
+        return False
+    if not estimated_gain(search.walk, search.traffic, search.weights, move) > 0.0:
+        return False
+    return made_if_shorter(search, move)
+
+
+@compiled
+def made_if_shorter(search: WeightedSearch, move: Move) -> bool:
+    """Drive a tour as a move changes it, and make the move if that shortens it."""
+    walk, traffic, weights = search.walk, search.traffic, search.weights
+    write_moved(walk, move)
+    if not value_after(walk, traffic, weights, move) < walk.value[0] * (1 - _LEAST_GAIN):
+        return False
+    make(walk, traffic, weights, move)
+    mark(search, move)
+    insert_driven(search.archive, traffic, walk.tour, walk.value[1])
+    return True
+
+
+@compiled
+def improved_at(search: WeightedSearch, city: int) -> bool:
+    """Make the first move that shortens the tour by a leg from a city to a candidate.
+
+    A move that shortens a tour adds a leg that is cheaper than one that it removes beside it (Lin
+    and Kernighan, 1973).
+    """
+    walk, traffic, weights = search.walk, search.traffic, search.weights
+    tour, n = walk.tour, len(walk.tour)
+    p = walk.place[city]
+    following = np.inf
+    if p + 1 < n or traffic.closed:
+        following = estimate(traffic, weights, walk.slices[p], city, tour[(p + 1) % n])
+    for candidate in search.candidates[city]:
+        q = walk.place[candidate]
+        added = estimate(traffic, weights, walk.slices[p], city, candidate)
+        preceding = np.inf
+        if q > 0:
+            preceding = estimate(traffic, weights, walk.slices[q - 1], tour[q - 1], candidate)
+        for kind in range(_KINDS):
+            removed = following if kind % 4 == 0 else preceding if kind % 4 == 1 else np.inf
+            if kind % 4 > 1:
+                removed = max(following, preceding)
+            if added < removed and attempt(search, move_of(kind, p, q)):
+                return True
+    return False
+
+
+@inlined
+def move_of(kind: int, p: int, q: int) -> Move:
+    """Return a move that adds a leg from place p to q, of a kind; an impossible one for none.
+
+    By the remainder of the kind by 4, it removes the leg from p (0), that to q (1) or both. The
+    first two reverse a part, and the others move one of up to three cities.
+    """
+    size, variant = kind // 4, kind % 4
+    if size > 0:
+        return moved_on(variant, size, p, q) if q > p else moved_back(variant, size, p, q)
+    if q < p:
+        return Move(1, 0, 0, False, False)
+    return Move(p + 1 - variant, q + 1 - variant, q + 1 - variant, False, False)
+
+
+@inlined
+def moved_on(variant: int, size: int, p: int, q: int) -> Move:
+    """Return a move of a part of a size that brings places p and q, a later one, together."""
+    if variant == 0:
+        return Move(p + 1, q - size + 1, q + 1, False, True)
+    if variant == 1:
+        return Move(p, p + size, q, True, False)
+    if variant == 2:
+        return Move(p + 1, q, q + size, False, False)
+    return Move(p - size + 1, p + 1, q, False, False)
+
+
+@inlined
+def moved_back(variant: int, size: int, p: int, q: int) -> Move:
+    """Return a move of a part of a size that brings places p and q, an earlier one, together."""
+    if variant == 0:
+        return Move(q - size + 1, q + 1, p + 1, True, False)
+    if variant == 1:
+        return Move(q, p, p + size, False, True)
+    if variant == 2:
+        return Move(q, q + size, p + 1, False, False)
+    return Move(q, p - size + 1, p + 1, False, False)
+
+
+@compiled
+def improved_at_ends(search: WeightedSearch, city: int) -> bool:
+    """Make the first move that shortens an open route by another city at an end that is free."""
+    n, p = len(search.dirty), search.walk.place[city]
+    if search.places[0] == 0 and attempt(search, Move(0, p + 1, p + 1, False, False)):
+        return True
+    if search.places[1] < n or search.traffic.closed:
+        return False
+    return attempt(search, Move(p, n, n, False, False))

@@ -1,0 +1,269 @@
+"""Drive tours through a day: exact lengths, times and best departures.
+
+Within a slice of the day a vehicle drives a leg at the speed of that slice, and where a slice ends
+on the way, the rest at the next one's (Ichoua, Gendreau and Potvin, 2003). So who leaves later
+never arrives earlier. Under other objectives a leg costs what it does in the slice in which it
+begins.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.jit import compiled, inlined
+from service.over_the_day.day import Day
+
+Array = NDArray[np.float64]
+Cities = NDArray[np.int32]
+
+PARTS = 16  # of a range of departures
+EQUAL = 1e-12  # seconds with a smaller relative difference count as equal
+
+
+class Traffic(NamedTuple):
+    """A day with one set of slices for all m objectives, for compiled code.
+
+    `begins`: when each slice begins, shape (s,); the first is minus infinity, and one more at the
+    end is infinity. `factors` and `layers`: shape (s, m); in slice s a leg costs
+    factors[s, o] * matrices[layers[s, o], i, j]. `service`: shape (n,). `closed`: whether tours
+    return.
+    """
+
+    begins: Array
+    factors: Array
+    layers: NDArray[np.int64]
+    matrices: Array
+    service: Array
+    clock: int
+    closed: bool
+
+
+def _penalised(matrices: Array) -> Array:
+    """Return costs, shape (k, n, n), in which a forbidden leg costs more than a tour without one.
+
+    A leg that one of the matrices forbids is forbidden all day.
+    """
+    np.einsum("kii->ki", matrices)[:] = 0.0  # a tour of one stop has a leg from it to itself
+    forbidden = np.isinf(matrices).any(axis=0)
+    if not forbidden.any():
+        return matrices
+    largest = matrices.max(axis=(1, 2), where=~forbidden, initial=0.0)
+    penalties = 2 * matrices.shape[1] * np.where(largest > 0, largest, 1.0)
+    return np.where(forbidden, penalties[:, np.newaxis, np.newaxis], matrices)
+
+
+class Moment(NamedTuple):
+    """A time, the slice that it is in, and the weighted costs so far of what is not the clock."""
+
+    time: float
+    slice: int
+    cost: float
+
+
+def traffic_of(day: Day) -> Traffic:
+    """Return the day with common slices. O(k n^2) for k matrices."""
+    inner = np.unique(np.concatenate([each.begins[1:] for each in day.costs]))
+    firsts = np.append(-np.inf, inner)
+    factors = np.empty((len(firsts), len(day.costs)))
+    layers = np.empty((len(firsts), len(day.costs)), np.int64)
+    matrices: list[Array] = []
+    for index, each in enumerate(day.costs):
+        own = np.searchsorted(each.begins[1:], firsts, "right")
+        factors[:, index], layers[:, index] = each.factors[own], each.layers[own] + len(matrices)
+        matrices.extend(each.matrices)
+    return Traffic(
+        begins=np.append(firsts, np.inf),
+        factors=factors,
+        layers=layers,
+        matrices=_penalised(np.stack(matrices)),
+        service=day.service,
+        clock=day.clock,
+        closed=day.ends.closed,
+    )
+
+
+@compiled
+def slice_at(traffic: Traffic, time: float, known: int) -> int:
+    """Return the slice of a time that is not before a known slice."""
+    while known + 1 < len(traffic.factors) and traffic.begins[known + 1] <= time:
+        known += 1
+    return known
+
+
+@compiled
+def driven(traffic: Traffic, i: int, j: int, at: Moment, weights: Array) -> Moment:
+    """Return the moment of arrival at j of who leaves i at a moment."""
+    cost = at.cost
+    for objective in range(len(weights)):
+        if objective != traffic.clock:
+            layer = traffic.layers[at.slice, objective]
+            factor = traffic.factors[at.slice, objective] * weights[objective]
+            cost += factor * traffic.matrices[layer, i, j]
+    time, known, left = at.time, at.slice, 1.0
+    while True:
+        layer = traffic.layers[known, traffic.clock]
+        seconds = traffic.factors[known, traffic.clock] * traffic.matrices[layer, i, j]
+        ends = traffic.begins[known + 1]
+        if time + left * seconds < ends or ends == np.inf:
+            return Moment(time + left * seconds, known, cost)
+        left = max(0.0, left - (ends - time) / seconds) if seconds > 0.0 else 0.0
+        time = ends
+        known += 1
+
+
+@compiled
+def served(traffic: Traffic, stop: int, at: Moment) -> Moment:
+    """Return the moment at which the visit to a stop that begins at a moment has ended."""
+    time = at.time + traffic.service[stop]
+    return Moment(time, slice_at(traffic, time, at.slice), at.cost)
+
+
+@compiled
+def toured(traffic: Traffic, tour: Cities, departure: float, weights: Array) -> Moment:
+    """Return the moment at which a tour ends that begins at a time. O(n)."""
+    at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
+    at = served(traffic, tour[0], at)
+    for place in range(1, len(tour)):
+        at = served(
+            traffic, tour[place], driven(traffic, tour[place - 1], tour[place], at, weights)
+        )
+    return driven(traffic, tour[-1], tour[0], at, weights) if traffic.closed else at
+
+
+@compiled
+def seconds_of(traffic: Traffic, tour: Cities, departure: float) -> float:
+    """Return the seconds that a tour takes. O(n)."""
+    return toured(traffic, tour, departure, traffic.begins[:0]).time - departure
+
+
+@compiled
+def left_at(traffic: Traffic, i: int, j: int, arrival: float) -> float:
+    """Return when who arrives at j at a time has left i at the latest."""
+    known = len(traffic.factors) - 1
+    while known > 0 and traffic.begins[known] >= arrival:
+        known -= 1
+    time, left = arrival, 1.0
+    while True:
+        layer = traffic.layers[known, traffic.clock]
+        seconds = traffic.factors[known, traffic.clock] * traffic.matrices[layer, i, j]
+        begins = traffic.begins[known]
+        if time - left * seconds >= begins:
+            return time - left * seconds
+        left = max(0.0, left - (time - begins) / seconds)
+        time = begins
+        known -= 1
+
+
+@compiled
+def departure_for(traffic: Traffic, tour: Cities, place: int, time: float) -> float:
+    """Return when a tour has to begin for the visit at a place to begin at a time. O(place)."""
+    for at in range(place - 1, -1, -1):
+        time = left_at(traffic, tour[at], tour[(at + 1) % len(tour)], time)
+        time -= traffic.service[tour[at]]
+    return time
+
+
+@compiled
+def best_departure(traffic: Traffic, tour: Cities, earliest: float, latest: float) -> float:
+    """Return the departure in a range, as early as may be, after which a tour takes least time.
+
+    The seconds are a piecewise linear function of the departure. They can be least only at an end
+    of the range, or where a visit begins or ends just as a slice begins. O(s n^2) for s slices.
+    """
+    best, least = earliest, seconds_of(traffic, tour, earliest)
+    if latest == earliest:
+        return best
+    best, least = sooner(traffic, tour, latest, best, least)
+    for known in range(1, len(traffic.factors)):
+        for event in range(2 * len(tour) + (1 if traffic.closed else 0)):
+            place = event // 2  # whose visit begins, or ends, with the slice
+            service = traffic.service[tour[place % len(tour)]] if event % 2 else 0.0
+            departure = departure_for(traffic, tour, place, traffic.begins[known] - service)
+            if departure < earliest:
+                break  # as it would be for all later places
+            if departure <= latest:
+                best, least = sooner(traffic, tour, departure, best, least)
+    return best
+
+
+@compiled
+def sooner(
+    traffic: Traffic, tour: Cities, departure: float, best: float, least: float
+) -> tuple[float, float]:
+    """Return the better one of two departures, and the seconds that the tour takes after it."""
+    seconds = seconds_of(traffic, tour, departure)
+    if seconds < least * (1 - EQUAL):
+        return departure, seconds
+    if departure < best and seconds <= least * (1 + EQUAL):
+        return departure, min(seconds, least)
+    return best, least
+
+
+@compiled
+def good_departure(traffic: Traffic, tour: Cities, earliest: float, latest: float) -> float:
+    """Return the best one of evenly spread departures. O(n)."""
+    best, least = earliest, seconds_of(traffic, tour, earliest)
+    if latest == earliest:
+        return best
+    for part in range(1, PARTS + 1):
+        departure = earliest + (latest - earliest) * part / PARTS
+        best, least = sooner(traffic, tour, departure, best, least)
+    return best
+
+
+@compiled
+def best_departure_near(
+    traffic: Traffic, tour: Cities, departure: float, earliest: float, latest: float
+) -> float:
+    """Return the best departure of the parts of a range that meet at one of good_departure()."""
+    part = (latest - earliest) / PARTS
+    return best_departure(
+        traffic, tour, max(earliest, departure - part), min(latest, departure + part)
+    )
+
+
+@inlined
+def add_costs(traffic: Traffic, i: int, j: int, known: int, lengths: Array) -> None:
+    """Add the costs of a leg that begins in a slice to lengths, shape (m,)."""
+    for objective in range(len(lengths)):
+        layer, factor = traffic.layers[known, objective], traffic.factors[known, objective]
+        lengths[objective] += factor * traffic.matrices[layer, i, j]
+
+
+@compiled
+def sum_lengths(traffic: Traffic, tour: Cities, departure: float, lengths: Array) -> None:
+    """Write the lengths of a tour, shape (m,). O(n)."""
+    at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
+    lengths[:] = 0.0
+    n = len(tour)
+    for place in range(n):
+        at = served(traffic, tour[place], at)
+        if place + 1 < n or traffic.closed:
+            i, j = tour[place], tour[(place + 1) % n]
+            add_costs(traffic, i, j, at.slice, lengths)
+            at = driven(traffic, i, j, at, traffic.begins[:0])
+    lengths[traffic.clock] = at.time - departure
+
+
+@compiled
+def write_reached(traffic: Traffic, tours: Cities, departures: Array, reached: Array) -> None:
+    """Write all lengths of k tours up to the arrival at each place, and at the end.
+
+    `reached` has shape (k, n + 1, m). A closed tour ends with its return, an open route with its
+    last visit.
+    """
+    n = tours.shape[1]
+    for k in range(len(tours)):
+        departure, lengths = departures[k], reached[k]
+        at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
+        lengths[0] = 0.0
+        for place in range(n):
+            i, j = tours[k, place], tours[k, (place + 1) % n]
+            at = served(traffic, i, at)
+            for objective in range(lengths.shape[1]):
+                lengths[place + 1, objective] = lengths[place, objective]
+            if place + 1 < n or traffic.closed:
+                add_costs(traffic, i, j, at.slice, lengths[place + 1])
+                at = driven(traffic, i, j, at, traffic.begins[:0])
+            lengths[place + 1, traffic.clock] = at.time - departure

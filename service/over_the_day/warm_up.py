@@ -1,0 +1,27 @@
+"""Compile the search over the day, or load it from the cache."""
+
+from itertools import islice
+
+import numpy as np
+
+from service.over_the_day.day import CostsOfDay, Day
+from service.over_the_day.search import WEIGHTS, DaySearch
+
+_N = 12  # cities: too many to try all tours
+
+
+def warm_up() -> None:
+    """Compile it by searches that use all of it."""
+    for n in (4, _N):
+        cities = np.arange(float(n))
+        matrix = np.outer(cities, cities) % 7.0
+        costs = [
+            CostsOfDay(cities[:2], np.array([1.0, 2.0]), np.zeros(2, np.int64), matrix[np.newaxis]),
+            CostsOfDay.constant(matrix),
+        ]
+        day = Day(costs, clock=0, service=cities, earliest=0.0, latest=1.0)
+        search = DaySearch(day, 0)
+        search.add(np.arange(n)[np.newaxis])
+        for _ in islice(search.run(), 4 * WEIGHTS[2]):
+            pass
+        search.driven(search.found()[1])

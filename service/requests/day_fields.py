@@ -1,0 +1,200 @@
+"""The fields of requests about the time of day, and what they say about stops and costs."""
+
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag
+
+from service.errors import invalid
+from service.objectives import Objective
+from service.requests.arrays import check_costs, cost_matrix
+from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional
+from service.requests.stop_fields import ObjectiveItem, StopItem
+from service.requests.stops import FixedSource, Hours, OverTheDay, Slices, Source, Stop
+from service.requests.validation import show
+
+_LATEST = 864_000  # ten days
+_MOST_SLICES = 100  # every quarter of an hour, and a few more
+_LEAST_FACTOR, _MOST_FACTOR = 0.01, 100.0
+TimeOfDay = Annotated[float, Field(ge=0, le=_LATEST, allow_inf_nan=False)]
+Factor = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+_NEEDED = "is required where costs change over the day, or stops have service"
+
+
+class SliceItem(StrictModel):
+    """A slice of the day, and the costs in it."""
+
+    begins: TimeOfDay = Field(alias="from", description="when it begins, in seconds of the day")
+    matrix: CostRows = Field(
+        description=f"the costs from each stop (row) to each (column), {NO_WAY}; a leg that one"
+        " slice has no way for is never driven"
+    )
+
+
+class DepartureRange(StrictModel):
+    """When a tour may begin."""
+
+    earliest: TimeOfDay = Field(description="in seconds of the day")
+    latest: TimeOfDay = Field(description="in seconds of the day")
+
+
+Departure = Annotated[
+    Annotated[TimeOfDay, Tag("[time]")] | Annotated[DepartureRange, Tag("[range]")],
+    Discriminator(lambda value: "[range]" if isinstance(value, dict) else "[time]"),
+]
+
+
+class ServedStopItem(StopItem):
+    """A stop, and how long a visit takes."""
+
+    service: TimeOfDay = Field(
+        default=0.0, description="the seconds of a visit, where there is a departure"
+    )
+
+
+class DayObjectiveItem(ObjectiveItem):
+    """An objective, whose costs may change over the day."""
+
+    over_the_day: Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)] = (
+        Field(
+            default_factory=list,
+            description="pairs of a second of the day and a factor: from then on the costs are"
+            " those of the source times the factor; the first one holds before it too",
+        )
+    )
+    slices: Annotated[list[SliceItem], Field(max_length=_MOST_SLICES, fail_fast=True)] = Field(
+        default_factory=list,
+        description="in place of one matrix: one for each slice of the day, which the next one"
+        " ends; the first one holds before it too",
+    )
+
+    choices: ClassVar[str] = "matrix, coordinates, from and slices"
+
+    @property
+    def sources(self) -> list[str]:
+        """The names of the members that are sources of costs."""
+        return [*super().sources, *(["slices"] if self.slices else [])]
+
+    @property
+    def changes(self) -> bool:
+        """Whether its costs change over the day."""
+        return bool(self.over_the_day or self.slices)
+
+    def source(self, part: str, stops: Sequence[Stop]) -> Source:
+        """Return the source of the costs between these stops, over the day.
+
+        Raises:
+            Refusal: There is not exactly one source, it does not fit the stops, or times or factors
+                are out of order or range.
+        """
+        if self.sources == ["slices"]:
+            return self._slices(part, len(stops))
+        return self.over(part, self.fixed_source(part, stops))
+
+    def over(self, part: str, base: FixedSource) -> Source:
+        """Return a source with the factors of the day, if there are any."""
+        if not self.over_the_day:
+            return base
+        begins, factors = zip(*self.over_the_day, strict=True)
+        _check_times(f"{part}/over_the_day", [f"{k}/0" for k in range(len(begins))], begins)
+        for k, factor in enumerate(factors):
+            if not _LEAST_FACTOR <= factor <= _MOST_FACTOR:
+                demand = f"must be from {_LEAST_FACTOR:g} to {_MOST_FACTOR:g}"
+                raise invalid(f"{part}/over_the_day/{k}/1", f"{demand}, got {factor:g}")
+        return OverTheDay(base, np.array(begins, np.float64), np.array(factors, np.float64))
+
+    def _slices(self, part: str, n: int) -> Slices:
+        if self.over_the_day:
+            raise invalid(f"{part}/over_the_day", "must not be given together with slices")
+        begins = [item.begins for item in self.slices]
+        _check_times(f"{part}/slices", [f"{k}/from" for k in range(len(begins))], begins)
+        matrices = []
+        for k, item in enumerate(self.slices):
+            where = f"{part}/slices/{k}/matrix"
+            if len(item.matrix) != n:
+                demand = f"must have {n} rows, one for each stop"
+                raise invalid(where, f"{demand}, got {len(item.matrix)}")
+            matrix = cost_matrix(item.matrix, where)
+            check_costs(matrix, where)
+            matrices.append(matrix)
+        return Slices(np.array(begins), np.stack(matrices))
+
+
+class DayFields(StrictModel):
+    """The fields of a request for tours whose costs change over the day."""
+
+    departure: Departure | None = optional(
+        "when a tour begins, in seconds of the day: a time, or the earliest and the latest one, of"
+        " which each tour has its best"
+    )
+    clock: Text | None = optional(
+        "the name of the objective whose costs are seconds of travel; by default the first one that"
+        " changes over the day, or else the first one in s"
+    )
+
+
+def read_hours(
+    request: DayFields,
+    stops: Sequence[ServedStopItem],
+    items: Sequence[DayObjectiveItem],
+    objectives: Sequence[Objective],
+) -> Hours | None:
+    """Return when tours begin and how long visits take; None without a departure.
+
+    Raises:
+        Refusal: A departure is missing, no objective is the clock, or its unit is not s.
+    """
+    if request.departure is None:
+        _check_no_day(request, stops, items)
+        return None
+    earliest = latest = request.departure
+    if isinstance(request.departure, DepartureRange):
+        earliest, latest = request.departure.earliest, request.departure.latest
+        if latest < earliest:
+            raise invalid("departure/latest", f"must be from {earliest:g} on, got {latest:g}")
+    assert isinstance(earliest, float)
+    assert isinstance(latest, float)
+    service = np.array([stop.service for stop in stops], np.float64)
+    return Hours(_clock(request, items, objectives), service, earliest, latest)
+
+
+def _check_no_day(
+    request: DayFields, stops: Sequence[ServedStopItem], items: Sequence[DayObjectiveItem]
+) -> None:
+    """Raise a refusal where a request has no departure, but needs one."""
+    changing = any(item.changes for item in items)
+    if changing or request.clock is not None or any(stop.service for stop in stops):
+        raise invalid("departure", _NEEDED)
+
+
+def _clock(
+    request: DayFields, items: Sequence[DayObjectiveItem], objectives: Sequence[Objective]
+) -> int:
+    names = [objective.name for objective in objectives]
+    if request.clock is not None:
+        if request.clock not in names:
+            demand = f"must be {' or '.join(map(show, names))}, the name of an objective"
+            raise invalid("clock", f"{demand}, got {show(request.clock)}")
+        clock = names.index(request.clock)
+    else:
+        changing: list[Any] = [m for m, item in enumerate(items) if item.changes]
+        in_seconds = [m for m, objective in enumerate(objectives) if objective.unit == "s"]
+        if not changing and not in_seconds:
+            raise invalid("clock", "is required, as no objective changes over the day or is in s")
+        clock = [*changing, *in_seconds][0]
+    unit = objectives[clock].unit
+    if unit not in (None, "s"):
+        demand = "must be s, as its costs are seconds of travel between times of the day"
+        raise invalid(f"objectives/{clock}/unit", f"{demand}, got {show(unit)}")
+    return clock
+
+
+def _check_times(part: str, places: Sequence[str], times: Sequence[float]) -> None:
+    """Raise a refusal unless times are ascending, and none is too late."""
+    for k, place in enumerate(places):
+        if times[k] > _LATEST:
+            raise invalid(f"{part}/{place}", f"must be at most {_LATEST}, got {times[k]:g}")
+        if k and times[k] <= times[k - 1]:
+            demand = f"must be later than {times[k - 1]:g}, when the one before begins"
+            raise invalid(f"{part}/{place}", f"{demand}, got {times[k]:g}")

@@ -1,0 +1,187 @@
+"""Fronts over the day, over HTTP."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.helpers.serving import app_of, problem, serving
+
+HOUR = 3600.0
+PEAK = [[0, 1.0], [7 * HOUR, 2.0], [9 * HOUR, 1.0]]
+TIMES = [[0, 1800, 3600, 900], [1800, 0, 900, 3600], [3600, 900, 0, 1800], [900, 3600, 1800, 0]]
+RISK = [[0, 5, 1, 2], [5, 0, 2, 9], [1, 2, 0, 3], [2, 9, 3, 0]]
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+        yield client
+
+
+def stops(**more: Any) -> dict[str, Any]:
+    """Return a request with one hour of rush, from 7 to 9 o'clock."""
+    return {
+        "stops": [{"id": "depot"}, *({"id": each, "service": 60} for each in "abc")],
+        "objectives": [
+            {"name": "time", "unit": "s", "matrix": TIMES, "over_the_day": PEAK},
+            {"name": "risk", "matrix": RISK},
+        ],
+        "departure": 6 * HOUR,
+        "time_limit": 0.1,
+        **more,
+    }
+
+
+def sliced(**more: Any) -> dict[str, Any]:
+    doubled = [[2 * cost for cost in row] for row in TIMES]
+    slices = [
+        {"from": begins, "matrix": matrix}
+        for begins, matrix in ((0, TIMES), (7 * HOUR, doubled), (9 * HOUR, TIMES))
+    ]
+    request = stops(**more)
+    request["objectives"][0] = {"name": "time", "unit": "s", "slices": slices}
+    return request
+
+
+def refused(answer: httpx.Response, pointer: str) -> None:
+    [error] = problem(answer, 422, "invalid-request")["errors"]
+    assert error["pointer"] == pointer
+
+
+def front_of(client: httpx.Client, request: dict[str, Any]) -> dict[str, Any]:
+    answer = client.post("/front", json=request)
+    assert answer.status_code == 200, answer.text
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_lengths_and_times_are_those_of_the_rush_hour(client: httpx.Client) -> None:
+    front = front_of(client, stops())
+    best = front["front"][0]
+    # Either way round: the first tour leaves b at 6:47, and drives 13 minutes of 30 to c before 7.
+    times = {
+        "depot a b c": [0, 1800, 2760, 5640, 7500],
+        "depot c b a": [0, 900, 2760, 3840, 7500],
+    }
+    assert best["departure"] == 6 * HOUR
+    expected = times[" ".join(best["stops"])]
+    assert best["times"] == [6 * HOUR + seconds for seconds in expected]
+    assert best["lengths"] == [7500, 12]
+    assert front["terminated"] == "converged"
+
+
+def test_slices_are_as_the_factors_that_they_came_from(client: httpx.Client) -> None:
+    first, second = (front_of(client, each)["front"] for each in (stops(), sliced()))
+    assert [tour["times"] for tour in first] == [tour["times"] for tour in second]
+
+
+def test_of_a_range_the_tour_leaves_before_the_rush(client: httpx.Client) -> None:
+    ranged = {"earliest": 5 * HOUR, "latest": 8 * HOUR}
+    fixed = front_of(client, stops(departure=8 * HOUR))["front"]
+    best = front_of(client, stops(departure=ranged))["front"]
+    assert best[0]["departure"] == 5 * HOUR
+    assert best[0]["lengths"][0] < fixed[0]["lengths"][0]
+
+
+def test_arrivals_are_all_lengths_up_to_each_stop(client: httpx.Client) -> None:
+    for tour in front_of(client, stops(arrivals=True))["front"]:
+        assert len(tour["arrivals"]) == len(tour["times"]) == 5
+        assert tour["arrivals"][-1] == tour["lengths"]
+        for (seconds, _), time in zip(tour["arrivals"], tour["times"], strict=True):
+            assert time == tour["departure"] + seconds
+
+
+def test_the_rest_is_replanned_from_now(client: httpx.Client) -> None:
+    front = front_of(client, stops())
+    path = f"/front/{front['id']}/replan"
+    changes = {"done": ["depot", "c"], "now": 7 * HOUR, "time_limit": 0.1}
+    answer = client.post(path, json=changes)
+    assert answer.status_code == 200, answer.text
+    best = answer.json()["front"][0]
+    assert best["stops"][0] == "c"
+    assert best["departure"] == best["times"][0] == 7 * HOUR
+    # From c to b and on to a at half the speed, with a minute at each, and the way back.
+    assert sorted(best["stops"]) == ["a", "b", "c", "depot"]
+    refused(client.post(path, json={"done": ["c"]}), "/now")
+    new = {"id": "new", "service": 30, "costs": [{"to": [60] * 5}, {"to": [1] * 5}]}
+    added = client.post(path, json={**changes, "add": [new]})
+    assert added.status_code == 200, added.text
+    cost = {"objective": "time", "from": "c", "to": "b", "cost": 10}
+    cheaper = client.post(path, json={**changes, "costs": [cost]}).json()["front"][0]
+    assert cheaper["lengths"][0] < best["lengths"][0]
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer"),
+    [
+        ({"departure": None}, "/departure"),
+        ({"departure": 1e9}, "/departure"),
+        ({"departure": "07:00"}, "/departure"),
+        ({"departure": {"earliest": 9, "latest": 8}}, "/departure/latest"),
+        ({"clock": "risk"}, None),
+        ({"clock": "ris"}, "/clock"),
+        ({"bound": True}, "/bound"),
+        ({"over_the_day": [[0, 1], [0, 2]]}, "/objectives/0/over_the_day/1/0"),
+        ({"over_the_day": [[0, 0]]}, "/objectives/0/over_the_day/0/1"),
+        ({"over_the_day": [[0, 1, 2]]}, "/objectives/0/over_the_day/0"),
+        ({"over_the_day": [[-1, 1]]}, "/objectives/0/over_the_day/0/0"),
+        ({"over_the_day": [[9e5, 1]]}, "/objectives/0/over_the_day/0/0"),
+        ({"over_the_day": [[0, 1e300]]}, "/objectives/0/over_the_day/0/1"),
+        ({"over_the_day": [[k, 1] for k in range(101)]}, "/objectives/0/over_the_day"),
+        ({"unit": "min"}, "/objectives/0/unit"),
+        ({"slices": [{"from": 0, "matrix": TIMES}]}, "/objectives/0"),
+    ],
+)
+def test_what_is_no_day_is_refused(
+    client: httpx.Client, change: dict[str, Any], pointer: str | None
+) -> None:
+    request = stops()
+    for name, value in change.items():
+        of_objective = name in ("over_the_day", "unit", "slices")
+        (request["objectives"][0] if of_objective else request)[name] = value
+    answer = client.post("/front", json=request)
+    if pointer is None:
+        assert answer.status_code == 200, answer.text
+    else:
+        refused(answer, pointer)
+
+
+def test_slices_are_checked_like_matrices(client: httpx.Client) -> None:
+    request = sliced()
+    request["objectives"][0]["slices"][1]["matrix"] = TIMES[:3]
+    answer = client.post("/front", json=request)
+    refused(answer, "/objectives/0/slices/1/matrix")
+    request = sliced()
+    request["objectives"][0]["slices"][2]["from"] = 1
+    answer = client.post("/front", json=request)
+    refused(answer, "/objectives/0/slices/2/from")
+
+
+def test_a_leg_that_one_slice_forbids_is_never_driven(client: httpx.Client) -> None:
+    request = sliced()
+    closed = [list(row) for row in TIMES]
+    closed[0][3] = None  # type: ignore[call-overload]
+    request["objectives"][0]["slices"][2]["matrix"] = closed
+    for tour in front_of(client, request)["front"]:
+        assert tour["stops"][1] != "c"
+
+
+def test_cities_without_names_and_fronts_without_a_day_refuse_it(client: httpx.Client) -> None:
+    cities = {"coordinates": [[0, 0, 1, 1], [1, 2, 3, 4], [5, 5, 0, 1]]}
+    answer = client.post("/front", json={**cities, "departure": 0})
+    refused(answer, "/departure")
+    front = client.post("/front", json=cities).json()["id"]
+    answer = client.post(f"/front/{front}/replan", json={"now": 5, "done": [0]})
+    refused(answer, "/now")
+
+
+def test_service_alone_needs_a_departure(client: httpx.Client) -> None:
+    request = stops()
+    del request["departure"]
+    del request["objectives"][0]["over_the_day"]
+    refused(client.post("/front", json=request), "/departure")
+    request["departure"] = 0
+    front = front_of(client, request)["front"]
+    assert front[0]["lengths"][0] == 900 + 1800 + 900 + 1800 + 180

@@ -1,0 +1,86 @@
+"""Random days, and tours driven through them step by step, as the definition has it."""
+
+from collections.abc import Iterator
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import RouteEnds
+from service.over_the_day.day import CostsOfDay, Day
+
+Array = NDArray[np.float64]
+
+
+def random_costs(rng: np.random.Generator, n: int, slices: int) -> CostsOfDay:
+    """Return costs of up to so many slices, some by factors of one matrix."""
+    count = int(rng.integers(1, slices + 1))
+    begins = np.sort(rng.choice(100, count, replace=False)).astype(np.float64)
+    layers = rng.integers(0, 2, count)
+    matrices = rng.integers(0, 30, (2, n, n)).astype(np.float64)
+    return CostsOfDay(begins, rng.choice([0.5, 1.0, 2.0], count), layers, matrices)
+
+
+def random_day(
+    rng: np.random.Generator, n: int, objectives: int = 2, slices: int = 4, width: float = 0.0
+) -> Day:
+    """Return a day of n stops, with closed or open tours that begin in a range of a width."""
+    closed = bool(rng.random() < 0.5)
+    free = [None, *range(n)]
+    start, end = (None, None) if closed else (free[rng.integers(n + 1)], free[rng.integers(n + 1)])
+    earliest = float(rng.integers(0, 60))
+    return Day(
+        costs=[random_costs(rng, n, slices) for _ in range(objectives)],
+        clock=int(rng.integers(objectives)),
+        service=rng.integers(0, 8, n).astype(np.float64),
+        earliest=earliest,
+        latest=earliest + width,
+        ends=RouteEnds(closed, start, None if end == start else end),
+    )
+
+
+def tours_of(day: Day) -> Iterator[tuple[int, ...]]:
+    """Yield all tours; closed ones begin at stop 0."""
+    _, start, end = day.ends
+    for tour in permutations(range(len(day.service))):
+        first = 0 if day.ends.closed else start
+        if first in (None, tour[0]) and end in (None, tour[-1]):
+            yield tour
+
+
+def slice_of(costs: CostsOfDay, time: float) -> int:
+    """Return the slice of the day at a time."""
+    return max(0, int((costs.begins <= time).sum()) - 1)
+
+
+def cost_at(costs: CostsOfDay, time: float, i: int, j: int) -> float:
+    """Return the cost of a leg in the slice of a time."""
+    known = slice_of(costs, time)
+    return float(costs.factors[known] * costs.matrices[costs.layers[known], i, j])
+
+
+def arrival(costs: CostsOfDay, time: float, i: int, j: int) -> float:
+    """Return when who leaves i at a time arrives at j, slice by slice."""
+    driven = 0.0  # of the leg
+    for ends in (*costs.begins[costs.begins > time], np.inf):
+        whole = cost_at(costs, time, i, j)
+        if driven + (ends - time) / max(whole, 1e-300) >= 1.0:
+            return time + (1.0 - driven) * whole
+        driven += (ends - time) / whole
+        time = float(ends)
+    raise AssertionError
+
+
+def lengths_of(day: Day, tour: tuple[int, ...], departure: float) -> Array:
+    """Return all lengths of a tour that begins at a time, shape (m,)."""
+    lengths = np.zeros(len(day.costs))
+    time = departure + day.service[tour[0]]
+    legs = list(zip(tour, (*tour[1:], tour[0]), strict=True))
+    for i, j in legs if day.ends.closed and len(tour) > 1 else legs[:-1]:
+        for objective, costs in enumerate(day.costs):
+            lengths[objective] += cost_at(costs, time, i, j)
+        time = arrival(day.costs[day.clock], time, i, j)
+        if not (day.ends.closed and j == tour[0]):
+            time += day.service[j]
+    lengths[day.clock] = time - departure
+    return lengths

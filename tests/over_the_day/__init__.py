@@ -1,0 +1,1 @@
+"""Tests of `service/over_the_day`."""
