@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from service.instance import CLOSED, Instance, RouteEnds
 
 Array = NDArray[np.float64]
+MOST_ASYMMETRY = 0.2  # of mean costs: by which share of themselves they may differ by direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +88,20 @@ class Day:
 
     @cached_property
     def mean_matrices(self) -> Array:
-        """The mean costs over the hours that tours take, shape (m, n, n)."""
+        """The mean costs over the hours that tours take, shape (m, n, n).
+
+        Where they differ little by direction, they are those of both directions together: under
+        symmetric costs the search finds better tours, and their direction is chosen afterwards.
+        """
         ends = self.latest + self._typical_duration()
-        return np.stack([each.mean(self.earliest, ends) for each in self.costs])
+        means = np.stack([each.mean(self.earliest, ends) for each in self.costs])
+        around = means.transpose(0, 2, 1)
+        finite = np.isfinite(means)
+        if not np.array_equal(finite, finite.transpose(0, 2, 1)):
+            return means
+        apart = np.abs(np.subtract(means, around, where=finite, out=np.zeros_like(means))).sum()
+        differ = apart > MOST_ASYMMETRY * means.sum(where=finite)
+        return means if differ else (means + around) / 2
 
     def _typical_duration(self) -> float:
         """Return the seconds that a tour by nearest neighbours takes, under mean costs. O(n^2)."""

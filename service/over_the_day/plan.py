@@ -27,7 +27,8 @@ from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
-_SHARE_OF_MEANS = 0.6  # of the time limit
+# Of the time limit; the search over the day gains more the more seconds there are for each stop.
+_LEAST_SHARE, _MOST_SHARE, _LESS_BY_SECOND = 0.5, 0.95, 40.0
 _LEAST_OF_MEANS = 300  # tours under mean costs that are driven through the day, if there are
 _MEASURED = 5  # tours whose best departures are timed
 _REPORT_EVERY = 0.1  # seconds
@@ -108,7 +109,8 @@ class _Planning:
         instance, stop = self._instance, self._stop
         options = replace(self._options, reference_point=None)
         if self._improves:
-            limit, size = _SHARE_OF_MEANS * options.time_limit, max(options.size, _LEAST_OF_MEANS)
+            limit = _share_of_means(options.time_limit / instance.n) * options.time_limit
+            size = max(options.size, _LEAST_OF_MEANS)
             options = replace(options, time_limit=limit, size=size)
         report = reporting(self._report, self._driven)
         if self._earlier is None:
@@ -191,6 +193,12 @@ class _Planning:
         found = hypervolume(points, self._reference_point)
         progress = Progress(now - self._began, found, len(points))
         self._report(progress, lambda size: self._front(means, self._search, size, None))
+
+
+def _share_of_means(seconds_for_each: float) -> float:
+    """Return the share of the time that planning on mean costs gets, by the seconds for a stop."""
+    share = 1 - _LESS_BY_SECOND * seconds_for_each
+    return min(_MOST_SHARE, max(_LEAST_SHARE, share))
 
 
 def from_start(instance: Instance, options: PlanOptions) -> Tours:

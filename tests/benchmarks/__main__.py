@@ -17,6 +17,7 @@ _NAMES = (
     "concave",
     "coverage",
     "curves",
+    "day",
     "fleet",
     "fronts",
     "growth",
