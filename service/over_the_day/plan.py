@@ -78,7 +78,7 @@ class _Planning:
         self._improves = options.time_limit > 0 and (earlier is None or earlier.min_kept == 0)
         self._day, self._instance, self._options = day, day.instance, options
         self._stop, self._report = stop, report
-        self._search = DaySearch(day, options.seed)
+        self._search = self._new_search()
         point = options.reference_point
         self._reference_point = reference_point_of(day) if point is None else point
         self._finishing = 0.0  # seconds that the best departure of one tour takes
@@ -103,6 +103,9 @@ class _Planning:
             "departures": 1000 * (time.monotonic() - improved),
         }
         return replace(front, timings={**means.timings, **timings})
+
+    def _new_search(self) -> DaySearch:
+        return DaySearch(self._day, self._options.seed, self._options.start)
 
     def _under_means(self, constructor: Constructor) -> Front:
         """Return a front under mean costs."""
@@ -129,7 +132,7 @@ class _Planning:
 
     def _driven(self, means: Front) -> Front:
         """Return a front that was found under mean costs, driven through the day."""
-        search = DaySearch(self._day, self._options.seed)
+        search = self._new_search()
         search.add(self._both_ways(means.tours))
         return self._front(means, search, self._options.size, None)
 

@@ -77,9 +77,11 @@ class DaySearch:
     Args:
         day: The day.
         seed: Of all random choices.
+        start: The stop at which closed tours begin.
     """
 
-    def __init__(self, day: Day, seed: int) -> None:
+    def __init__(self, day: Day, seed: int, start: int = 0) -> None:
+        self._start = start if day.ends.closed else day.ends.start
         self._traffic, self._instance = traffic_of(day), day.instance
         self._departures = day.earliest, day.latest
         instance = self._instance
@@ -130,18 +132,11 @@ class DaySearch:
     def _places(self) -> tuple[int, int]:
         """The first place of a tour that may change, and the one after the last."""
         instance = self._instance
-        fixed_start = instance.closed or instance.start is not None
-        return int(fixed_start), instance.n - (instance.end is not None)
+        return int(self._start is not None), instance.n - (instance.end is not None)
 
     def _try_all(self) -> Iterator[int]:
-        first, last = self._places()
-        [*order] = range(self._instance.n)
-        start, end = order[:first], order[last:]
-        if self._instance.start is not None:
-            start = [self._instance.start]
-        if self._instance.end is not None:
-            end = [self._instance.end]
-        middle = [city for city in order if city not in (*start, *end)]
+        start, end = ([] if city is None else [city] for city in (self._start, self._instance.end))
+        middle = [city for city in range(self._instance.n) if city not in (*start, *end)]
         tours = np.array([(*start, *each, *end) for each in permutations(middle)], np.int32)
         for begin in range(0, len(tours), _TRIED_AT_ONCE):
             part = tours[begin : begin + _TRIED_AT_ONCE]

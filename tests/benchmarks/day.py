@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks day`: fronts over the day, beside planning on means and a static plan.
+"""`python -m tests.benchmarks day`: fronts over the day, beside planning on mean costs.
 
 Both planes of an instance are uniform, clustered or a city's streets. The first is driven at 30
 km/h through a square of 15 km, with a visit of one to four minutes at each stop, and a tour begins

@@ -39,12 +39,12 @@ def random_day(
     )
 
 
-def tours_of(day: Day) -> Iterator[tuple[int, ...]]:
-    """Yield all tours; closed ones begin at stop 0."""
+def tours_of(day: Day, first: int = 0) -> Iterator[tuple[int, ...]]:
+    """Yield all tours; closed ones begin at a stop."""
     _, start, end = day.ends
     for tour in permutations(range(len(day.service))):
-        first = 0 if day.ends.closed else start
-        if first in (None, tour[0]) and end in (None, tour[-1]):
+        begin = first if day.ends.closed else start
+        if begin in (None, tour[0]) and end in (None, tour[-1]):
             yield tour
 
 
