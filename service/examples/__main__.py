@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from service.examples.deliveries import deliveries
-from service.examples.helsinki import helsinki, three_costs, vans
+from service.examples.helsinki import helsinki, rush_hour, three_costs, vans
 from service.examples.streets import legs, lines_of, streets
 from service.examples.warehouse import cleaning, shared
 
@@ -46,6 +46,7 @@ def write(directory: Path, router_url: str | None) -> None:
         files["helsinki-three-costs"] = three_costs(one_van, lines, main)
         files["helsinki-legs"] = legs(places, lines)
     files["helsinki-vans"] = vans(one_van)
+    files["helsinki-rush-hour"] = rush_hour(one_van)
     for name, content in files.items():
         (directory / f"{name}.json").write_text(_formatted(content))
 

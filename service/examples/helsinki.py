@@ -40,6 +40,11 @@ VANS = 6
 CAPACITY = 24  # parcels
 OPENS, CLOSES = 8 * 3600, 12 * 3600  # when the first van may leave, and the last must be back
 _SERVICE = 240  # seconds at a customer
+_HANDED_OVER = 45  # seconds at a customer of the rush hour, who waits at the door
+# Invented: from when on driving takes how many times as long, and how many times as many people
+# are in the streets.
+_RUSH = [[6 * 3600, 1.0], [7 * 3600, 1.4], [7.5 * 3600, 1.9], [8.5 * 3600, 1.5], [9.5 * 3600, 1.1]]
+_ABOUT = [[6 * 3600, 0.3], [7 * 3600, 0.8], [8 * 3600, 1.6], [9 * 3600, 1.0]]
 _TIMED = 3  # every third customer has named an hour
 
 
@@ -143,6 +148,19 @@ def metres_beside(line: Array, segments: Array) -> float:
     share = np.clip((off * step).sum(axis=2) / length, 0.0, 1.0)
     nearest = np.hypot(*np.moveaxis(off - share[..., np.newaxis] * step, 2, 0)).min(axis=1)
     return float((nearest > ALONG) @ great_circle_distances(line[:-1], line[1:]))
+
+
+def rush_hour(one_van: dict[str, Any]) -> dict[str, Any]:
+    """Return a request for one van, with times and crowds that change in the morning."""
+    depot, *customers = one_van["stops"]
+    time, people = one_van["objectives"]
+    return {
+        "stops": [depot, *({**each, "service": _HANDED_OVER} for each in customers)],
+        "objectives": [{**time, "over_the_day": _RUSH}, {**people, "over_the_day": _ABOUT}],
+        "departure": {"earliest": 7 * 3600, "latest": 8.5 * 3600},
+        "time_limit": 2.0,
+        "seed": 1,
+    }
 
 
 def vans(one_van: dict[str, Any]) -> dict[str, Any]:
