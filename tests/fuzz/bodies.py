@@ -177,6 +177,37 @@ def multipart(rng: random.Random) -> TaskSource | Refusal:
     return TaskSource(kind, parts["request"], parts[upload])
 
 
+def day(rng: random.Random) -> TaskSource:
+    """Return a request over the day, of any times, factors and slices, some of it mutated."""
+    n = rng.randint(1, 6)
+
+    def number(most: float = 90_000) -> float:
+        return rng.choice(EXTREMES) if rng.random() < 0.02 else rng.randint(0, int(most))
+
+    def matrix() -> list[list[float | None]]:
+        empty = rng.random() < 0.2
+        return [[None if empty and i < j else number(99) for j in range(n)] for i in range(n)]
+
+    def objective(name: str) -> dict[str, Any]:
+        times = sorted(number() for _ in range(rng.randint(1, 4)))
+        if rng.random() < 0.4:
+            return {"name": name, "slices": [{"from": t, "matrix": matrix()} for t in times]}
+        factors = [[time, rng.choice([0.01, 0.5, 1, 2, 100, number(3)])] for time in times]
+        return {"name": name, "matrix": matrix(), "over_the_day": factors}
+
+    request = {
+        "stops": [{"id": f"{i}", "service": number(900)} for i in range(n)],
+        "objectives": [objective(name) for name in "abcd"[: rng.choice([2, 2, 3])]],
+        "departure": rng.choice([number(), {"earliest": number(1000), "latest": number()}]),
+        "closed": rng.random() < 0.5,
+        "time_limit": rng.choice([0, 0.02]),
+    }
+    if rng.random() < 0.3:
+        request["clock"] = rng.choice(["a", "b", "x"])
+    body = json.dumps(request).encode()
+    return TaskSource("front", mutated(rng, body, TOKENS, len(body)))
+
+
 def extreme(rng: random.Random) -> TaskSource:
     """Return a request of numbers from 5e-324 to 1e308, of all scales or of one."""
     n = rng.randint(1, 9)
@@ -202,6 +233,7 @@ GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | ReplanSource | R
     "json": json_body,
     "robots": robots,
     "fleet": fleet,
+    "day": day,
     "multipart": multipart,
     "replan": replan,
 }

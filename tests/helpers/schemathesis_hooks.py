@@ -118,10 +118,18 @@ def _share(body: dict[str, Any]) -> None:
 
 
 def _make_plannable(body: dict[str, Any]) -> None:
-    """Replace stops and objectives by such as can be planned, with the same fields."""
+    """Replace stops and objectives by such as can be planned, with the same fields.
+
+    Without those about the day, which depend on each other.
+    """
     n = len(body["stops"])
-    located = {"location": [0.0, 0.0]}
-    body["stops"] = [{**stop, **located, "id": f"{i}"} for i, stop in enumerate(body["stops"])]
+    body["stops"] = [{"location": [0.0, 0.0], "id": f"{i}"} for i in range(n)]
+    for name in ("departure", "clock"):
+        body.pop(name, None)
+    for objective in body["objectives"]:
+        objective.pop("over_the_day", None)
+        if objective.pop("slices", None) is not None:
+            objective["matrix"] = None
     fit = {
         "matrix": [[1.0] * n] * n,
         "coordinates": [[0.0, 1.0]] * n,
