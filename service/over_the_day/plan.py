@@ -30,6 +30,8 @@ Tours = NDArray[np.integer]
 # Of the time limit; the search over the day gains more the more seconds there are for each stop.
 _LEAST_SHARE, _MOST_SHARE, _LESS_BY_SECOND = 0.5, 0.95, 40.0
 _LEAST_OF_MEANS = 300  # tours under mean costs that are driven through the day, if there are
+_SHARE_OF_DRIVING = 0.1  # of the time limit: for driving the tours found under mean costs
+_DRIVEN_AT_ONCE = 20  # tours
 _MEASURED = 5  # tours whose best departures are timed
 _REPORT_EVERY = 0.1  # seconds
 
@@ -73,6 +75,7 @@ class _Planning:
         report: ReportOf[Front],
     ) -> None:
         self._began = time.monotonic()
+        self._deadline = self._began + options.time_limit
         self._earlier = earlier
         # A tour found over the day may keep less of the driven one.
         self._improves = options.time_limit > 0 and (earlier is None or earlier.min_kept == 0)
@@ -87,7 +90,7 @@ class _Planning:
         """Return the front."""
         means = self._under_means(constructor)
         began = time.monotonic()
-        self._search.add(self._both_ways(means.tours))
+        self._add(means.tours)
         if self._options.initial_tours is not None:
             self._search.add(from_start(self._instance, self._options))
         terminated = means.terminated
@@ -120,6 +123,15 @@ class _Planning:
             return plan(constructor, instance, options, stop, report)
         return replan(constructor, instance, options, self._earlier, stop, report)
 
+    def _add(self, tours: Tours) -> None:
+        """Drive tours through the day, a few at a time, until a part of the time has gone."""
+        ends = time.monotonic() + _SHARE_OF_DRIVING * self._options.time_limit
+        parts = max(1, len(tours) // _DRIVEN_AT_ONCE)
+        for part in range(parts):  # each of them spread over the front
+            self._search.add(self._both_ways(tours[part::parts]))
+            if self._options.time_limit > 0 and time.monotonic() > ends:
+                return
+
     def _both_ways(self, tours: Tours) -> Tours:
         """Return tours, and their reverses where these are allowed: over the day they differ."""
         if self._earlier is not None and self._earlier.min_kept > 0:
@@ -143,7 +155,7 @@ class _Planning:
         points, tours = search.found()
         chosen = best_subset(points, min(size, self._options.size), self._reference_point)
         # With their best departures, some may dominate others.
-        driven = search.driven(tours[chosen]).best()
+        driven = search.driven(tours[chosen], self._deadline).best()
         kept = None
         if self._earlier is not None:
             kept = kept_shares(self._instance, driven.tours, self._earlier.driven)
@@ -179,12 +191,11 @@ class _Planning:
     def _improve(self, means: Front) -> Termination:
         """Search until the deadline, and report on the way."""
         reported = time.monotonic()
-        deadline = self._began + self._options.time_limit
         for _ in self._search.run():
             now = time.monotonic()
             if self._stop():
                 return "cancelled"
-            if now + self._reserve() >= deadline:
+            if now + self._reserve() >= self._deadline:
                 return "time_limit"
             if now - reported >= _REPORT_EVERY:
                 self._tell(means, now)

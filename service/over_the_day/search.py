@@ -1,5 +1,7 @@
 """The search over the day: all tours of a few stops; else weighted sums, one after another."""
 
+import math
+import time
 from collections.abc import Iterator
 from itertools import chain, count, permutations
 from typing import NamedTuple
@@ -38,7 +40,7 @@ Tours = NDArray[np.integer]
 MOST_TRIED = 8  # stops: of up to as many, all tours are tried
 WEIGHTS = {2: 24, 3: 45, 4: 60}  # weighted sums, by the number of objectives
 PATIENCE = 1_000  # iterations per stop without a new tour, after which the search has converged
-_TRIED_AT_ONCE = 500  # tours
+_TRIED_AT_ONCE = 100  # tours
 _CITIES_AT_ONCE = 20  # of a descent
 _VISITS_AT_ONCE = 10_000  # of iterations: some milliseconds
 
@@ -112,22 +114,25 @@ class DaySearch:
         allowed = np.isfinite(tour_lengths(self._instance, tours)).all(axis=1)
         return self.archive.points[rows[allowed]], tours[allowed]
 
-    def driven(self, tours: Tours) -> DrivenTours:
-        """Drive tours through the day, with the best departures near the good ones."""
+    def driven(self, tours: Tours, deadline: float = math.inf) -> DrivenTours:
+        """Drive tours through the day, with the best departures near the good ones.
+
+        After the deadline, by time.monotonic(), good departures are enough.
+        """
         cities = np.ascontiguousarray(tours, np.int32)
-        departures = np.empty(len(cities))
-        for index, tour in enumerate(cities):
-            if len(tour) <= MOST_TRIED:
-                departures[index] = best_departure(self._traffic, tour, *self._departures)
-            else:
-                good = good_departure(self._traffic, tour, *self._departures)
-                departures[index] = best_departure_near(
-                    self._traffic, tour, good, *self._departures
-                )
+        departures = np.array([self._departure(tour, deadline) for tour in cities])
         n, m = self._instance.n, self._instance.objectives
         reached = np.empty((len(cities), n + 1, m))
         write_reached(self._traffic, cities, departures, reached)
         return DrivenTours(tours, departures, reached)
+
+    def _departure(self, tour: NDArray[np.int32], deadline: float) -> float:
+        if len(tour) <= MOST_TRIED:
+            return best_departure(self._traffic, tour, *self._departures)
+        good = good_departure(self._traffic, tour, *self._departures)
+        if time.monotonic() >= deadline:
+            return good
+        return best_departure_near(self._traffic, tour, good, *self._departures)
 
     def _places(self) -> tuple[int, int]:
         """The first place of a tour that may change, and the one after the last."""

@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
 PARTS = 16  # of a range of departures
+MOST_TRIES = 2_000  # departures of one tour: more than one of up to eight stops and 100 slices has
 EQUAL = 1e-12  # seconds with a smaller relative difference count as equal
 
 
@@ -169,19 +170,22 @@ def best_departure(traffic: Traffic, tour: Cities, earliest: float, latest: floa
     """Return the departure in a range, as early as may be, after which a tour takes least time.
 
     The seconds are a piecewise linear function of the departure. They can be least only at an end
-    of the range, or where a visit begins or ends just as a slice begins. O(s n^2) for s slices.
+    of the range, or where a visit begins or ends just as a slice begins. O(s n^2) for s slices; of
+    very many such departures, the first ones are tried.
     """
     best, least = earliest, seconds_of(traffic, tour, earliest)
     if latest == earliest:
         return best
     best, least = sooner(traffic, tour, latest, best, least)
+    tries = 0
     for known in range(1, len(traffic.factors)):
         for event in range(2 * len(tour) + (1 if traffic.closed else 0)):
             place = event // 2  # whose visit begins, or ends, with the slice
             service = traffic.service[tour[place % len(tour)]] if event % 2 else 0.0
             departure = departure_for(traffic, tour, place, traffic.begins[known] - service)
-            if departure < earliest:
-                break  # as it would be for all later places
+            if departure < earliest or tries >= MOST_TRIES:
+                break  # it would be so for all later places
+            tries += 1
             if departure <= latest:
                 best, least = sooner(traffic, tour, departure, best, least)
     return best
