@@ -28,9 +28,9 @@ from service.search.open_routes import rotated
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 # Of the time limit; the search over the day gains more the more seconds there are for each stop.
-_LEAST_SHARE, _MOST_SHARE, _LESS_BY_SECOND = 0.5, 0.95, 40.0
+_LEAST_SHARE, _MOST_SHARE, _LESS_BY_SECOND = 0.5, 0.85, 40.0
 _LEAST_OF_MEANS = 300  # tours under mean costs that are driven through the day, if there are
-_SHARE_OF_DRIVING = 0.1  # of the time limit: for driving the tours found under mean costs
+_SHARE_OF_DRIVING = 0.05  # of the time limit: for driving the tours found under mean costs
 _DRIVEN_AT_ONCE = 20  # tours
 _MEASURED = 5  # tours whose best departures are timed
 _REPORT_EVERY = 0.1  # seconds
