@@ -248,6 +248,7 @@ function fail(error) {
   if (!(error instanceof Problem)) throw error;
   say("");
   showFaults(error);
+  input.mark();
   element("waiting").textContent = document.querySelector(".fault:not(:empty)").textContent; // a phone shows the form below
 }
 

@@ -2,17 +2,19 @@
 
 import { counted } from "../common/numbers.js";
 
+/** How many vehicles there are of all types. */
+export const vehiclesIn = ({ vehicles }) => vehicles.reduce((all, each) => all + (Number(each?.count ?? 1) || 0), 0);
+
 export function describedFleet({ vehicles, stops }) {
-  const count = vehicles.reduce((all, each) => all + (each?.count ?? 1), 0);
+  const count = vehiclesIn({ vehicles });
   const fleet = `${counted(count, "vehicle", "vehicles")} and ${counted(stops?.length ?? 0, "stop", "stops")}`;
-  return `A fleet: ${fleet}. Fleets ${NOT_EDITED}`;
+  return `A fleet: ${fleet}.`;
 }
 
 /** Robots that share a map, which is described. */
 export const describedRobots = ({ robots }, map) =>
-  `${counted(robots.length, "robot", "robots")} on ${map} Robots ${NOT_EDITED}`;
+  `${counted(robots.length, "robot", "robots")} on ${map} Robots are shown here and not edited: change the request’s JSON, and open it again.`;
 
-const NOT_EDITED = "are shown here and not edited: change the request’s JSON, and open it again.";
 // Members that are long lists of rows.
 const ROWS = ["matrix", "coordinates", "grid", "cost_layer", "layer", "second_matrix", "second_coordinates"];
 

@@ -1,17 +1,14 @@
 /** The fields of the objectives: names and units, and for stops how each is measured. */
 
-import { namesIn } from "../common/objectives.js";
-
 const TIMED = "speed"; // straight lines at a speed
 const SPEED = 30; // km/h, until another is typed
 const SOURCES = { great_circle: "Straight lines, m", [TIMED]: "Time in straight lines, s", road_time: "Time by road, s", road_distance: "Way by road, m" };
-const NTH = ["First", "Second", "Third", "Fourth"];
+const NTH = ["First", "Second", "Third", "Fourth"].map((each) => `${each} objective`);
 const OWN = "own"; // costs that came with the stops
 
 export class ObjectiveFields {
   #element;
   #own = []; // the objectives that came with costs of their own
-  #shown = [];
 
   /** @param {(axis: number, change: object) => void} onChange called with new members of one objective */
   constructor(element, onChange) {
@@ -23,11 +20,10 @@ export class ObjectiveFields {
     });
   }
 
-  /** Shows the objectives; those of a request for stops have sources, others only names and units. */
-  show(objectives, sourced) {
+  /** Shows the objectives under their titles; those of a request for stops have sources, others only names and units. */
+  show(objectives, sourced, titles = NTH) {
     this.#own = objectives;
-    this.#shown = sourced ? namesIn({ objectives }) : objectives;
-    this.#element.replaceChildren(...this.#shown.map((named, axis) => line(named, axis, sourced && objectives[axis])));
+    this.#element.replaceChildren(...objectives.map((each, axis) => line(each, axis, sourced, titles[axis])));
   }
 
   #changed(axis, member, value) {
@@ -41,11 +37,14 @@ export class ObjectiveFields {
   }
 }
 
-function line({ name, unit }, axis, objective) {
+/** The fields of one objective. A measure of plans has only a name. */
+function line(objective, axis, sourced, which) {
+  const { name, unit, measure } = objective;
   const made = Object.assign(document.createElement("div"), { className: "objective" });
-  const which = `${NTH[axis]} objective`;
-  made.append(labelled(which, input(axis, "name", name)), labelled("Unit", input(axis, "unit", unit), `Unit of the ${which.toLowerCase()}`));
-  if (!objective) return made;
+  made.append(labelled(which, input(axis, "name", name ?? "")));
+  if (measure) return made;
+  made.append(labelled("Unit", input(axis, "unit", unit ?? ""), `Unit of the ${which.toLowerCase()}`));
+  if (!sourced) return made;
   const speed = input(axis, "speed", objective.speed ?? SPEED);
   speed.inputMode = "decimal";
   const chosen = source(axis, objective);

@@ -3,23 +3,27 @@
 import { isCity, textOf } from "./cities.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.js";
+import { FleetForm } from "../fleet/fleet_form.js";
+import { byIds, servedBy, stopRenamed } from "../fleet/references.js";
 import { RequestText } from "../fleet/request_text.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
-import { isMeasured, moved, put, renamed, withAnother, without } from "./stops.js";
-import { StopsTable } from "./table.js";
+import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
+import { EditableTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 
 const element = (id) => document.getElementById(id);
-const COLUMNS = { coordinates: ["x₁", "y₁", "x₂", "y₂"], stops: ["Longitude", "Latitude"] };
+const titled = (titles) => titles.map((title) => ({ title }));
+const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"]) };
 
 export class RequestForm {
   #fields;
   #table;
   #objectiveFields;
+  #fleet;
   #text = new RequestText(element("fleet-request"));
   #onEdited;
   #settled;
@@ -39,11 +43,12 @@ export class RequestForm {
     this.#typedRows = new TypedRows(service, (found) => this.#take(found));
     this.#fields = new Fields(form);
     this.#objectiveFields = new ObjectiveFields(element("objectives"), (axis, change) => this.#measure(axis, change));
-    this.#table = new StopsTable(element("stops"), {
+    this.#table = new EditableTable(element("stops"), {
       onName: (row, text) => this.#onceRead(() => this.#rename(row, text)),
-      onNumber: (row, column, text) => this.#onceRead(() => this.#move(row, column, text)),
+      onCell: (row, column, text) => this.#onceRead(() => this.#move(row, column, text)),
       onDelete: (row) => this.#onceRead(() => this.#delete(row)),
     });
+    this.#fleet = new FleetForm(this.#table, (changed) => this.#change(changed));
     element("cities").addEventListener("input", () => this.#typed());
     element("rounded").addEventListener("change", () => this.#edited(false));
     element("add").addEventListener("click", () => this.#onceRead(() => this.#add()));
@@ -56,15 +61,17 @@ export class RequestForm {
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? ownNames(wanted) ?? names;
     element("typed").hidden = form !== "coordinates";
-    element("named").hidden = Boolean(kind.movers || wanted.cost_layers) || !(kind.onGrid || form);
-    this.#text.show(kind.movers ? wanted : null);
-    element("brought").textContent = described(wanted);
-    element("brought").hidden = !element("brought").textContent;
+    element("named").hidden = !this.#isFleet && (Boolean(kind.movers || wanted.cost_layers) || !(kind.onGrid || form));
+    this.#fleet.open(this.#isFleet ? this.#brought : null);
     this.#show(wanted.coordinates ?? []);
     element("rounding").hidden = !wanted.rounded;
     element("rounded").checked = Boolean(wanted.rounded);
-    this.#showObjectives();
+    if (!this.#isFleet) this.#showObjectives();
     this.#edited();
+  }
+
+  get #isFleet() {
+    return isFleet(this.#brought);
   }
 
   get asked() {
@@ -122,7 +129,19 @@ export class RequestForm {
 
   /** Whether some costs are those of a matrix, and not measured between places. */
   get priced() {
-    return Boolean(this.#brought.objectives?.some(({ matrix }) => matrix));
+    return isPriced(this.#brought);
+  }
+
+  /** Has a stop of a fleet served by a type of vehicles; by any without its id. */
+  serve(stop, vehicle) {
+    this.#change(servedBy(this.#brought, this.ids.indexOf(stop), vehicle));
+  }
+
+  /** Takes the changed request of a fleet. */
+  #change(changed) {
+    this.#brought = changed;
+    this.#objectives = namesIn(changed);
+    this.#edited(false);
   }
 
   /** Deletes a stop that is drawn. */
@@ -170,28 +189,41 @@ export class RequestForm {
 
   #edited(fit = true) {
     const form = formOf(this.#brought);
-    const rows = this.#tableRows(form);
-    this.#table.show(COLUMNS[form] ?? [], rows);
-    element("count").textContent = COLUMNS[form] ? counted(rows.length, "stop", "stops") : "";
+    const count = (form === "coordinates" ? this.#rows : (this.#brought.stops ?? [])).length;
+    const shown = this.#isFleet || Boolean(COLUMNS[form]);
+    if (this.#isFleet) this.#fleet.show(this.#brought);
+    else this.#table.show(COLUMNS[form] ?? [], this.#tableRows(form));
+    element("count").textContent = shown ? counted(count, "stop", "stops") : "";
     for (const id of ["add", "place"]) element(id).disabled = form !== "coordinates" && !isMeasured(this.#brought);
-    element("add").hidden = element("place").hidden = !COLUMNS[form];
-    this.#fields.name(this.ids, rows.length);
+    element("add").hidden = element("place").hidden = !shown;
+    this.#text.show(kindOf(this.#brought).movers ? this.#brought : null);
+    element("brought").textContent = described(this.#brought);
+    element("brought").hidden = !element("brought").textContent;
+    this.#fields.name(this.ids, count);
     this.#onEdited(this.instance, fit);
+    this.mark();
+  }
+
+  /** Marks the cells of a fleet that are not understood, and says what they must be. */
+  mark() {
+    if (this.#isFleet) this.#fleet.mark();
   }
 
   #tableRows(form) {
-    if (form === "coordinates") return this.#rows.map((numbers, city) => ({ name: nameOf(this.ids, city), numbers }));
+    if (form === "coordinates") return this.#rows.map((cells, city) => ({ name: nameOf(this.ids, city), cells }));
     if (form !== "stops") return [];
-    return this.#brought.stops.map(({ id, location }) => ({ name: id, numbers: location ?? [] }));
+    return this.#brought.stops.map(({ id, location }) => ({ name: id, cells: location ?? [] }));
   }
 
   #rename(row, text) {
-    if (this.#brought.stops) this.#brought = renamed(this.#brought, row, text);
+    if (this.#isFleet) this.#brought = stopRenamed(this.#brought, row, text);
+    else if (this.#brought.stops) this.#brought = renamed(this.#brought, row, text);
     else this.#brought.ids = this.#rows.map((_, city) => (city === row ? text : nameOf(this.ids, city)));
     this.#edited(false);
   }
 
   #move(row, column, text) {
+    if (this.#isFleet) return this.#fleet.write("stops", row, column, text);
     const value = numberOr(text.replace(",", "."));
     if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
     else return this.#write(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)), true);
@@ -200,8 +232,8 @@ export class RequestForm {
 
   #delete(row) {
     if (this.#brought.stops) {
-      this.#brought = without(this.#brought, row);
-      this.#showObjectives();
+      this.#brought = without(this.#isFleet ? byIds(this.#brought) : this.#brought, row);
+      if (!this.#isFleet) this.#showObjectives();
       return this.#edited(false);
     }
     this.#brought.ids = this.#brought.ids?.toSpliced(row, 1);
@@ -248,6 +280,8 @@ export class RequestForm {
     this.#objectiveFields.show(sourced ? objectives : this.#objectives, sourced);
   }
 }
+
+const isFleet = (request) => kindOf(request).path === "fleet";
 
 function numberOr(text) {
   return text === "" || Number.isNaN(Number(text)) ? text : Number(text);

@@ -2,11 +2,19 @@
 
 import { EARTH, mapsOf } from "./places.js";
 
-export const isMeasured = ({ objectives }) => Boolean(objectives?.every(({ from }) => from));
+/** Whether all costs and times of a request are known for a stop at any place. */
+export const isMeasured = (asked) => Boolean(asked.objectives?.every(({ from, measure }) => from || measure)) && !hasOwnTimes(asked);
 
-/** The same request with other stops; objectives keep the rows and columns of `kept`. */
+const hasOwnTimes = ({ clock }) => Boolean(clock?.matrix || clock?.coordinates);
+
+/** Whether some costs or times of a request are those of a matrix, and not measured between places. */
+export const isPriced = ({ objectives, clock }) => Boolean(objectives?.some(({ matrix }) => matrix) || clock?.matrix);
+
+/** The same request with other stops; objectives and a clock keep the rows and columns of `kept`. */
 function withStops(asked, stops, kept) {
-  return { ...asked, stops, objectives: asked.objectives?.map((objective) => costsOf(objective, kept)) };
+  const { objectives, clock } = asked;
+  const timed = hasOwnTimes(asked) && { clock: costsOf(clock, kept) };
+  return { ...asked, stops, objectives: objectives?.map((objective) => costsOf(objective, kept)), ...timed };
 }
 
 function costsOf(objective, kept) {

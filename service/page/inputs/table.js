@@ -1,52 +1,93 @@
-/** A table of stops that can be typed in: a name and the numbers of each, and a button that deletes it. */
+/** A table that can be typed in: a name and the cells of each row, and a button that deletes it. */
 
 const PAGE = 50; // rows that are shown at once, since thousands of inputs are slow
 
-export class StopsTable {
+export class EditableTable {
   #element;
   #told;
+  #noun;
   #shown = PAGE;
   #columns = [];
   #rows = [];
+  #drawn = ""; // which cells are in the document
 
   /**
-   * @param {{ onName: (row: number, text: string) => void, onNumber: (row: number, column: number,
+   * @param {{ onName: (row: number, text: string) => void, onCell: (row: number, column: number,
    *   text: string) => void, onDelete: (row: number) => void }} told callbacks for changes by the user
+   * @param {string} noun what a row is
    */
-  constructor(element, told) {
+  constructor(element, told, noun = "Stop") {
     this.#element = element;
     this.#told = told;
+    this.#noun = noun;
     element.addEventListener("change", ({ target }) => this.#changed(target));
     element.addEventListener("click", ({ target }) => this.#clicked(target));
   }
 
-  /** Shows stops, each `{ name, numbers }`, under the titles of their numbers. */
+  /**
+   * Shows rows, each `{ name, cells, unread }` with the text of its cells and the columns of those that
+   * are not understood, under columns `{ title, members, list, text }`: the members of a request that the
+   * column is about, the id of a list of proposals, and whether its cells are more than numbers.
+   */
   show(columns, rows) {
     this.#columns = columns;
     this.#rows = rows;
     this.#draw();
   }
 
-  /** Shows the rows up to this one, and puts the cursor into its name. */
-  focus(row) {
+  /** Shows the rows up to this one, and puts the cursor into its name, or into one of its cells. */
+  focus(row, column = "name") {
     this.#shown = Math.max(this.#shown, row + 1);
     this.#draw();
-    this.#element.querySelector(`[data-row="${row}"]`)?.focus();
+    this.#element.querySelector(`[data-row="${row}"][data-column="${column}"]`)?.focus();
   }
 
+  /** Marks the cells that are not understood. */
+  mark() {
+    for (const input of this.#element.querySelectorAll("input")) {
+      if (this.#isUnread(input)) input.setAttribute("aria-invalid", "true");
+    }
+  }
+
+  #isUnread({ dataset: { row, column } }) {
+    return Boolean(this.#rows[row].unread?.includes(Number(column)));
+  }
+
+  /** Keeps the inputs where only their text has changed, so that the cursor stays in its cell. */
   #draw() {
     const rows = this.#rows.slice(0, this.#shown);
+    const wanted = JSON.stringify([this.#columns, rows.length, this.#rows.length]);
+    if (wanted === this.#drawn) return this.#fill();
+    this.#drawn = wanted;
     const table = document.createElement("table");
-    table.append(head(this.#columns), body(this.#columns, rows));
+    table.append(head(this.#noun, this.#columns), body(this.#columns, rows));
     this.#element.replaceChildren(table);
     const left = this.#rows.length - rows.length;
     if (left > 0) this.#element.append(button("more", `Show ${Math.min(left, PAGE)} more of ${left}`));
     this.#element.hidden = !this.#rows.length;
+    this.#fill();
+  }
+
+  #fill() {
+    for (const input of this.#element.querySelectorAll("input")) this.#write(input);
+    for (const each of this.#element.querySelectorAll(".remove")) {
+      each.setAttribute("aria-label", `Delete ${this.#rows[each.dataset.remove].name}`);
+    }
+  }
+
+  #write(input) {
+    const { row, column } = input.dataset;
+    const { name, cells } = this.#rows[row];
+    const named = column === "name";
+    input.value = named ? name : (cells[column] ?? "");
+    if (input.className) input.size = Math.max(input.value.length, 1);
+    const label = named ? `Name of ${this.#noun.toLowerCase()} ${Number(row) + 1}` : `${this.#columns[column].title} of ${name}`;
+    input.setAttribute("aria-label", label);
   }
 
   #changed({ dataset: { row, column }, value }) {
     if (column === "name") this.#told.onName(Number(row), value.trim());
-    else if (column !== undefined) this.#told.onNumber(Number(row), Number(column), value.trim());
+    else if (column !== undefined) this.#told.onCell(Number(row), Number(column), value.trim());
   }
 
   #clicked(target) {
@@ -57,9 +98,9 @@ export class StopsTable {
   }
 }
 
-function head(columns) {
+function head(noun, columns) {
   const row = document.createElement("tr");
-  const cells = ["Stop", ...columns].map((title) =>
+  const cells = [noun, ...columns.map(({ title }) => title)].map((title) =>
     Object.assign(document.createElement("th"), { scope: "col", textContent: title }),
   );
   row.append(...cells, document.createElement("td"));
@@ -71,12 +112,12 @@ function head(columns) {
 function body(columns, rows) {
   const made = document.createElement("tbody");
   made.append(
-    ...rows.map(({ name, numbers }, row) => {
+    ...rows.map((_, row) => {
       const line = document.createElement("tr");
       line.append(
-        cell(input(row, "name", name, `Name of stop ${row + 1}`)),
-        ...columns.map((title, column) => cell(input(row, column, numbers[column] ?? "", `${title} of ${name}`))),
-        cell(remove(row, name)),
+        cell(input(row, "name", { members: "id", text: true })),
+        ...columns.map((column, at) => cell(input(row, at, column))),
+        cell(remove(row)),
       );
       return line;
     }),
@@ -90,18 +131,18 @@ function cell(content) {
   return made;
 }
 
-function input(row, column, value, label) {
-  const made = Object.assign(document.createElement("input"), { value, autocomplete: "off" });
-  if (column !== "name") made.inputMode = "decimal";
-  Object.assign(made.dataset, { row, column });
-  made.setAttribute("aria-label", label);
+function input(row, column, { members = "", list, text }) {
+  const made = Object.assign(document.createElement("input"), { autocomplete: "off" });
+  if (text) made.className = "text";
+  else made.inputMode = "decimal";
+  if (list) made.setAttribute("list", list);
+  Object.assign(made.dataset, { row, column, members });
   return made;
 }
 
-function remove(row, name) {
+function remove(row) {
   const made = button("remove", "×");
   made.dataset.remove = row;
-  made.setAttribute("aria-label", `Delete ${name}`);
   return made;
 }
 

@@ -41,7 +41,7 @@ export class Maps {
    * @param {(stop: string | null) => void} onChoose called with the id of a fleet's stop that is chosen
    */
   constructor({ onClick, onMove, onDelete, onChoose }) {
-    const clicked = (plane, place) => onClick(plane, place, this.#form === "stops");
+    const clicked = (plane, place) => onClick(plane, place, this.#form === "stops" || Boolean(this.#kind.movers));
     this.#planes = new Planes([element("plane-1"), element("plane-2")], {
       onClick: clicked,
       onMove,
@@ -124,8 +124,10 @@ export class Maps {
     document.querySelector(".wide").hidden = !this.#kind.onGrid;
     if (this.#kind.onGrid) this.#grid.show(instance);
     else this.#planes.show(rows, fit, onEarth);
-    const movable = editable && EDITED.includes(this.#form);
-    this.#planes.edit(movable, !fit, movable || Boolean(this.#kind.movers && !this.#kind.onGrid));
+    const fleet = Boolean(this.#kind.movers && !this.#kind.onGrid);
+    // In planes both objectives of a fleet may have the same places.
+    const movable = editable && (EDITED.includes(this.#form) || (fleet && onEarth && drawn.length === 1));
+    this.#planes.edit(movable, !fit, movable || fleet);
     this.#onEarth = onEarth && rows.length > 0;
     this.#ways.lead(this.#onEarth ? rows.map((row) => row.slice(0, 2)) : []);
     this.#sayLines(null);

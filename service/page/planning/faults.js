@@ -1,6 +1,6 @@
 /** Show each fault of an error at its field. */
 
-const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end" };
+const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives" };
 for (const member of ["tour", "done", "remove", "add", "position"]) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
@@ -14,8 +14,10 @@ export function showFaults(problem) {
     const [member, row, part] = pointer.split("/").slice(1);
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const said = seen(document.getElementById(`${field}-fault`)) ?? document.getElementById("request-fault");
-    said.textContent ||= sentence(inWords(detail, field));
-    first ??= member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row, part);
+    const cell = cellOf(member, row, part);
+    said.textContent ||= sentence(cell ? ofCell(detail, cell) : inWords(detail, field));
+    if (cell) cell.setAttribute("aria-invalid", "true");
+    first ??= cell ?? (member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row, part));
   }
   first?.focus();
 }
@@ -36,12 +38,30 @@ export function clearFaults() {
 /** Says what is wrong with one field. */
 export function showFault(field, detail) {
   clearFaults();
-  document.getElementById(`${field}-fault`).textContent = sentence(detail);
+  tellFault(field, detail);
+}
+
+/** Says what is wrong with one field beside what is said of others. */
+export function tellFault(field, detail) {
+  document.getElementById(`${FIELD_OF[field] ?? field}-fault`).textContent = sentence(detail);
+}
+
+/** The cell of the table of stops or vehicles that a fault is about; null if there is none. */
+function cellOf(member, row, part) {
+  if (!part || !["stops", "vehicles"].includes(member)) return null;
+  return document.querySelector(`#${member} [data-row="${row}"][data-members~="${CSS.escape(part)}"]`);
+}
+
+/** The sentence of a fault with the cell by name, such as "Window of order-17". */
+function ofCell(detail, cell) {
+  return IN_CELLS.reduce((said, [pattern, instead]) => said.replace(pattern, instead), detail)
+    .replace(/^\w+\/\d+\/\w+(\/\d+)*/, cell.getAttribute("aria-label"))
+    .replace(/\b(stop|vehicle)s\/(\d+)/g, (_, item, at) => `${item} ${counted(at)}`);
 }
 
 function mark(name, row, part) {
   const of = part === "speed" ? part : "source";
-  const source = document.querySelector(`#${name} [data-axis="${row}"][data-member="${of}"]`);
+  const source = document.querySelector(`#${name === "objectives" ? "named" : name} [data-axis="${row}"][data-member="${of}"]`);
   const field = source ?? document.getElementById(name);
   if (!field) return null;
   field.setAttribute("aria-invalid", "true");
@@ -74,8 +94,19 @@ const counted = (index) => Number(index) + 1; // as people count
 const SAID = [
   [/^(start|end) must be a city, 0 to (\d+), got (-?\d+)/, (_, name, last, got) => `${name} must be a stop, 1 to ${counted(last)}, got ${counted(got)}`],
   [/^(start|end) must be the index of a city, as there are no stops with ids/, (_, name) => `${name} must be the number of a stop, as the stops have no names`],
+  [/^objectives\/1\/measure (\w+) needs/, (_, measure) => `the second objective, ${measure}, needs`],
+  [/\bmax_overtime\b/, () => "most overtime"],
+  [/^clock must be the name of an objective.*/, () => "times must be those of one of both objectives"],
   [/^end must not be the start.*/, () => "end must not be the start; leave it empty for a tour that returns"],
   [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or click it into place"],
+];
+
+// The same of sentences about the cells of tables.
+const IN_CELLS = [
+  [/needs the name of the objective that is time, in clock/, "needs times: choose below what windows, shifts and service are"],
+  [/must be a valid (integer|number|array)\b/, (_, type) => `must be ${{ integer: "a whole number", number: "a number", array: "a list" }[type]}`],
+  [/must be the id of a type of vehicles/, "must be the name of a vehicle"],
+  [/must be the id of a stop/, "must be the name of a stop"],
 ];
 
 /** Replaces names of members in the sentence of a fault by their labels on the page. */
@@ -85,7 +116,7 @@ function inWords(fault, field) {
   return detail
     .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
     .replace(/^objectives\/([0-3])\/speed\b/, (_, axis) => `the speed of the ${NTH[axis]} objective`)
-    .replace(/^objectives\/([0-3])\b/, (_, axis) => `the ${NTH[axis]} objective`)
+    .replace(/^objectives\/([0-3])(\/measure)?\b/, (_, axis) => `the ${NTH[axis]} objective`)
     .replace(/^(coordinates|stops)\/(\d+)\b/, (_, member, city) => `stop ${Number(city) + 1}`)
     .replace(/^(vehicle|shipment|robot)s\/(\d+)\b/, (_, item, at) => `${item} ${Number(at) + 1}`)
     .replace(new RegExp(`^${field}\\b`), label ?? field);

@@ -1,0 +1,121 @@
+/** The cells of the tables of a fleet: members of stops and vehicles as text, and text as their values. */
+
+import { SECONDS } from "../common/durations.js";
+import { clockUnit } from "./units.js";
+
+const [MINUTE, HOUR, MOST_HOURS] = [60, 3600, 1000]; // seconds, seconds, hours
+const TIME = /^(\d{1,3}):([0-5]\d)(?::([0-5]\d))?$/;
+const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+) ?s)?$/;
+const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
+const COUNTED = "a number in the unit of the times";
+
+/**
+ * The types of columns: how a value is written, and how a text is read, which is undefined if it is not
+ * understood. Both take the seconds in a unit of time, undefined if that is not known. `hint` says what to write.
+ */
+const TYPES = {
+  text: { write: String, read: (text) => text },
+  number: { write: String, read: number, hint: "a number" },
+  loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), number), hint: "whole numbers, as 2 or 2, 5" },
+  words: { write: listed, read: (text) => pieces(text, /[;,|]/) },
+  time: { write: timeText, read: time, hint: "a time, as 10:30" },
+  lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },
+  spans: {
+    write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
+    read: (text, second) => all(pieces(text, /[;,]/), (each) => span(each, second)),
+    hint: "two times, as 8:00-12:30, or several with ; between",
+  },
+  breaks: {
+    write: (value, second) => listOf(value).map((each) => `${spanText(each?.window, second)} ${lastingText(each?.length, second)}`).join("; "),
+    read: (text, second) => all(pieces(text, /;/), (each) => pause(each, second)),
+    hint: "when it may begin and how long it takes, as 12:00-13:00 30 min",
+  },
+};
+
+/** The seconds in a unit of a request's times: 1 if it has no clock yet, undefined if the unit is not known. */
+export const secondsIn = (asked) => (asked.clock ? SECONDS.get(clockUnit(asked)) : 1);
+
+/** The text of a stop's or vehicle's cell. What was not understood is shown as it was typed. */
+export function cellText(item, column, second) {
+  const value = valueOf(item, column);
+  return value === undefined || value === null ? "" : typeof value === "string" ? value : TYPES[column.type].write(value, second);
+}
+
+/** Whether a cell holds what is not understood. */
+export const isUnread = (item, column) => !["text", "words"].includes(column.type) && typeof valueOf(item, column) === "string";
+
+/** What to write into a cell of a column. */
+export const hintOf = ({ type }, second) => (!second && ["time", "spans", "lasting"].includes(type) ? COUNTED : TYPES[type].hint);
+
+/** A stop or vehicle with another text in one of its cells; without text, its member goes. */
+export function withText(item, { member, several, part, type }, text, second) {
+  const changed = { ...item };
+  const value = text && (TYPES[type].read(text, second) ?? text);
+  if (part !== undefined) return { ...changed, [member]: (item[member] ?? [0, 0]).with(part, value) };
+  for (const each of [member, several]) delete changed[each];
+  if (!text) return changed;
+  const many = several && Array.isArray(value) && value.length !== 1;
+  changed[many ? several : member] = several && !many && Array.isArray(value) ? value[0] : value;
+  return changed;
+}
+
+function valueOf(item, { member, several, part }) {
+  const value = item?.[several] ?? item?.[member];
+  return part === undefined ? value : value?.[part];
+}
+
+const listOf = (value) => (Array.isArray(value) ? value : [value]);
+const spansOf = (value) => (Array.isArray(value[0]) ? value : value.length ? [value] : []);
+const spanText = (span, second) => listOf(span).map((each) => timeText(each, second)).join("-");
+const pieces = (text, separator) => text.split(separator).map((each) => each.trim()).filter(Boolean);
+
+/** Texts as a list of values; undefined if one is not understood, or there is none. */
+function all(texts, read) {
+  const values = texts.map(read);
+  return values.length && values.every((each) => each !== undefined) ? values : undefined;
+}
+
+function listed(value) {
+  return listOf(value).join(", ");
+}
+
+function number(text) {
+  const value = Number(text.replace(",", "."));
+  return text.trim() && Number.isFinite(value) ? value : undefined;
+}
+
+function time(text, second) {
+  const [whole, hours, minutes, seconds = 0] = TIME.exec(text.trim()) ?? [];
+  if (!whole) return number(text);
+  return second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second;
+}
+
+function timeText(value, second) {
+  const seconds = value * second;
+  if (!Number.isInteger(seconds) || seconds < 0 || seconds >= MOST_HOURS * HOUR) return String(value);
+  const two = (part) => String(part).padStart(2, "0");
+  const minutes = `${Math.floor(seconds / HOUR)}:${two(Math.floor(seconds / MINUTE) % MINUTE)}`;
+  return seconds % MINUTE ? `${minutes}:${two(seconds % MINUTE)}` : minutes;
+}
+
+function lasting(text, second) {
+  const [whole, hours = 0, minutes = 0, seconds = 0] = LASTING.exec(text) ?? [];
+  return whole ? second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second : time(text, second);
+}
+
+function lastingText(value, second) {
+  const seconds = value * second;
+  if (!Number.isInteger(seconds) || seconds < 0) return String(value);
+  return seconds % MINUTE ? `${seconds} s` : `${seconds / MINUTE} min`;
+}
+
+function span(text, second) {
+  const ends = all(text.split(/\s*(?:[-–—]|\bto\b)\s*/), (each) => time(each, second));
+  return ends?.length === 2 ? ends : undefined;
+}
+
+function pause(text, second) {
+  const [, between, long] = BREAK.exec(text) ?? [];
+  const [window, length] = between ? [span(between, second), lasting(long, second)] : [];
+  return window && length !== undefined ? { window, length } : undefined;
+}

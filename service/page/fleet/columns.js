@@ -1,0 +1,46 @@
+/** The columns of the tables of a fleet, and which of them are shown. */
+
+/**
+ * Each has the `member` it is about, in lists the `part` of that, and `several` for a member that holds several
+ * instead of one; its `type`, as in `cells.js`; the `list` of proposals; and `always`, if it is shown even if empty.
+ */
+const OF_STOPS = [
+  { title: "Longitude", member: "location", part: 0, type: "number" },
+  { title: "Latitude", member: "location", part: 1, type: "number" },
+  { title: "Demand", member: "demand", type: "loads" },
+  { title: "Window", member: "window", several: "windows", type: "spans" },
+  { title: "Service", member: "service", type: "lasting" },
+  { title: "Due", member: "due", type: "time" },
+  { title: "Released", member: "release", type: "time" },
+  { title: "Skills", member: "skills", type: "words" },
+  { title: "Prize", member: "prize", type: "number" },
+  { title: "Served by", member: "vehicle", type: "text", list: "vehicle-names" },
+];
+const OF_VEHICLES = [
+  { title: "Count", member: "count", type: "number", always: true },
+  { title: "Capacity", member: "capacity", type: "loads", always: true },
+  { title: "Shift", member: "shift", several: "shifts", type: "spans", always: true },
+  { title: "Start", member: "start", type: "text", list: "stop-names" },
+  { title: "End", member: "end", type: "text", list: "stop-names" },
+  { title: "Skills", member: "skills", type: "words" },
+  { title: "Most stops", member: "max_stops", type: "number" },
+  { title: "Most overtime", member: "max_overtime", type: "lasting" },
+  { title: "Breaks", member: "breaks", type: "breaks" },
+  { title: "Loads again at", member: "reload", type: "words", list: "stop-names" },
+  { title: "Most trips", member: "max_trips", type: "number" },
+  { title: "Load at start", member: "initial_load", type: "loads" },
+  { title: "Longest route", member: "longest", type: "number" },
+  { title: "Cost of use", member: "fixed", type: "number" },
+];
+const ALL = { stops: OF_STOPS, vehicles: OF_VEHICLES };
+
+/** The columns of the table of `stops` or `vehicles` of a request. The limit on a route is a time if there is a clock. */
+export function columnsOf(table, { clock }) {
+  return ALL[table].map((column) => (column.member === "longest" && clock ? { ...column, type: "lasting" } : column));
+}
+
+/** The columns that are shown: those that a row has something for, those that always are, and members that were added. */
+export const isShown = ({ member, several, always }, rows, added) =>
+  always || added.has(member) || rows.some((row) => isGiven(row?.[member]) || isGiven(row?.[several]));
+
+const isGiven = (value) => value !== undefined && value !== null && (!Array.isArray(value) || value.length > 0);

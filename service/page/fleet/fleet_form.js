@@ -1,0 +1,163 @@
+/** The form of a fleet: the tables of its stops and vehicles, what is traded, and the columns to add. */
+
+import { tellFault } from "../planning/faults.js";
+import { counted } from "../common/numbers.js";
+import { EditableTable } from "../inputs/table.js";
+import { ObjectiveFields } from "../inputs/objective_fields.js";
+import { cellText, hintOf, isUnread, secondsIn, withText } from "./cells.js";
+import { columnsOf, isShown } from "./columns.js";
+import { vehiclesIn } from "./fleet_request.js";
+import { byIds, vehicleRenamed, withVehicle } from "./references.js";
+import { AGAINST, againstOf, doubtOfTimes, isTraded, timedBy, timesOf, tradedAgainst } from "./trade.js";
+
+const element = (id) => document.getElementById(id);
+const TIMES = { "": "There are no times", first: "Those of the first objective", second: "Those of the second objective", own: "Times of their own" };
+
+export class FleetForm {
+  #onChange;
+  #stops;
+  #vehicles;
+  #objectives;
+  #clock;
+  #asked = null; // the request of the fleet; null if there is none
+  #added = { stops: new Set(), vehicles: new Set() }; // members whose columns are shown though they are empty
+
+  /**
+   * @param {EditableTable} stops the table of stops
+   * @param {(asked: object) => void} onChange called with the changed request
+   */
+  constructor(stops, onChange) {
+    this.#stops = stops;
+    this.#onChange = onChange;
+    this.#vehicles = new EditableTable(
+      element("vehicles"),
+      {
+        onName: (row, text) => onChange(vehicleRenamed(this.#asked, row, text)),
+        onCell: (...cell) => this.write("vehicles", ...cell),
+        onDelete: (row) => onChange({ ...this.#asked, vehicles: this.#asked.vehicles.toSpliced(row, 1) }),
+      },
+      "Vehicle",
+    );
+    this.#objectives = new ObjectiveFields(element("fleet-objectives"), (axis, change) => this.#measure(axis, change));
+    this.#clock = new ObjectiveFields(element("fleet-clock"), (_, change) => onChange({ ...this.#asked, clock: { ...this.#asked.clock, ...change } }));
+    element("add-vehicle").addEventListener("click", () => this.#addVehicle());
+    element("against").addEventListener("change", ({ target }) => this.#trade(target.value));
+    element("times").addEventListener("change", ({ target }) => this.#onTrade(timedBy(this.#asked, target.value)));
+    element("widen").addEventListener("click", ({ target }) => target.setAttribute("aria-pressed", target.getAttribute("aria-pressed") !== "true"));
+    for (const table of ["stops", "vehicles"]) {
+      element(`${table}-column`).addEventListener("change", ({ target }) => this.#addColumn(table, target.value));
+    }
+  }
+
+  /** Takes the request of a fleet that is opened; null if it is of another kind. */
+  open(asked) {
+    this.#asked = asked;
+    this.#added = { stops: new Set(), vehicles: new Set() };
+    for (const each of document.querySelectorAll(".of-fleet")) each.hidden = !asked;
+    element("objectives").hidden = Boolean(asked);
+    if (asked) this.#showTrade();
+  }
+
+  /** Shows both tables of a changed request. */
+  show(asked) {
+    this.#asked = asked;
+    const second = secondsIn(asked);
+    this.#show("stops", this.#stops, second);
+    this.#show("vehicles", this.#vehicles, second);
+    element("vehicle-count").textContent = counted(vehiclesIn(asked), "vehicle", "vehicles");
+    element("vehicle-names").replaceChildren(...asked.vehicles.map((each) => new Option(each?.id)));
+  }
+
+  /** Marks the cells that are not understood, and says what the first of each table must be; faults were cleared before. */
+  mark() {
+    const second = secondsIn(this.#asked);
+    for (const [name, table] of [["stops", this.#stops], ["vehicles", this.#vehicles]]) {
+      table.mark();
+      const columns = this.#shown(name);
+      const item = this.#items(name).find((one) => columns.some((each) => isUnread(one, each)));
+      if (item) tellFault(name, unread(item, columns.find((each) => isUnread(item, each)), second));
+    }
+    const doubt = doubtOfTimes(this.#asked);
+    if (doubt) tellFault("objectives", doubt);
+  }
+
+  /** Takes the text of a cell. */
+  write(table, row, column, text) {
+    const items = this.#items(table);
+    const item = withText(items[row], this.#shown(table)[column], text, secondsIn(this.#asked));
+    this.#onChange({ ...this.#asked, [table]: items.with(row, item) });
+  }
+
+  #items(table) {
+    return this.#asked[table] ?? [];
+  }
+
+  #shown(table) {
+    return columnsOf(table, this.#asked).filter((each) => isShown(each, this.#items(table), this.#added[table]));
+  }
+
+  #show(name, table, second) {
+    const columns = this.#shown(name);
+    const items = byIds(this.#asked)[name] ?? [];
+    const headed = columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: type !== "number" }));
+    const rows = items.map((item) => ({
+      name: item?.id ?? "",
+      cells: columns.map((each) => cellText(item, each, second)),
+      unread: columns.flatMap((each, at) => (isUnread(item, each) ? [at] : [])),
+    }));
+    table.show(headed, rows);
+    const missing = columnsOf(name, this.#asked).filter((each) => !columns.some(({ title }) => title === each.title) && each.part === undefined);
+    element(`${name}-column`).replaceChildren(new Option("Add a column", ""), ...missing.map(({ title, member }) => new Option(title, member)));
+  }
+
+  #addColumn(name, member) {
+    this.#added[name].add(member);
+    this.show(this.#asked);
+    const table = name === "stops" ? this.#stops : this.#vehicles;
+    table.focus(0, this.#shown(name).findIndex((each) => each.member === member));
+  }
+
+  #addVehicle() {
+    this.#onChange(withVehicle(this.#asked));
+    this.#vehicles.focus(this.#asked.vehicles.length - 1);
+  }
+
+  /** Takes another second objective, and shows the columns that it needs. */
+  #trade(key) {
+    for (const table of ["stops", "vehicles"]) if (AGAINST[key][table]) this.#added[table].add(AGAINST[key][table]);
+    this.#onTrade(tradedAgainst(this.#asked, key));
+  }
+
+  #onTrade(asked) {
+    this.#onChange(asked);
+    this.#showTrade();
+  }
+
+  /** Takes a new member of an objective; the clock keeps its objective under another name. */
+  #measure(axis, change) {
+    const { objectives, clock } = this.#asked;
+    const named = change.name && clock === objectives[axis].name ? { clock: change.name } : {};
+    this.#onChange({ ...this.#asked, ...named, objectives: objectives.with(axis, { ...objectives[axis], ...change }) });
+  }
+
+  #showTrade() {
+    const traded = isTraded(this.#asked);
+    for (const each of document.querySelectorAll(".trade > *")) each.hidden = !traded;
+    const times = traded && timesOf(this.#asked);
+    if (!traded) return;
+    const { objectives, clock } = this.#asked;
+    this.#objectives.show(objectives, true);
+    this.#clock.show(times === "own" ? [clock] : [], true, ["Times"]);
+    choose("against", Object.entries(AGAINST).map(([key, { title }]) => [key, title]), againstOf(this.#asked));
+    const offered = Object.entries(TIMES).filter(([key]) => key !== (objectives[1].measure ? "second" : "own"));
+    choose("times", offered, times ?? "");
+  }
+}
+
+function choose(id, options, value) {
+  element(id).replaceChildren(...options.map(([key, title]) => new Option(title, key)));
+  element(id).value = value;
+}
+
+const unread = (item, column, second) =>
+  `${column.title} of ${item.id} is not understood, got “${cellText(item, column, second)}”: write ${hintOf(column, second)}`;

@@ -1,0 +1,60 @@
+/** What a fleet trades for its first objective, and what its times are measured by. */
+
+import { clockUnit } from "./units.js";
+
+const SPEED = 30; // km/h, until another is typed
+const STRAIGHT = { from: "great_circle" };
+
+/** The second objectives, by their measure or by `over` of their costs, each with its title and its name. */
+export const AGAINST = {
+  max: { title: "Longest route", name: "longest route" },
+  sum: { title: "Total of other costs", name: "other costs" },
+  vehicles: { title: "Vehicles used", name: "vehicles" },
+  unassigned: { title: "Orders left out", name: "orders left out", stops: "prize" },
+  overtime: { title: "Overtime", name: "overtime", vehicles: "max_overtime" },
+  lateness: { title: "Lateness", name: "lateness", stops: "due" },
+};
+
+/** Whether the objectives of a request can be chosen here. */
+export const isTraded = ({ objectives }) => Array.isArray(objectives) && objectives.length === 2 && objectives.every((each) => each?.name);
+
+/** The key in AGAINST of a request's second objective. */
+export const againstOf = ({ objectives: [, { measure, over = "sum" }] }) => measure ?? over;
+
+/** The request with another second objective. Its costs become those of the clock if they were, and back. */
+export function tradedAgainst(asked, key) {
+  const [first, second] = asked.objectives;
+  const { name } = AGAINST[key];
+  const { clock, ...others } = asked;
+  const timed = (made) => ({ ...others, objectives: [first, made], ...(clock && { clock }) });
+  if (key !== "max" && key !== "sum") {
+    const kept = { ...timed({ name, measure: key }) };
+    const { over: _, ...costs } = second;
+    return !second.measure && clock === second.name ? { ...kept, clock: { ...costs, name: "time" } } : kept;
+  }
+  if (!second.measure) return { ...timed({ ...second, name, over: key }), ...(clock === second.name && { clock: name }) };
+  if (clock && typeof clock === "object") return { ...timed({ ...clock, name, over: key }), clock: name };
+  return timed({ ...STRAIGHT, name, over: key });
+}
+
+/** What the times of a request are: those of its `first` or `second` objective, of their `own`, or null. */
+export function timesOf({ clock, objectives }) {
+  if (!clock) return null;
+  if (typeof clock === "object") return "own";
+  return clock === objectives[0].name ? "first" : "second";
+}
+
+/** The request with other times. Metres in straight lines become seconds at a speed. */
+export function timedBy(asked, times) {
+  const { clock: _, ...others } = asked;
+  if (!times) return others;
+  if (times === "own") return { ...others, clock: { name: "time", ...STRAIGHT, speed: SPEED } };
+  const axis = times === "first" ? 0 : 1;
+  const objective = asked.objectives[axis];
+  const timed = objective.from === "great_circle" ? { ...objective, speed: objective.speed ?? SPEED } : objective;
+  return { ...others, objectives: asked.objectives.with(axis, timed), clock: objective.name };
+}
+
+/** What is wrong with the times of a request that the service takes as they are; "" if nothing is. */
+export const doubtOfTimes = (asked) =>
+  clockUnit(asked) === "m" ? "Times are measured in metres here: choose a measure that is a time, or a speed." : "";

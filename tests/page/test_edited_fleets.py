@@ -1,0 +1,213 @@
+"""Fleets edited on the page: tables of stops and vehicles, objectives, and stops on the map."""
+
+import json
+from collections.abc import Iterator
+from copy import deepcopy
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from tests.helpers.accessibility import check_on_a_phone
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    shown_front,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+HOUR, MINUTE = 3600, 60
+WINDOWS = [[8 * HOUR, 8.5 * HOUR], [10 * HOUR, 11 * HOUR]]
+FLEET: dict[str, Any] = {
+    "stops": [
+        {"id": "depot", "location": [24.941, 60.171]},
+        {"id": "order-17", "location": [24.952, 60.169]},
+        {"id": "order-18", "location": [24.933, 60.165], "demand": [3]},
+        {
+            "id": "order-19",
+            "location": [24.925, 60.18],
+            "windows": [[28800, 30600], [36000, 39600]],
+        },
+    ],
+    "vehicles": [
+        {"id": "van", "count": 2, "start": 0, "end": "depot", "capacity": [8]},
+        {"id": "bike", "start": "depot", "end": "depot", "capacity": [3]},
+    ],
+    "shipments": [{"pickup": "order-18", "delivery": "order-17"}],
+    "objectives": [
+        {"name": "distance", "from": "great_circle"},
+        {"name": "time", "from": "great_circle", "speed": 30, "over": "max"},
+    ],
+    "clock": "time",
+    "seed": 7,
+    "time_limit": 0.2,
+}
+
+
+@pytest.fixture(scope="module")
+def window(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all of these tests, each of which opens the fleet again."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+@pytest.fixture
+def fleet(window: Page) -> Page:
+    """The page with the fleet opened, and not planned."""
+    window.get_by_role("button", name="Clear").click()
+    expect(window.locator("#count")).to_have_text("0 stops")
+    open_files(window, {"fleet.json": json.dumps(FLEET)})
+    expect(window.locator("#brought")).to_have_text("A fleet: 3 vehicles and 4 stops.")
+    return window
+
+
+def cell(page: Page, name: str) -> Locator:
+    """Return the cell of a table by its name, such as "Window of order-17"."""
+    return page.get_by_label(name, exact=True)
+
+
+def write(page: Page, name: str, text: str) -> None:
+    """Write a text into a cell, and leave it."""
+    cell(page, name).fill(text)
+    cell(page, name).press("Tab")
+
+
+def edited(**members: Any) -> dict[str, Any]:
+    return {**deepcopy(FLEET), **members}
+
+
+def plan(page: Page) -> None:
+    page.get_by_role("button", name="Plan", exact=True).click()
+
+
+def test_cells_are_written_as_people_write_times_and_amounts(fleet: Page) -> None:
+    """What the tables do not show, and what was not written, stays as it was."""
+    expect(cell(fleet, "Window of order-19")).to_have_value("8:00-8:30; 10:00-11:00")
+    expect(cell(fleet, "Start of van")).to_have_value("depot")
+    write(fleet, "Demand of order-18", "1")
+    write(fleet, "Window of order-17", "8:30-10:00")
+    write(fleet, "Window of order-19", "")
+    fleet.get_by_label("Add a column to the stops").select_option("Service")
+    expect(cell(fleet, "Service of depot")).to_be_focused()
+    write(fleet, "Service of order-17", "5 min")
+    write(fleet, "Service of order-18", "0:05:30")
+    write(fleet, "Count of van", "3")
+    write(fleet, "Shift of bike", "28800 to 12:00")
+    fleet.get_by_label("Add a column to the vehicles").select_option("Breaks")
+    write(fleet, "Breaks of van", "11:30-12:30 30 min")
+    expect(cell(fleet, "Shift of bike")).to_have_value("8:00-12:00")
+    wanted = edited()
+    first, second, third = wanted["stops"][1:]
+    first |= {"window": [8.5 * HOUR, 10 * HOUR], "service": 5 * MINUTE}
+    second |= {"demand": [1], "service": 330}
+    del third["windows"]
+    van, bike = wanted["vehicles"]
+    van |= {"count": 3, "breaks": [{"window": [11.5 * HOUR, 12.5 * HOUR], "length": 30 * MINUTE}]}
+    bike["shift"] = [8 * HOUR, 12 * HOUR]
+    asked = curl_body(fleet, "fleet")
+    assert {name: asked[name] for name in wanted} == wanted
+    expect(fleet.locator("#brought")).to_have_text("A fleet: 4 vehicles and 4 stops.")
+
+
+def test_new_names_are_taken_over_wherever_they_are_used(fleet: Page) -> None:
+    fleet.get_by_label("Add a column to the stops").select_option("Served by")
+    write(fleet, "Served by of order-19", "bike")
+    write(fleet, "Name of vehicle 2", "cargo bike")
+    write(fleet, "Name of stop 1", "yard")
+    write(fleet, "Name of stop 2", "o17")
+    asked = curl_body(fleet, "fleet")
+    assert [(each["start"], each["end"]) for each in asked["vehicles"]] == [("yard", "yard")] * 2
+    assert asked["shipments"] == [{"pickup": "order-18", "delivery": "o17"}]
+    assert asked["stops"][3]["vehicle"] == "cargo bike"
+    fleet.get_by_role("button", name="Delete order-18").click()
+    assert [each["id"] for each in curl_body(fleet, "fleet")["stops"]] == [
+        "yard",
+        "o17",
+        "order-19",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("Window of order-17", "tomorrow", "Window of order-17 is not understood, got “tomorrow”"),
+        ("Demand of order-18", "two", "Demand of order-18 is not understood, got “two”"),
+        ("Capacity of bike", "big", "Capacity of bike is not understood, got “big”"),
+        ("Window of order-17", "10:00-9:00", "Window of order-17 must not end before it begins"),
+        ("Count of van", "0", "Count of van must be at least 1, got 0."),
+        ("Start of bike", "deopt", "Start of bike must be the name of a stop"),
+    ],
+)
+def test_a_cell_that_cannot_be_planned_with_is_marked(
+    fleet: Page, name: str, text: str, said: str
+) -> None:
+    write(fleet, name, text)
+    faults = fleet.locator("#cities-fault, #vehicles-fault")
+    if "understood" in said:
+        expect(faults.filter(has_text=said)).to_be_visible()
+        expect(cell(fleet, name)).to_have_attribute("aria-invalid", "true")
+    plan(fleet)
+    expect(cell(fleet, name)).to_be_focused()
+    expect(cell(fleet, name)).to_have_attribute("aria-invalid", "true")
+    expect(faults.filter(has_text=said)).to_be_visible()
+    expect(fleet.locator("#fleet")).to_be_hidden()
+
+
+def test_objectives_are_chosen_from_a_list(fleet: Page) -> None:
+    against = fleet.get_by_label("First objective against")
+    expect(against).to_have_value("max")
+    against.select_option("Vehicles used")
+    asked = curl_body(fleet, "fleet")
+    assert asked["objectives"][1] == {"name": "vehicles", "measure": "vehicles"}
+    assert asked["clock"] == {"name": "time", "from": "great_circle", "speed": 30}
+    against.select_option("Lateness")
+    write(fleet, "Due of order-17", "9:15")
+    plan(fleet)
+    wait_until_planned(fleet)
+    assert shown_front(fleet)["objectives"][1]["measure"] == "lateness"
+    against.select_option("Longest route")
+    asked = curl_body(fleet, "fleet")
+    assert asked["objectives"][1] == {
+        **{"name": "longest route", "over": "max"},
+        **{"from": "great_circle", "speed": 30},
+    }
+    assert asked["clock"] == "longest route"
+
+
+def test_a_clock_in_metres_is_not_taken_in_silence(fleet: Page) -> None:
+    fleet.get_by_label("What the second objective is measured by").select_option(
+        "Straight lines, m"
+    )
+    expect(fleet.locator("#objectives-fault")).to_contain_text("Times are measured in metres")
+    times = fleet.get_by_label("Windows, shifts and service are")
+    times.select_option("There are no times")
+    expect(fleet.locator("#objectives-fault")).to_be_empty()
+    plan(fleet)
+    expect(fleet.locator("#cities-fault")).to_contain_text("Window of order-19 needs times")
+    fleet.get_by_label("Windows, shifts and service are").select_option(
+        "Those of the second objective"
+    )
+    assert curl_body(fleet, "fleet")["objectives"][1]["speed"] == 30
+
+
+def test_stops_and_vehicles_are_added_and_moved(fleet: Page) -> None:
+    fleet.locator("form").get_by_role("button", name="Add", exact=True).first.click()
+    expect(cell(fleet, "Name of stop 5")).to_be_focused()
+    fleet.locator("#add-vehicle").click()
+    expect(cell(fleet, "Name of vehicle 3")).to_be_focused()
+    board = fleet.locator("#plane-1")
+    board.press("Enter")
+    board.press("ArrowRight")
+    asked = curl_body(fleet, "fleet")
+    assert [len(asked[each]) for each in ("stops", "vehicles")] == [5, 3]
+    east, _ = asked["stops"][0]["location"]
+    assert east > FLEET["stops"][0]["location"][0]
+    plan(fleet)
+    wait_until_planned(fleet)
+    expect(fleet.locator("#fleet")).to_be_visible()
+    check_on_a_phone(fleet)
