@@ -33,6 +33,7 @@ const result = new Result({
     if (input.priced) say("Moved. Costs given as a matrix did not change.");
   },
   onDelete: (city) => input.deleteCity(city),
+  onServe: (...served) => (input.serve(...served), plan()),
 });
 const input = new RequestForm(form, service, edited, settled);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);

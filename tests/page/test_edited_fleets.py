@@ -166,6 +166,8 @@ def test_objectives_are_chosen_from_a_list(fleet: Page) -> None:
     assert asked["objectives"][1] == {"name": "vehicles", "measure": "vehicles"}
     assert asked["clock"] == {"name": "time", "from": "great_circle", "speed": 30}
     against.select_option("Lateness")
+    plan(fleet)
+    expect(fleet.locator("#objectives-fault")).to_contain_text("needs stops that are due")
     write(fleet, "Due of order-17", "9:15")
     plan(fleet)
     wait_until_planned(fleet)
@@ -211,3 +213,18 @@ def test_stops_and_vehicles_are_added_and_moved(fleet: Page) -> None:
     wait_until_planned(fleet)
     expect(fleet.locator("#fleet")).to_be_visible()
     check_on_a_phone(fleet)
+
+
+def test_a_chosen_stop_is_served_by_another_vehicle_and_planned_again(fleet: Page) -> None:
+    plan(fleet)
+    wait_until_planned(fleet)
+    expect(fleet.get_by_label("Serve it by")).to_be_hidden()
+    fleet.locator("#fleet-lanes").get_by_role("button", name="order-19").first.click()
+    fleet.get_by_label("Serve it by").select_option("bike")
+    expect(cell(fleet, "Served by of order-19")).to_have_value("bike")
+    expect(fleet.locator("#fleet")).to_be_visible()
+    wait_until_planned(fleet)
+    routes = [route for each in shown_front(fleet)["front"] for route in each["routes"]]
+    assert {each["vehicle"] for each in routes if "order-19" in each["stops"]} == {"bike"}
+    expect(fleet.get_by_label("Serve it by")).to_have_value("bike")
+    expect(fleet.locator("#fleet-stop")).to_contain_text("bike arrives")

@@ -9,16 +9,21 @@ export class ChosenVisit {
   #element;
   #lanes; // the Lanes that mark it
   #onChoose;
+  #onStop;
   #stop = null; // its id
   #plan = { routes: [] };
   #shown = []; // the lanes that are shown
   #clock = null;
 
-  /** @param {(stop: string | null) => void} onChoose called with the stop that is chosen in a lane */
-  constructor(element, lanes, onChoose) {
+  /**
+   * @param {(stop: string | null) => void} onChoose called with the stop that is chosen in a lane
+   * @param {(stop: string | null) => void} onStop called with the stop that is chosen anywhere
+   */
+  constructor(element, lanes, onChoose, onStop) {
     this.#element = element;
     this.#lanes = lanes;
     this.#onChoose = onChoose;
+    this.#onStop = onStop;
   }
 
   /** Takes another plan, in which the same stop stays chosen. */
@@ -33,12 +38,14 @@ export class ChosenVisit {
     const { stop } = this.#shown[place.lane].visits[place.at];
     this.#onChoose(stop);
     this.#stop = stop;
+    this.#onStop(stop);
     this.#mark(place);
   }
 
   /** Chooses a stop by its id; null chooses none. */
   chooseStop(stop) {
     this.#stop = stop;
+    this.#onStop(stop);
     const places = stop === null ? [] : this.#placesOf(stop);
     if (places.length <= 1 && stop !== null && this.#clock) return this.#mark(places[0] ?? null);
     this.#lanes.choose(null);

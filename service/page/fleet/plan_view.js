@@ -9,6 +9,7 @@ import { Lanes } from "./lanes.js";
 import { leftOut, reason } from "./left_out.js";
 import { showLegend } from "./legend.js";
 import { namesOf } from "./routes_of_plan.js";
+import { ServeBy } from "./serve_by.js";
 import { clockOf } from "./times.js";
 import { clockUnit } from "./units.js";
 import { visitTimes } from "./visit_times.js";
@@ -23,10 +24,14 @@ export class PlanView {
   #plan = null;
   #movers = null; // of its routes
 
-  /** @param {(stop: string | null) => void} onChoose called with the stop that is chosen in a lane */
-  constructor(onChoose) {
+  /**
+   * @param {(stop: string | null) => void} onChoose called with the stop that is chosen in a lane
+   * @param {(stop: string, vehicle: string) => void} onServe called with a stop and the vehicles that are to serve it
+   */
+  constructor(onChoose, onServe) {
+    const serveBy = new ServeBy(onServe);
     this.#lanes = new Lanes(element("fleet-lanes"), (lane, at) => this.#chosen.choose({ lane, at }));
-    this.#chosen = new ChosenVisit(element("fleet-stop"), this.#lanes, onChoose);
+    this.#chosen = new ChosenVisit(element("fleet-stop"), this.#lanes, onChoose, (stop) => serveBy.show(stop, knownFleet(this.#asked)));
   }
 
   /** Takes the request whose plans will be shown. */

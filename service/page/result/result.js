@@ -29,7 +29,7 @@ export class Result {
   #growth;
   #slider;
   #several;
-  #planView = new PlanView((stop) => this.#maps.choose(stop));
+  #planView;
   #asked = {}; // the request, as far as it is known
   #kind = kindOf({}); // of the front
   #front = [];
@@ -45,8 +45,9 @@ export class Result {
   #id = null; // the id of the front, once it is final
   #routed = null; // set if the service has a routing engine
 
-  /** @param {object} edited callbacks for clicks on the maps, and for stops moved and deleted: see Maps */
+  /** @param {object} edited callbacks for clicks on the maps, for stops moved and deleted: see Maps; and `onServe`: see PlanView */
   constructor(edited) {
+    this.#planView = new PlanView((stop) => this.#maps.choose(stop), edited.onServe);
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps({ ...edited, onChoose: (stop) => this.#planView.choose(stop) });
     const onPreview = (index) => this.#preview(index);
