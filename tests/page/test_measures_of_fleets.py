@@ -227,7 +227,7 @@ def test_a_stop_says_why_it_is_late_by_a_click_and_by_keys(late: Page) -> None:
     # The same stop stays chosen in another plan.
     select(late, "End")
     expect(said).to_contain_text("far: open 9:00 to 9:30, begins 9:10")
-    expect(late.locator("#handling")).to_be_hidden()
+    expect(late.locator("#stop-help")).to_contain_text("far is chosen. Drag it")
 
 
 def test_routes_name_their_day_and_count_no_depot_as_a_stop(late: Page) -> None:
