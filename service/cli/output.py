@@ -107,18 +107,23 @@ def front_as_rows(front: Front, ids: Ids | None = None) -> Rows:
     """
     numbered = [f"length_{number + 1}" for number in range(front.lengths.shape[1])]
     columns = numbered if front.objectives is None else _names(front)
-    flat = front.lengths.shape[1] == OBJECTIVES
-    angles = front.angles[:, np.newaxis].tolist() if flat else [[]] * len(front.angles)
+    before = {"angle": front.angles} if front.lengths.shape[1] == OBJECTIVES else {}
+    if front.departures is not None:
+        before["departure"] = front.departures
     rows = [
-        (*angle, *lengths.tolist(), csv_text([stops_of(tour, ids)], delimiter=" "))
-        for angle, lengths, tour in zip(angles, front.lengths, front.tours, strict=True)
+        (*(float(values[k]) for values in before.values()), *lengths.tolist(), _cities(tour, ids))
+        for k, (lengths, tour) in enumerate(zip(front.lengths, front.tours, strict=True))
     ]
-    return [(*(("angle",) if flat else ()), *columns, "tour"), *rows]
+    return [(*before, *columns, "tour"), *rows]
+
+
+def _cities(tour: NDArray[np.int64], ids: Ids | None) -> str:
+    return csv_text([stops_of(tour, ids)], delimiter=" ")
 
 
 def plans_as_rows(front: FrontOfPlans, movers: Movers) -> Rows:
     """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops."""
-    names = [each.name for each in front.objectives]
+    names = front.names
     of_routes = [f"route {name}" for name in names]
     rows: Rows = [("plan", "balance", *names, movers.heading, *of_routes, movers.visited)]
     plans: Sequence[FleetPlan | RobotPlan] = front.plans
@@ -153,7 +158,8 @@ def named_tours(front: Front) -> Table:
 def plans_as_table(front: FrontOfPlans, movers: Movers) -> Table:
     """Return a table with a row for each plan."""
     rows = []
-    for number, plan in enumerate(front.plans):
+    plans: Sequence[FleetPlan | RobotPlan] = front.plans
+    for number, plan in enumerate(plans):
         lengths = (f"{length:.6g}" for length in plan.lengths)
         counts = (str(count(plan)) for count in movers.counts.values())
         rows.append((str(number), f"{plan.balance:.3f}", *lengths, *counts))
@@ -180,16 +186,23 @@ def _table(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> Table:
 
 
 def _positions(front: Front) -> tuple[str, ...]:
-    """Return the headings of what says where a tour of two objectives stands between them."""
-    return ("balance", "angle") if front.lengths.shape[1] == OBJECTIVES else ()
+    """Return the headings of what comes before the lengths: where a tour of two objectives stands.
+
+    And when it begins, over the day.
+    """
+    between = ("balance", "angle") if front.lengths.shape[1] == OBJECTIVES else ()
+    return between if front.departures is None else (*between, "departure")
 
 
 def _cells(front: Front, index: int) -> tuple[str, ...]:
-    """Return all lengths of a tour; of two objectives after its balance and angle."""
-    lengths = (f"{length:.6g}" for length in front.lengths[index])
-    if not _positions(front):
-        return tuple(lengths)
-    return (f"{front.balances[index]:.3f}", f"{front.angles[index]:.2f}", *lengths)
+    """Return all lengths of a tour, after what `_positions` has."""
+    cells = [f"{length:.6g}" for length in front.lengths[index]]
+    if front.departures is not None:
+        minutes, seconds = divmod(round(front.departures[index]), 60)
+        cells.insert(0, f"{minutes // 60:02}:{minutes % 60:02}:{seconds:02}")
+    if front.lengths.shape[1] != OBJECTIVES:
+        return tuple(cells)
+    return (f"{front.balances[index]:.3f}", f"{front.angles[index]:.2f}", *cells)
 
 
 def named_points(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> dict[str, int]:

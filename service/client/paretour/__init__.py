@@ -10,11 +10,14 @@ AsyncClient is the same for asynchronous programs. Both send the requests of `ca
 events of `events`. They only need the address of a service.
 """
 
+from importlib.metadata import PackageNotFoundError, version
+
 from paretour.actors import Actor
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
+from paretour.fronts import Objective
 from paretour.kinds import FrontOfAnyKind
 from paretour.members import (
     CoverageRequest,
@@ -32,13 +35,17 @@ from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import (
     Front,
-    Objective,
     Path,
     Progress,
     Tour,
     Uncovered,
     UncoveredRegion,
 )
+
+try:
+    __version__ = version("paretour-client")
+except PackageNotFoundError:  # it came with the whole of Paretour
+    __version__ = version("paretour")
 
 __all__ = [
     "Actor",

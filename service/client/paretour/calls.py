@@ -297,6 +297,11 @@ def described_as(call: Callable[..., Any]) -> Callable[[Method], Method]:
     return decorate
 
 
+def address_of(url: str) -> str:
+    """Return a URL with a scheme: that of localhost:8000 is http."""
+    return url if "://" in url else f"http://{url}"
+
+
 def client_headers(api_key: str | None) -> dict[str, str]:
     """Return the headers of every request: the accepted encoding, and the API key if any."""
     return ACCEPTED if api_key is None else {**ACCEPTED, "Authorization": f"Bearer {api_key}"}

@@ -44,6 +44,12 @@ class StopRequest(TypedDict, total=False):
     location: ArrayLike | None
 
 
+class ServedStopRequest(StopRequest, total=False):
+    """A stop of a front over the day, and the seconds of a visit."""
+
+    service: float
+
+
 # Written as a call because `from` is a keyword. It is great_circle, road_time or road_distance.
 # With a speed in km/h, great_circle is seconds, not metres.
 ObjectiveRequest = TypedDict(
@@ -55,6 +61,8 @@ ObjectiveRequest = TypedDict(
         "coordinates": ArrayLike,
         "from": str,
         "speed": float | None,
+        "over_the_day": ArrayLike,
+        "slices": Sequence[Mapping[str, Any]],
     },
     total=False,
 )
@@ -84,10 +92,12 @@ class FrontRequest(PlanRequest, total=False):
 
     coordinates: ArrayLike
     matrices: ArrayLike | Sequence[Costs]
-    stops: Sequence[StopRequest] | Frame
+    stops: Sequence[ServedStopRequest] | Frame
     objectives: Sequence[ObjectiveRequest]
     start: int | str | None
     end: int | str | None
+    departure: float | Mapping[str, float]
+    clock: str
     augment: int
 
 
@@ -252,6 +262,7 @@ class ReplanRequest(PlanOptions, total=False):
     remove: Sequence[int | str] | ArrayLike
     costs: Sequence[Mapping[str, Any]]
     objectives: Sequence[ObjectiveRequest]
+    now: float
     tour: Sequence[int | str] | ArrayLike
     min_kept: float
     geometry: Literal["straight", "roads"]

@@ -1,19 +1,19 @@
 """Fronts of plans, for the vehicles of a fleet or for robots on a map, as immutable values."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Generic, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import Choice, choose
+from paretour.display import counted, numbers
 from paretour.expect import Read, count, each, floats, indexes, members, number, text
+from paretour.fronts import Array, Item, StoredFront
 from paretour.values import (
     PAIR,
-    Array,
-    Objective,
     Path,
-    StoredFront,
     Uncovered,
     objectives_of,
     parse_path,
@@ -63,17 +63,23 @@ class RobotRoute:
     path: Path | None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Plan:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _Plan(Generic[Item]):
     """A plan of a front: routes of the vehicles or robots used.
 
     Attributes:
         balance: 0 at the least first length of the front, 1 at the least second.
         lengths: Its lengths, shape (2,).
+        routes: The routes of those that leave.
     """
 
     balance: float
     lengths: Array
+    routes: tuple[Item, ...]
+
+    def __repr__(self) -> str:
+        routes = counted(len(self.routes), "route")
+        return f"<{type(self).__name__} of {routes}: lengths {numbers(self.lengths)}>"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,12 +109,11 @@ class LeftOut:
     reasons: tuple[Reason, ...]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FleetPlan(_Plan):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FleetPlan(_Plan[FleetRoute]):
     """A plan for the vehicles of a fleet.
 
     Attributes:
-        routes: The routes of the vehicles that leave.
         unassigned: The ids of the stops that it leaves out.
         measures: What plans are compared by, as far as the request allows: vehicles, driving,
             service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned.
@@ -117,43 +122,86 @@ class FleetPlan(_Plan):
             the same stops.
     """
 
-    routes: tuple[FleetRoute, ...]
     unassigned: tuple[str, ...]
     measures: Mapping[str, float]
     left_out: tuple[LeftOut, ...]
     kept: float | None = None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RobotPlan(_Plan):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class RobotPlan(_Plan[RobotRoute]):
     """A plan for several robots on a map."""
 
-    routes: tuple[RobotRoute, ...]
+
+Plan = TypeVar("Plan", FleetPlan, RobotPlan)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FleetFront(StoredFront):
-    """A front of plans for a fleet, with both objectives as the request named them."""
-
-    plans: tuple[FleetPlan, ...]
-    objectives: tuple[Objective, ...]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RobotFront(StoredFront):
-    """A front of plans for several robots on a map.
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _FrontOfPlans(StoredFront[Plan]):
+    """A front of plans.
 
     Attributes:
         plans: The plans.
-        objectives: Both objectives, as the service names them.
+    """
+
+    plans: tuple[Plan, ...]
+
+    def choose(self, **choice: Unpack[Choice]) -> Plan:
+        """Return one plan: at a balance, by weights, within budgets, or the knee.
+
+        Raises:
+            ValueError: Not exactly one way to choose is given, no plan is within the budgets, or
+                the front is still empty.
+        """
+        angles = np.empty(0)  # no choice by angle can be asked for
+        return self[choose(self.lengths, angles, self.names, None, choice)]
+
+    def _item(self, number: int) -> Plan:
+        return self.plans[number]
+
+    def _counted(self) -> str:
+        return counted(len(self), "plan")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FleetFront(_FrontOfPlans[FleetPlan]):
+    """A front of plans for a fleet, with both objectives as the request named them."""
+
+    def _columns(self) -> dict[str, Sequence[Any]]:
+        found: dict[str, Sequence[Any]] = {"balance": [plan.balance for plan in self.plans]}
+        if self.plans:
+            names = self.plans[0].measures
+            found |= {name: [plan.measures[name] for plan in self.plans] for name in names}
+        if any(plan.kept is not None for plan in self.plans):
+            found["kept"] = [plan.kept for plan in self.plans]
+        return {
+            **found,
+            "routes": [
+                {route.vehicle: route.stops for route in plan.routes} for plan in self.plans
+            ],
+            "left_out": [plan.unassigned for plan in self.plans],
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class RobotFront(_FrontOfPlans[RobotPlan]):
+    """A front of plans for several robots on a map.
+
+    Attributes:
         places: The row and column of each place, shape (n, 2).
         uncovered: The free cells of the map that no path leads to.
     """
 
-    plans: tuple[RobotPlan, ...]
-    objectives: tuple[Objective, ...]
     places: NDArray[np.int64]
     uncovered: Uncovered | None = None
+
+    def _columns(self) -> dict[str, Sequence[Any]]:
+        return {
+            "balance": [plan.balance for plan in self.plans],
+            "routes": [
+                {route.robot: route.tour.tolist() for route in plan.routes} for plan in self.plans
+            ],
+        }
 
 
 def parse_fleet(document: Mapping[str, Any]) -> FleetFront:

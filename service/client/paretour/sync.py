@@ -6,7 +6,16 @@ from typing import Concatenate, Generic, ParamSpec, Self, TypeVar
 
 import httpx
 from paretour.bodies import MOST_BYTES, Body
-from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers, described_as
+from paretour.calls import (
+    AnyFront,
+    Call,
+    Calls,
+    Parse,
+    Submitted,
+    address_of,
+    client_headers,
+    described_as,
+)
 from paretour.events import JobEvents
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
@@ -69,7 +78,8 @@ class Client:
         most_bytes: int = MOST_BYTES,
         transport: httpx.BaseTransport | None = None,
     ) -> None:
-        http = httpx.Client(base_url=url, headers=client_headers(api_key), transport=transport)
+        headers = client_headers(api_key)
+        http = httpx.Client(base_url=address_of(url), headers=headers, transport=transport)
         self._connection = _Connection(http, most_bytes)
         self._calls = Calls(timeout=timeout, patience=patience)
 

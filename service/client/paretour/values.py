@@ -6,7 +6,8 @@ from typing import Any, Self, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.choice import Choice, choose, losses
+from paretour.choice import Choice, choose
+from paretour.display import counted, numbers
 from paretour.expect import (
     Members,
     Read,
@@ -20,9 +21,9 @@ from paretour.expect import (
     read_only,
     text,
 )
+from paretour.fronts import Array, Objective, StoredFront
 
 T = TypeVar("T")
-Array = NDArray[np.float64]
 FINAL_STATUSES = ("done", "cancelled", "failed")
 PAIR = 2  # numbers: of a cell, a point or a length under two objectives
 MOST = 4  # objectives
@@ -44,14 +45,6 @@ class Progress:
             hypervolume=event.read("hypervolume", number),
             points=event.read("points", count),
         )
-
-
-@dataclass(frozen=True)
-class Objective:
-    """The name of an objective as in the request, and its unit or None."""
-
-    name: str
-    unit: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +94,7 @@ class Uncovered:
     regions: tuple[UncoveredRegion, ...]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Tour:
     """A tour of a front.
 
@@ -117,6 +110,8 @@ class Tour:
         path: Its path over a map, if the request asked for paths.
         stops: The ids of its stops in order, if the request had ids.
         kept: The share of the driven tour's remaining legs that it keeps, if it was replanned.
+        departure: Over the day, when it begins, in seconds of the day.
+        times: Over the day, when it reaches each city, and when it ends, shape (n + 1,).
     """
 
     front: str
@@ -128,38 +123,15 @@ class Tour:
     path: Path | None
     stops: tuple[str, ...] | None = None
     kept: float | None = None
+    departure: float | None = None
+    times: Array | None = None
+
+    def __repr__(self) -> str:
+        return f"<Tour of {len(self.tour)} cities: lengths {numbers(self.lengths)}>"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class StoredFront:
-    """A front of any kind, in order of the first length of its k tours or plans.
-
-    Attributes:
-        id: The id under which the service stores the front.
-        status: The status of its job: queued, running, done, cancelled or failed.
-        lengths: The lengths of each tour or plan, shape (k, m).
-        points: The number of nondominated ones found; the front is a subset of these.
-        hypervolume: The share of the box at the reference point that the points found dominate.
-        reference_point: The reference point of the hypervolume, shape (m,); None while it is not
-            known.
-        terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or a word of a
-            later service; None while it runs. `converged` proves that nothing is better only up to
-            eleven cities.
-        document: The whole answer, with every member.
-    """
-
-    id: str
-    status: str
-    lengths: Array
-    points: int
-    hypervolume: float
-    reference_point: Array | None
-    terminated: str | None
-    document: Mapping[str, Any]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Front(StoredFront):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Front(StoredFront[Tour]):
     """The tours of a front, in order of their first length.
 
     Attributes:
@@ -174,11 +146,12 @@ class Front(StoredFront):
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the path of each tour, if the request asked for paths.
         stops: The ids of the stops of each tour in order, if the request had ids.
-        objectives: The objectives, if the request named them.
         kept: The share of the driven tour's remaining legs that each tour keeps, shape (k,), if it
             was replanned.
         arrivals: All lengths of each tour up to each of its cities, if the request asked for them.
         uncovered: Over a map, the free cells that no path leads to.
+        departures: Over the day, when each tour begins, in seconds of the day, shape (k,).
+        times: Over the day, when each reaches each city, and when it ends, shape (k, n + 1).
     """
 
     tours: NDArray[np.int64]
@@ -190,10 +163,11 @@ class Front(StoredFront):
     places: NDArray[np.int64] | None
     paths: tuple[Path, ...] | None
     stops: tuple[tuple[str, ...], ...] | None = None
-    objectives: tuple[Objective, ...] | None = None
     kept: Array | None = None
     arrivals: tuple[Array, ...] | None = None
     uncovered: Uncovered | None = None
+    departures: Array | None = None
+    times: Array | None = None
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -203,11 +177,6 @@ class Front(StoredFront):
         """
         return self.choose(angle)
 
-    @property
-    def losses(self) -> Array:
-        """The lengths of each tour in the front's own box, 0 at the least and 1 at the greatest."""
-        return losses(self.lengths)
-
     def choose(self, angle: float | None = None, **choice: Unpack[Choice]) -> Tour:
         """Return one tour: at an angle or balance, by weights, within budgets, or the knee.
 
@@ -215,19 +184,36 @@ class Front(StoredFront):
             ValueError: Not exactly one way to choose is given, it does not fit the objectives, no
                 tour is within the budgets, or the front is still empty.
         """
-        names = [each.name for each in self.objectives or ()]
-        index = choose(self.lengths, self.angles, names, angle, choice)
+        names = self.names if self.objectives else ()
+        return self[choose(self.lengths, self.angles, names, angle, choice)]
+
+    def _item(self, number: int) -> Tour:
         return Tour(
             front=self.id,
-            angle=float(self.angles[index]),
-            balance=float(self.balances[index]),
-            lengths=self.lengths[index],
-            tour=self.tours[index],
-            arrivals=None if self.arrivals is None else self.arrivals[index],
-            path=None if self.paths is None else self.paths[index],
-            stops=None if self.stops is None else self.stops[index],
-            kept=None if self.kept is None else float(self.kept[index]),
+            angle=float(self.angles[number]),
+            balance=float(self.balances[number]),
+            lengths=self.lengths[number],
+            tour=self.tours[number],
+            arrivals=None if self.arrivals is None else self.arrivals[number],
+            path=None if self.paths is None else self.paths[number],
+            stops=None if self.stops is None else self.stops[number],
+            kept=None if self.kept is None else float(self.kept[number]),
+            departure=None if self.departures is None else float(self.departures[number]),
+            times=None if self.times is None else self.times[number],
         )
+
+    def _counted(self) -> str:
+        return f"{counted(len(self), 'tour')} of {self.tours.shape[1]} cities"
+
+    def _columns(self) -> dict[str, Sequence[Any]]:
+        found: dict[str, Sequence[Any]] = {}
+        if self.lengths.shape[1] == PAIR:
+            found |= {"balance": self.balances.tolist(), "angle": self.angles.tolist()}
+        if self.kept is not None:
+            found["kept"] = self.kept.tolist()
+        if self.departures is not None:
+            found["departure"] = self.departures.tolist()
+        return {**found, "tour": list(self.stops or map(tuple, self.tours.tolist()))}
 
 
 def parse_front(document: Mapping[str, Any]) -> Front:
@@ -255,9 +241,11 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         paths=of_all(items, "path", parse_path),
         stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
         objectives=objectives_of(answer),
-        kept=None if (kept := of_all(items, "kept", number)) is None else _stacked(kept),
+        kept=_maybe_stacked(of_all(items, "kept", number)),
         arrivals=of_all(items, "arrivals", floats(None, m)),
         uncovered=answer.maybe("uncovered", parse_uncovered),
+        departures=_maybe_stacked(of_all(items, "departure", number)),
+        times=_maybe_stacked(of_all(items, "times", floats(cities + 1)), (cities + 1,)),
     )
 
 
@@ -276,6 +264,8 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
         path=answer.maybe("path", parse_path),
         stops=answer.maybe("stops", each(text, len(tour))),
         kept=answer.maybe("kept", number),
+        departure=answer.maybe("departure", number),
+        times=answer.maybe("times", floats(len(tour) + 1)),
     )
 
 
@@ -348,6 +338,13 @@ def parse_path(value: Any, where: str) -> Path:
     cells = path.read("cells", indexes(None, PAIR))
     points = path.maybe("points", floats(len(cells), PAIR))
     return Path(cells, path.read("metres", number), points)
+
+
+def _maybe_stacked(
+    values: Sequence[Any] | None, shape: tuple[int, ...] = ()
+) -> NDArray[Any] | None:
+    """Return one value per item as an array; None where items have none."""
+    return None if values is None else _stacked(values, shape)
 
 
 def _stacked(
