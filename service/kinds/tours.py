@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,12 +109,13 @@ def _plan(
         return encode_front(front, actor.info.identity, surveyed, labels=task.labels)
 
     report_encoded = reporting(report, encoded)
+    planned = partial(plan, actor, instance)
+    if task.earlier is not None:
+        planned = partial(replan, actor, instance, task.earlier)
     try:
         if day is not None:
-            return plan_over_the_day(actor, day, options, task.earlier, stop, report_encoded)
-        if task.earlier is not None:
-            return replan(actor, instance, options, task.earlier, stop, report_encoded)
-        return plan(actor, instance, options, stop, report_encoded)
+            return plan_over_the_day(planned, day, options, task.earlier, stop, report_encoded)
+        return planned(options, stop, report_encoded)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
 

@@ -11,22 +11,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.construction.first_tours import Constructor
 from service.errors import Cancelled
 from service.front import Front, PlanOptions, Progress, ReportOf, Termination, reporting
 from service.instance import Instance
 from service.over_the_day.day import Day
 from service.over_the_day.search import DaySearch
-from service.planner import plan
 from service.replanning.earlier_tours import EarlierTours
 from service.replanning.kept_legs import kept_shares
-from service.replanning.replan import replan
 from service.search.best_subset import best_subset, selection_seconds
 from service.search.hypervolume import hypervolume
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
+# Plans a front, with `stop` and `report` as plan(...) has them.
+PlanUnderMeans = Callable[[PlanOptions, Callable[[], bool], ReportOf[Front]], Front]
 # Of the time limit; the search over the day gains more the more seconds there are for each stop.
 _LEAST_SHARE, _MOST_SHARE, _LESS_BY_SECOND = 0.5, 0.85, 40.0
 _LEAST_OF_MEANS = 300  # tours under mean costs that are driven through the day, if there are
@@ -37,7 +36,7 @@ _REPORT_EVERY = 0.1  # seconds
 
 
 def plan_over_the_day(
-    constructor: Constructor,
+    plan_under_means: PlanUnderMeans,
     day: Day,
     options: PlanOptions,
     earlier: EarlierTours | None = None,
@@ -50,7 +49,7 @@ def plan_over_the_day(
     keep a share of the driven tour, those found under mean costs are not improved.
 
     Args:
-        constructor: Builds first tours, under mean costs.
+        plan_under_means: Plans the front of the day's instance, which has mean costs.
         day: The day.
         options: The options of the front and the search.
         earlier: What is left of the tours of the front that is replanned, if one is.
@@ -60,7 +59,7 @@ def plan_over_the_day(
     Raises:
         Cancelled, NoTour, Refusal: As in plan(...) and replan(...).
     """
-    return _Planning(day, options, earlier, stop, report).run(constructor)
+    return _Planning(day, options, earlier, stop, report).run(plan_under_means)
 
 
 class _Planning:
@@ -86,9 +85,9 @@ class _Planning:
         self._reference_point = reference_point_of(day) if point is None else point
         self._finishing = 0.0  # seconds that the best departure of one tour takes
 
-    def run(self, constructor: Constructor) -> Front:
+    def run(self, plan_under_means: PlanUnderMeans) -> Front:
         """Return the front."""
-        means = self._under_means(constructor)
+        means = self._under_means(plan_under_means)
         began = time.monotonic()
         self._add(means.tours)
         if self._options.initial_tours is not None:
@@ -110,18 +109,14 @@ class _Planning:
     def _new_search(self) -> DaySearch:
         return DaySearch(self._day, self._options.seed, self._options.start)
 
-    def _under_means(self, constructor: Constructor) -> Front:
+    def _under_means(self, plan_under_means: PlanUnderMeans) -> Front:
         """Return a front under mean costs."""
-        instance, stop = self._instance, self._stop
         options = replace(self._options, reference_point=None)
         if self._improves:
-            limit = _share_of_means(options.time_limit / instance.n) * options.time_limit
+            limit = _share_of_means(options.time_limit / self._instance.n) * options.time_limit
             size = max(options.size, _LEAST_OF_MEANS)
             options = replace(options, time_limit=limit, size=size)
-        report = reporting(self._report, self._driven)
-        if self._earlier is None:
-            return plan(constructor, instance, options, stop, report)
-        return replan(constructor, instance, options, self._earlier, stop, report)
+        return plan_under_means(options, self._stop, reporting(self._report, self._driven))
 
     def _add(self, tours: Tours) -> None:
         """Drive tours through the day, a few at a time, until a part of the time has gone."""

@@ -27,8 +27,8 @@ _MOST_CELLS = 2**22  # cities of all tours among which those that keep enough le
 def replan(
     constructor: Constructor,
     instance: Instance,
-    options: PlanOptions,
     earlier: EarlierTours,
+    options: PlanOptions,
     stop: Callable[[], bool] = lambda: False,
     report: ReportOf[Front] = lambda *_: None,
 ) -> Front:
@@ -43,8 +43,8 @@ def replan(
     Args:
         constructor: Builds further tours.
         instance: The rest of the way.
-        options: The options of the front and the search.
         earlier: The rest of the tours of the earlier front.
+        options: The options of the front and the search.
         stop: As in plan(...).
         report: As in plan(...).
 

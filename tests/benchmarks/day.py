@@ -13,7 +13,6 @@ Shares are hypervolumes in the box of all four. Prints a table and stores `resul
 """
 
 import argparse
-from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -32,25 +31,21 @@ from service.over_the_day.warm_up import warm_up
 from service.pareto import hypervolume, nondominated
 from service.planner import plan
 from service.preferences import fan, from_angles
-from tests.benchmarks.cells import of
-from tests.benchmarks.markdown import table
-from tests.benchmarks.provenance import load
+from tests.benchmarks.day_table import PROFILES, SIZES, day_table
 from tests.benchmarks.rows import resume
 
 Array = NDArray[np.float64]
 
 ACTORS = Path("service/actors")
 NETWORK = "pa-one-matrix"
-SIZES = (50, 100, 200, 500)
 COUNT = 2
 BRIEF, LONG = 1.0, 30.0
 SIZE = 100
 HOUR = 3600.0
 SECONDS_ACROSS = 15_000 / (30 / 3.6)
-SHAPES = {"uniform": uniform, "clustered": clustered, "streets": streets}
+GENERATORS = {"uniform": uniform, "clustered": clustered, "streets": streets}
 BEGINS = np.array([0.0, 7.0, 9.0, 16.0, 18.0]) * HOUR
 PEAK = 1.8
-PROFILES = ("one peak", "two peaks", "tide")
 DEPARTURES = 100
 _ABOVE = 1.02  # times the greatest lengths: the reference point
 
@@ -64,20 +59,20 @@ def main(arguments: list[str]) -> None:
     warm_up()
     actor = load_actors(ACTORS, threads=1)[NETWORK]
     for n in options.sizes:
-        for shape in SHAPES:
+        for shape in GENERATORS:
             for profile in PROFILES:
                 days = [day_of(n, shape, profile, seed) for seed in range(options.count)]
                 measure = partial(measured, actor)
-                measure(day_of(12, shape, profile, 0), long=BRIEF)  # loads compiled code
+                measure(day_of(n, shape, profile, COUNT), long=BRIEF)  # loads compiled code
                 key = f"{n} stops, {shape}, {profile}"
                 resume("day", key, actor.info.digest, days, measure)
-    print(table(*rows(options.sizes)))
+    print(day_table())
 
 
 def day_of(n: int, shape: str, profile: str, seed: int) -> Day:
     """The day of n stops with this number."""
     random = np.random.default_rng([n, seed])
-    places, others = (SHAPES[shape](n, random) for _ in range(2))
+    places, others = (GENERATORS[shape](n, random) for _ in range(2))
     times, distances = (np.linalg.norm(p[:, np.newaxis] - p, axis=2) for p in (places, others))
     service = random.uniform(60, 240, n)
     service[0] = 0.0
@@ -124,7 +119,8 @@ def _options(seconds: float) -> PlanOptions:
 
 
 def _ours(actor: Any, day: Day, seconds: float) -> Array:
-    return plan_over_the_day(actor, day, _options(seconds)).points
+    under_means = partial(plan, actor, day.instance)
+    return plan_over_the_day(under_means, day, _options(seconds)).points
 
 
 def _of_means(actor: Any, day: Day) -> Array:
@@ -145,20 +141,3 @@ def _static(actor: Any, day: Day) -> Array:
         best = points if best is None else np.minimum(best, points)
     assert best is not None
     return best[nondominated(best)]
-
-
-def rows(sizes: Sequence[int]) -> tuple[list[str], list[list[str]]]:
-    """The table of what is stored."""
-    stored = load("day")
-    head = ["stops", "shape", "profile", "1 s", "means, 1 s", "static, 1 s", "30 s"]
-    found = []
-    for n in sizes:
-        for shape in SHAPES:
-            for profile in PROFILES:
-                entries = of(stored.get(f"{n} stops, {shape}, {profile}"))
-                if entries:
-                    names = ("ours", "means", "static", "long")
-                    means = [np.mean([each[name] for each in entries]) for name in names]
-                    cells = [f"{mean:.2f} %" for mean in means]
-                    found.append([str(n), shape, profile, *cells])
-    return head, found

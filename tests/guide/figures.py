@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.benchmarks.day_table import day_table
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.roads import roads_table
@@ -25,6 +26,7 @@ def figures() -> dict[str, tuple[Path, str]]:
         "times": (limits, times_table()),
         "scale": (quality, scale_table()),
         "road-times": (limits, roads_table(load("roads"))),
+        "day": (GUIDE / "plan-around-the-rush-hour.md", day_table()),
     }
 
 

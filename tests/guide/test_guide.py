@@ -243,7 +243,7 @@ def test_the_picture_of_the_layers_is_that_of_the_import_contracts() -> None:
     assert [*drawn, "service"] == [*factory[:-1], *inside, factory[-1]]
 
 
-@pytest.mark.parametrize("name", ["weights", "times", "road-times"])
+@pytest.mark.parametrize("name", ["weights", "times", "road-times", "day"])
 def test_tables_of_figures_are_those_of_the_stored_results(name: str) -> None:
     page, made = figures()[name]
     assert made.startswith("| ")

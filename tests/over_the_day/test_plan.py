@@ -1,6 +1,7 @@
 """Fronts over the day equal those of all tours, each driven step by step."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from service.over_the_day.plan import plan_over_the_day
 from service.pareto import nondominated
 from service.planner import plan
 from service.replanning.earlier_tours import EarlierTours
+from service.replanning.replan import replan
 from tests.helpers.actors import Shuffler
 from tests.helpers.days import arrival, lengths_of, random_costs, random_day, tours_of
 
@@ -25,7 +27,10 @@ def planned(
     options = PlanOptions(
         directions=np.empty((0, len(day.costs))), size=5_000, time_limit=time_limit, start=start
     )
-    return plan_over_the_day(Shuffler(), day, options, earlier)
+    under_means = partial(plan, Shuffler(), day.instance)
+    if earlier is not None:
+        under_means = partial(replan, Shuffler(), day.instance, earlier)
+    return plan_over_the_day(under_means, day, options, earlier)
 
 
 def close(a: NDArray[np.float64], b: NDArray[np.float64]) -> None:

@@ -38,7 +38,7 @@ def instance_of(task: Task) -> Instance:
 
 def replanned(task: Task) -> Front:
     assert task.earlier is not None
-    return replan(Shuffler(), instance_of(task), task.options, task.earlier)
+    return replan(Shuffler(), instance_of(task), task.earlier, task.options)
 
 
 def ways(task: Task, front: Front, change: Change) -> list[tuple[int, ...]]:
@@ -84,7 +84,7 @@ def test_a_share_that_no_tour_keeps_is_refused_with_the_most_that_one_does() -> 
     earlier = EarlierTours(np.array([[0, 4, 2, 5, 1, 3]]), min_kept=1.0)
     options = PlanOptions(directions=spread(1), fewer=True, size=9, time_limit=0.2)
     with pytest.raises(Refusal, match="at least 1 of the driven") as refused:
-        replan(Shuffler(), instance, options, earlier)
+        replan(Shuffler(), instance, earlier, options)
     assert refused.value.code == "too-different"
     assert refused.value.actual is not None
     assert 0 <= refused.value.actual < 1
@@ -203,7 +203,7 @@ def test_of_equal_lengths_the_tour_most_like_the_driven_one_is_returned() -> Non
     instance = Instance(coordinates=line, closed=False, start=0)
     driven = np.array([0, *np.random.default_rng(1).permutation(np.arange(1, 12))])
     options = PlanOptions(directions=spread(1), fewer=True, size=9, time_limit=0.2)
-    front = replan(Shuffler(), instance, options, EarlierTours(driven[np.newaxis]))
+    front = replan(Shuffler(), instance, EarlierTours(driven[np.newaxis]), options)
     assert front.kept is not None
     assert front.kept.tolist() == [1.0]
 

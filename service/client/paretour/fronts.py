@@ -1,4 +1,4 @@
-"""What fronts of all kinds have in common: their attributes, and how a notebook shows them."""
+"""Hold what fronts of all kinds have in common: attributes, and how a notebook shows them."""
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence

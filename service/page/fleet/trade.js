@@ -1,4 +1,4 @@
-/** What a fleet trades for its first objective, and what its times are measured by. */
+/** Find what a fleet trades for its first objective, and what its times are measured by. */
 
 import { clockUnit } from "./units.js";
 

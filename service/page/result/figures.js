@@ -3,6 +3,7 @@
 import { kindNamed } from "../common/kinds.js";
 import { titled } from "../common/objectives.js";
 import { degrees, length, share } from "../common/numbers.js";
+import { hoursOf } from "./hours.js";
 
 /** Fills a list with what is known of a front, if there is one. */
 export const showFigures = (list, alone, answer) =>
@@ -10,7 +11,12 @@ export const showFigures = (list, alone, answer) =>
 
 /** Fills a list with what else is known of a tour, if there is one. */
 export const showTourFigures = (list, tour) =>
-  list.replaceChildren(...(tour ? [...angle(tour), ...kept(tour)] : []).flatMap(pair));
+  list.replaceChildren(...(tour ? [...hours(tour), ...angle(tour), ...kept(tour)] : []).flatMap(pair));
+
+function hours(tour) {
+  const said = hoursOf(tour);
+  return said.length ? [["Leaves at", said[0]], ["Ends at", said.at(-1)]] : [];
+}
 
 const angle = (tour) => (tour.angle == null ? [] : [["Angle of the tour", degrees(tour.angle)]]);
 const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the driven tour", `${Math.round(100 * tour.kept)} %`]]);

@@ -12,6 +12,7 @@ import { Maps } from "../map/maps.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
+import { hoursOf } from "./hours.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
@@ -277,7 +278,9 @@ export class Result {
     if (!element("order").open || element("order").hidden) return;
     const names = named(this.#selected, this.#ids);
     const back = this.#closed && names.length > 1 ? [names[0]] : [];
-    element("order").querySelector("p").textContent = [...names, ...back].join(" → ");
+    const hours = hoursOf(this.#selected);
+    const visits = [...names, ...back].map((name, at) => (hours.length ? `${name} ${hours[at]}` : name));
+    element("order").querySelector("p").textContent = visits.join(" → ");
   }
 }
 
