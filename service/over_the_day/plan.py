@@ -4,6 +4,7 @@ First a front is planned under mean costs. Its tours are driven through the day,
 there, each under a weighted sum of exact lengths. Up to eight stops all tours are tried.
 """
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -80,9 +81,9 @@ class _Planning:
         self._improves = options.time_limit > 0 and (earlier is None or earlier.min_kept == 0)
         self._day, self._instance, self._options = day, day.instance, options
         self._stop, self._report = stop, report
-        self._search = self._new_search()
+        self._search = DaySearch(day, options.seed, options.start)
         point = options.reference_point
-        self._reference_point = reference_point_of(day) if point is None else point
+        self._reference_point = _reference_point_of(day) if point is None else point
         self._finishing = 0.0  # seconds that the best departure of one tour takes
 
     def run(self, plan_under_means: PlanUnderMeans) -> Front:
@@ -91,13 +92,13 @@ class _Planning:
         began = time.monotonic()
         self._add(means.tours)
         if self._options.initial_tours is not None:
-            self._search.add(from_start(self._instance, self._options))
+            self._search.add(_from_start(self._instance, self._options))
         terminated = means.terminated
         if self._improves:
             self._measure_finishing()
             terminated = self._improve(means)
         improved = time.monotonic()
-        front = self._front(means, self._search, self._options.size, terminated)
+        front = self._front(means, self._options.size, terminated, self._deadline)
         if not len(front.tours):
             raise Cancelled
         timings = {
@@ -105,9 +106,6 @@ class _Planning:
             "departures": 1000 * (time.monotonic() - improved),
         }
         return replace(front, timings={**means.timings, **timings})
-
-    def _new_search(self) -> DaySearch:
-        return DaySearch(self._day, self._options.seed, self._options.start)
 
     def _under_means(self, plan_under_means: PlanUnderMeans) -> Front:
         """Return a front under mean costs."""
@@ -138,19 +136,22 @@ class _Planning:
         return tours
 
     def _driven(self, means: Front) -> Front:
-        """Return a front that was found under mean costs, driven through the day."""
-        search = self._new_search()
-        search.add(self._both_ways(means.tours))
-        return self._front(means, search, self._options.size, None)
+        """Return a front that was found under mean costs so far, driven through the day."""
+        self._search.add(self._both_ways(means.tours))
+        return self._front(means, self._options.size)
 
     def _front(
-        self, means: Front, search: DaySearch, size: int, terminated: Termination | None
+        self,
+        means: Front,
+        size: int,
+        terminated: Termination | None = None,
+        deadline: float = -math.inf,
     ) -> Front:
-        """Return the best front that a search has found."""
-        points, tours = search.found()
+        """Return the best front so far; until the deadline, best departures are looked for."""
+        points, tours = self._search.found()
         chosen = best_subset(points, min(size, self._options.size), self._reference_point)
         # With their best departures, some may dominate others.
-        driven = search.driven(tours[chosen], self._deadline).best()
+        driven = self._search.driven(tours[chosen], deadline).best()
         kept = None
         if self._earlier is not None:
             kept = kept_shares(self._instance, driven.tours, self._earlier.driven)
@@ -172,9 +173,9 @@ class _Planning:
     def _measure_finishing(self) -> None:
         """Note how long it takes to find the best departure of a tour."""
         tours = self._search.found()[1][:_MEASURED]
-        self._search.driven(tours[:1])  # loads the compiled code
+        self._search.driven(tours[:1], math.inf)  # loads the compiled code
         began = time.monotonic()
-        self._search.driven(tours)
+        self._search.driven(tours, math.inf)
         self._finishing = (time.monotonic() - began) / max(1, len(tours))
 
     def _reserve(self) -> float:
@@ -192,7 +193,7 @@ class _Planning:
                 return "cancelled"
             if now + self._reserve() >= self._deadline:
                 return "time_limit"
-            if now - reported >= _REPORT_EVERY:
+            if now - reported >= _REPORT_EVERY and self._deadline - now > _REPORT_EVERY:
                 self._tell(means, now)
                 reported = time.monotonic()
         return "converged"
@@ -201,7 +202,7 @@ class _Planning:
         points, _ = self._search.found()
         found = hypervolume(points, self._reference_point)
         progress = Progress(now - self._began, found, len(points))
-        self._report(progress, lambda size: self._front(means, self._search, size, None))
+        self._report(progress, lambda size: self._front(means, size))
 
 
 def _share_of_means(seconds_for_each: float) -> float:
@@ -210,14 +211,14 @@ def _share_of_means(seconds_for_each: float) -> float:
     return min(_MOST_SHARE, max(_LEAST_SHARE, share))
 
 
-def from_start(instance: Instance, options: PlanOptions) -> Tours:
+def _from_start(instance: Instance, options: PlanOptions) -> Tours:
     """Return the caller's tours; closed ones begin at the start."""
     assert options.initial_tours is not None
     tours: Tours = options.initial_tours
     return rotated(tours, (tours == options.start).argmax(axis=1)) if instance.closed else tours
 
 
-def reference_point_of(day: Day) -> Array:
+def _reference_point_of(day: Day) -> Array:
     """Return the default reference point: that of the mean costs, and the service of all stops."""
     point = day.instance.reference_point.copy()
     point[day.clock] += day.service.sum()

@@ -1,6 +1,5 @@
 """The search over the day: all tours of a few stops; else weighted sums, one after another."""
 
-import math
 import time
 from collections.abc import Iterator
 from itertools import chain, count, permutations
@@ -87,7 +86,7 @@ class DaySearch:
         self._traffic, self._instance = traffic_of(day), day.instance
         self._departures = day.earliest, day.latest
         instance = self._instance
-        self.archive = make_archive(instance.n, instance.objectives)
+        self._archive = make_archive(instance.n, instance.objectives)
         shares = weights(spread(WEIGHTS[instance.objectives], instance.objectives))
         self._weights = shares / instance.scale
         self._seeds = np.random.default_rng(seed).integers(1, 2**63 - 1, len(shares))
@@ -96,12 +95,12 @@ class DaySearch:
     @property
     def size(self) -> int:
         """The number of tours found."""
-        return int(self.archive.counts[0])
+        return int(self._archive.counts[0])
 
     def add(self, tours: Tours) -> None:
         """Offer tours, shape (k, n), at good departures."""
         cities = np.ascontiguousarray(tours, np.int32)
-        offer_all(self.archive, self._traffic, cities, *self._departures, False)
+        offer_all(self._archive, self._traffic, cities, *self._departures, False)
 
     def run(self) -> Iterator[int]:
         """Search in short steps; each yields the number of local optima that were visited."""
@@ -109,12 +108,12 @@ class DaySearch:
 
     def found(self) -> tuple[Array, Tours]:
         """Return the lengths, shape (k, m), and the tours found that have no forbidden leg."""
-        rows = rows_of(self.archive)
-        tours = self.archive.tours[rows]
+        rows = rows_of(self._archive)
+        tours = self._archive.tours[rows]
         allowed = np.isfinite(tour_lengths(self._instance, tours)).all(axis=1)
-        return self.archive.points[rows[allowed]], tours[allowed]
+        return self._archive.points[rows[allowed]], tours[allowed]
 
-    def driven(self, tours: Tours, deadline: float = math.inf) -> DrivenTours:
+    def driven(self, tours: Tours, deadline: float) -> DrivenTours:
         """Drive tours through the day, with the best departures near the good ones.
 
         After the deadline, by time.monotonic(), good departures are enough.
@@ -145,7 +144,7 @@ class DaySearch:
         tours = np.array([(*start, *each, *end) for each in permutations(middle)], np.int32)
         for begin in range(0, len(tours), _TRIED_AT_ONCE):
             part = tours[begin : begin + _TRIED_AT_ONCE]
-            offer_all(self.archive, self._traffic, part, *self._departures, True)
+            offer_all(self._archive, self._traffic, part, *self._departures, True)
             yield 0
 
     def _search_weights(self) -> Iterator[int]:
@@ -154,8 +153,8 @@ class DaySearch:
         for index in order:
             for done in self._improve(index):
                 yield done
-                unchanged = 0 if self.archive.counts[2] != last else unchanged + done
-                last = self.archive.counts[2]
+                unchanged = 0 if self._archive.counts[2] != last else unchanged + done
+                last = self._archive.counts[2]
             if unchanged > PATIENCE * self._instance.n:
                 return
 
@@ -165,10 +164,10 @@ class DaySearch:
         if first_time:
             self._searches[index] = self._weighted_search(index)
         search = self._searches[index]
-        row = best_row(self.archive, search.weights)
-        value = self.archive.points[row] @ search.weights
+        row = best_row(self._archive, search.weights)
+        value = self._archive.points[row] @ search.weights
         if first_time or value < search.saved_value[0]:
-            tour = self.archive.tours[row]
+            tour = self._archive.tours[row]
             departure = good_departure(self._traffic, tour, *self._departures)
             take(search, tour, departure)
             while not descend(search, _CITIES_AT_ONCE):
@@ -186,14 +185,14 @@ class DaySearch:
         departure = good_departure(self._traffic, tour, *self._departures)
         if departure != search.saved_value[1]:
             take(search, tour, departure)
-            insert_driven(self.archive, self._traffic, tour, departure)
+            insert_driven(self._archive, self._traffic, tour, departure)
 
     def _weighted_search(self, index: int) -> WeightedSearch:
         return make_weighted_search(
             self._traffic,
             self._instance.penalised_matrices,
             self._weights[index],
-            self.archive,
+            self._archive,
             self._places(),
             int(self._seeds[index]),
         )

@@ -1,5 +1,6 @@
 """Compile the search over the day, or load it from the cache."""
 
+import math
 from itertools import islice
 
 import numpy as np
@@ -24,4 +25,4 @@ def warm_up() -> None:
         search.add(np.arange(n)[np.newaxis])
         for _ in islice(search.run(), 4 * WEIGHTS[2]):
             pass
-        search.driven(search.found()[1])
+        search.driven(search.found()[1], math.inf)

@@ -13,6 +13,7 @@ Shares are hypervolumes in the box of all four. Prints a table and stores `resul
 """
 
 import argparse
+import math
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -127,7 +128,7 @@ def _of_means(actor: Any, day: Day) -> Array:
     """Points of tours planned under mean costs, both ways, each at its best departure."""
     tours = plan(actor, day.instance, _options(BRIEF)).tours
     both = np.concatenate((tours, np.roll(tours[:, ::-1], 1, axis=1)))
-    return DaySearch(day, 0).driven(both).best().points
+    return DaySearch(day, 0).driven(both, math.inf).best().points
 
 
 def _static(actor: Any, day: Day) -> Array:
@@ -137,7 +138,7 @@ def _static(actor: Any, day: Day) -> Array:
     best: Array | None = None
     for departure in np.linspace(day.earliest, day.latest, DEPARTURES):
         fixed = Day(day.costs, day.clock, day.service, departure, departure, day.ends)
-        points = DaySearch(fixed, 0).driven(tours).points
+        points = DaySearch(fixed, 0).driven(tours, math.inf).points
         best = points if best is None else np.minimum(best, points)
     assert best is not None
     return best[nondominated(best)]
