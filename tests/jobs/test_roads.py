@@ -98,6 +98,24 @@ def test_one_objective_by_road_beside_one_of_ones_own(url: str) -> None:
         assert each["lengths"][1] == np.array(risk)[tour, np.roll(tour, -1)].sum()
 
 
+def test_factors_of_the_day_hold_for_times_by_road(url: str) -> None:
+    objectives = [
+        {"name": "time", "from": "road_time", "over_the_day": [[0, 1.0], [60_000, 2.0]]},
+        {"name": "distance", "from": "road_distance"},
+    ]
+    usual, slow = (
+        httpx.post(f"{url}/front", json=_request(objectives=objectives, departure=when)).json()
+        for when in (0, 60_000)
+    )
+    places = np.array([stop["location"] for stop in _request()["stops"]])
+    costs = road_costs(places, places)
+    for front, factors in ((usual, [1, 1]), (slow, [2, 1])):
+        for each in front["front"]:
+            tour = each["tour"]
+            lengths = costs[:, tour, np.roll(tour, -1)].sum(axis=1) * factors
+            assert each["lengths"] == pytest.approx(lengths)
+
+
 def test_a_repeat_does_not_ask_the_engine_again(url: str, engine: FakeOsrm) -> None:
     httpx.post(f"{url}/front", json=_request(seed=3))
     asked = len(engine.asked)

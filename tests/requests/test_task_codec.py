@@ -23,6 +23,10 @@ INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
 COSTS = [[0, 1, None], [2, 0, 3], [4, 5, 0]]
 STOPS = [{"id": name, "location": [24.9 + i / 100, 60.1]} for i, name in enumerate("äb#")]
 OBJECTIVES = [{"name": "t", "unit": "s", "from": "road_time"}, {"name": "r", "matrix": COSTS}]
+RUSH = [{**OBJECTIVES[0], "over_the_day": [[0, 1], [9, 2]]}]
+SLICED = [{"name": "s", "slices": [{"from": 0, "matrix": COSTS}, {"from": 5, "matrix": COSTS}]}]
+SERVED = [STOPS[0], {**STOPS[1], "service": 3}, STOPS[2]]
+DAY = {"departure": {"earliest": 1, "latest": 4}, "clock": "t", "preferences": 3}
 ROUTE = {"closed": False, "start": None, "end": "b", "arrivals": True, "geometry": "roads"}
 GRID = {"grid": [[0, 0, 1], [0, 0, 0]], "cell_size": 0.5, "origin": [1, 2, 0.5], "paths": True}
 PLACES = {"places": [[0, 0], [1, 2], [1, 0]], "cost_layer": [[1, 2, 3]] * 2}
@@ -37,6 +41,7 @@ REQUESTS: list[tuple[TaskKind, dict[str, Any]]] = [
     ("front", {"coordinates": np.eye(4).tolist(), "initial_tours": [[0, 2, 1, 3]]}),
     ("front", {"matrices": [COSTS, COSTS], "preferences": [10, 80], "reference_point": [99, 99]}),
     ("front", {"stops": STOPS, "objectives": OBJECTIVES, **ROUTE}),
+    ("front", {"stops": SERVED, "objectives": RUSH + SLICED, **DAY}),
     ("coverage", {**GRID, **PLACES, "closed": False, "end": 1}),
     ("coverage", {**GRID, **LAID_OUT}),
     ("coverage", {**GRID, **PLACES, **ROBOTS, "over": ["max", "sum"]}),
