@@ -77,7 +77,7 @@ def hypervolume(points: Array, reference_point: Array) -> float:
     inside = shares[(shares < 1).all(axis=1)]
     front = inside[nondominated(inside)]
     heights = np.concatenate(([1.0], front[:-1, 1])) - front[:, 1]
-    return float(((1 - front[:, 0]) * heights).sum())
+    return min(1.0, float(((1 - front[:, 0]) * heights).sum()))  # 1 at most, for all rounding
 
 
 def balances(points: Array) -> Array:

@@ -5,7 +5,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from service.api.responses import Balance, FrontAnswer, Lengths, MapAnswer, ObjectiveName, PathItem
 from service.fleet.rules import Measure, Over, Rule
-from service.requests.stop_fields import StopItem
+from service.requests.stop_fields import NamedStop
 
 
 class RouteItem(BaseModel):
@@ -90,7 +90,7 @@ class FleetAnswer(FrontAnswer):
 
     front: list[PlanItem]  # type: ignore[assignment]  # a list for reading only
     objectives: list[FleetObjectiveName]  # type: ignore[assignment]
-    stops: list[StopItem]
+    stops: list[NamedStop]
 
 
 class RobotRouteItem(BaseModel):

@@ -22,7 +22,7 @@ from service.files.reading import Kind
 from service.front import Termination
 from service.jobs.record import Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
-from service.requests.stop_fields import StopItem
+from service.requests.stop_fields import NamedStop
 from service.requests.task import KindName
 
 PROBLEM_JSON = "application/problem+json"
@@ -150,7 +150,7 @@ class FrontAnswer(BaseModel):
     objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
         default=None, description="as the request names them"
     )
-    stops: list[StopItem] | SkipJsonSchema[None] = Field(
+    stops: list[NamedStop] | SkipJsonSchema[None] = Field(
         default=None, description="as the request has them"
     )
 

@@ -10,7 +10,7 @@ from service.errors import invalid
 from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional
-from service.requests.stop_fields import ObjectiveItem, StopItem
+from service.requests.stop_fields import NamedStop, ObjectiveItem
 from service.requests.stops import FixedSource, Hours, OverTheDay, Slices, Source, Stop
 from service.requests.validation import show
 
@@ -45,7 +45,7 @@ Departure = Annotated[
 ]
 
 
-class ServedStopItem(StopItem):
+class StopItem(NamedStop):
     """A stop, and how long a visit takes."""
 
     service: TimeOfDay = Field(
@@ -136,7 +136,7 @@ class DayFields(StrictModel):
 
 def read_hours(
     request: DayFields,
-    stops: Sequence[ServedStopItem],
+    stops: Sequence[StopItem],
     items: Sequence[DayObjectiveItem],
     objectives: Sequence[Objective],
 ) -> Hours | None:
@@ -160,7 +160,7 @@ def read_hours(
 
 
 def _check_no_day(
-    request: DayFields, stops: Sequence[ServedStopItem], items: Sequence[DayObjectiveItem]
+    request: DayFields, stops: Sequence[StopItem], items: Sequence[DayObjectiveItem]
 ) -> None:
     """Raise a refusal where a request has no departure, but needs one."""
     changing = any(item.changes for item in items)

@@ -27,8 +27,8 @@ from service.requests.fields import (
     optional,
 )
 from service.requests.stop_fields import (
+    NamedStop,
     ObjectiveItem,
-    StopItem,
     StopReference,
     find_index,
 )
@@ -49,7 +49,7 @@ Skills = Annotated[list[Text], Field(max_length=_MOST_SKILLS, fail_fast=True)]
 TimeSpan = Pair[Cost]
 
 
-class FleetStopItem(StopItem):
+class FleetStopItem(NamedStop):
     """A stop, and its demands on the vehicle that visits it."""
 
     demand: Loads = Field(

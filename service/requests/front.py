@@ -11,7 +11,7 @@ from service.errors import Refusal, invalid
 from service.instance import PLANE, Kind
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.arrays import array_field, check_costs, stack_matrices
-from service.requests.day_fields import DayFields, DayObjectiveItem, ServedStopItem, read_hours
+from service.requests.day_fields import DayFields, DayObjectiveItem, StopItem, read_hours
 from service.requests.fields import (
     END,
     GEOMETRY,
@@ -74,7 +74,7 @@ class FrontRequest(DayFields, PlanRequest):
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: SomeItems[ServedStopItem] = Field(
+    stops: SomeItems[StopItem] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
     objectives: OneEach[DayObjectiveItem] = Field(

@@ -87,7 +87,7 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     ]
     kinds = {**_FRONT_OBJECTIVES, **_IN_A_FILE}
     objectives = _objectives(parts["DayObjectiveItem"], limits, kinds)
-    items = [parts[name] for name in ("ServedStopItem", "SliceItem", "DepartureRange")]
+    items = [parts[name] for name in ("StopItem", "SliceItem", "DepartureRange")]
     return _by_title(*map(_without_null, items), *objectives, *map(_without_null, forms))
 
 

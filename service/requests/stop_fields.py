@@ -41,7 +41,7 @@ Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 
 
-class StopItem(StrictModel):
+class NamedStop(StrictModel):
     """A stop by its id, and where it is on the earth."""
 
     id: Text = Field(description="comes back in every answer; no two stops share one")
@@ -137,7 +137,7 @@ class ObjectiveItem(StrictModel):
         return Matrix(matrix)
 
 
-def read_stops(items: Sequence[StopItem]) -> tuple[Stop, ...]:
+def read_stops(items: Sequence[NamedStop]) -> tuple[Stop, ...]:
     """Return the stops of a request.
 
     Raises:
