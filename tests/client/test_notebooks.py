@@ -99,5 +99,20 @@ def test_tours_over_the_day_say_when_they_leave_and_arrive(url: str) -> None:
     assert rest.departures[0] == 40
 
 
+def test_a_table_of_a_fleet_has_every_route_of_vehicles_of_one_type(url: str) -> None:
+    matrix = [[0, 5, 5], [5, 0, 9], [5, 9, 0]]
+    with Client(url) as client:
+        front = client.fleet(
+            stops=[{"id": "depot"}, {"id": "a", "demand": [1]}, {"id": "b", "demand": [1]}],
+            vehicles=[{"id": "van", "count": 2, "start": 0, "end": 0, "capacity": [1]}],
+            objectives=[
+                {"name": "driving", "matrix": matrix},
+                {"name": "longest", "matrix": matrix, "over": "max"},
+            ],
+        )
+    [routes, *_] = front.to_frame()["routes"]
+    assert sorted(routes) == [("van", ("depot", "a", "depot")), ("van", ("depot", "b", "depot"))]
+
+
 def test_the_package_has_a_version() -> None:
     assert paretour.__version__.count(".") == 2

@@ -176,9 +176,8 @@ class FleetFront(_FrontOfPlans[FleetPlan]):
             found["kept"] = [plan.kept for plan in self.plans]
         return {
             **found,
-            "routes": [
-                {route.vehicle: route.stops for route in plan.routes} for plan in self.plans
-            ],
+            # Pairs, since several vehicles share the id of their type.
+            "routes": [[(each.vehicle, each.stops) for each in plan.routes] for plan in self.plans],
             "left_out": [plan.unassigned for plan in self.plans],
         }
 
@@ -199,7 +198,8 @@ class RobotFront(_FrontOfPlans[RobotPlan]):
         return {
             "balance": [plan.balance for plan in self.plans],
             "routes": [
-                {route.robot: route.tour.tolist() for route in plan.routes} for plan in self.plans
+                [(each.robot, tuple(each.tour.tolist())) for each in plan.routes]
+                for plan in self.plans
             ],
         }
 
