@@ -112,15 +112,28 @@ def test_a_repeat_is_answered_with_the_first_front(client: httpx.Client) -> None
     problem(other, 422, "idempotency-mismatch")
 
 
-def test_matrices_come_as_a_file_beside_stops(client: httpx.Client) -> None:
+BARE = [{"name": "time", "unit": "s"}, {"name": "risk"}]
+
+
+def posted_with_file(client: httpx.Client, *matrices: np.ndarray) -> httpx.Response:
+    """The answer to stops under two objectives, whose matrices come in a file."""
     file = io.BytesIO()
-    np.save(file, np.stack((COSTS, COSTS.T)))
-    names = [{"name": "time", "unit": "s"}, {"name": "risk"}]
-    request = json.dumps({"stops": STOPS, "objectives": names})
+    np.save(file, np.stack(matrices))
+    request = json.dumps({"stops": STOPS, "objectives": BARE})
     parts = {"request": (None, request), "matrices": ("costs.npy", file.getvalue())}
-    answer = client.post("/front", files=parts)
+    return client.post("/front", files=parts)
+
+
+def test_matrices_come_as_a_file_beside_stops(client: httpx.Client) -> None:
+    answer = posted_with_file(client, COSTS, COSTS.T)
     assert answer.status_code == 200, answer.text
-    assert answer.json()["objectives"] == [names[0], {"name": "risk", "unit": None}]
+    assert answer.json()["objectives"] == [BARE[0], {"name": "risk", "unit": None}]
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_file_must_have_a_matrix_for_each_objective(client: httpx.Client, count: int) -> None:
+    refused = problem(posted_with_file(client, *[COSTS] * count), 422, "invalid-request")
+    assert refused["errors"][0]["pointer"] == "/matrices"
 
 
 def test_costs_that_only_the_worker_finds_wrong_are_refused(client: httpx.Client) -> None:
