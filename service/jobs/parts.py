@@ -72,7 +72,12 @@ def parts_of(task: Task) -> frozenset[Part]:
 def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
     """Return the parts that a search for tours through stops needs."""
     if stops.hours is not None:
-        return frozenset(Part) - {Part.MAPS, Part.FLEETS}
+        return _of_means(stops, task) | {Part.OVER_THE_DAY, Part.SEVERAL_OBJECTIVES}
+    return _of_means(stops, task)
+
+
+def _of_means(stops: Stops, task: Task) -> frozenset[Part]:
+    """Return the parts that stops need whose costs do not change over the day."""
     if len(stops.sources) > OBJECTIVES:
         return _of_several(replanned=task.earlier is not None)
     few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
