@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 import httpx
 from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Progress, Refused
+from paretour.calls import address_of
 from paretour.kinds import parse_any
 from rich.console import Console
 
@@ -174,7 +175,7 @@ def _with_scheme(url: str) -> str:
     Raises:
         UsageError: It is not the URL of a service.
     """
-    whole = url if "://" in url else f"http://{url}"
+    whole = address_of(url)
     try:
         parsed = httpx.URL(whole)
     except httpx.InvalidURL as error:

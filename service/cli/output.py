@@ -79,14 +79,7 @@ def labels_of(front: FrontOfAnyKind) -> tuple[str, ...]:
     """Return the labels of all lengths: the name of the objective, with its unit if it has one."""
     if front.objectives is None:
         return LABELS[: front.lengths.shape[1]]
-    return tuple(map(printable, _names(front)))
-
-
-def _names(front: FrontOfAnyKind) -> list[str]:
-    return [
-        each.name if each.unit is None else f"{each.name} ({each.unit})"
-        for each in front.objectives or ()
-    ]
+    return tuple(map(printable, front.labels))
 
 
 def ids_of(front: Front) -> Ids | None:
@@ -105,8 +98,6 @@ def front_as_rows(front: Front, ids: Ids | None = None) -> Rows:
 
     As in CSV, an id is quoted if it has a space or a quotation mark in it.
     """
-    numbered = [f"length_{number + 1}" for number in range(front.lengths.shape[1])]
-    columns = numbered if front.objectives is None else _names(front)
     before = {"angle": front.angles} if front.lengths.shape[1] == OBJECTIVES else {}
     if front.departures is not None:
         before["departure"] = front.departures
@@ -114,7 +105,7 @@ def front_as_rows(front: Front, ids: Ids | None = None) -> Rows:
         (*(float(values[k]) for values in before.values()), *lengths.tolist(), _cities(tour, ids))
         for k, (lengths, tour) in enumerate(zip(front.lengths, front.tours, strict=True))
     ]
-    return [(*before, *columns, "tour"), *rows]
+    return [(*before, *front.labels, "tour"), *rows]
 
 
 def _cities(tour: NDArray[np.int64], ids: Ids | None) -> str:

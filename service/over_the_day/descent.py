@@ -118,7 +118,7 @@ def insert_driven(archive: BlockArchive, traffic: Traffic, tour: Cities, departu
 
 @compiled
 def descend(search: WeightedSearch, steps: int) -> bool:
-    """Try moves at so many dirty cities, at most; return whether no city is dirty any more."""
+    """Try moves at up to `steps` dirty cities; return whether none is dirty any more."""
     n = len(search.dirty)
     for _ in range(steps):
         looked = 0
@@ -136,7 +136,7 @@ def descend(search: WeightedSearch, steps: int) -> bool:
 
 @compiled
 def iterate(search: WeightedSearch, steps: int) -> None:
-    """Change the best tour at random and descend, so many times; keep what is no worse."""
+    """Change the best tour at random and descend, `steps` times; keep what is no worse."""
     for _ in range(steps):
         if not perturb(search):
             return
@@ -165,13 +165,13 @@ def perturb(search: WeightedSearch) -> bool:
 def apply(search: WeightedSearch, move: Move) -> None:
     """Make a move, whatever it is worth."""
     write_moved(search.walk, move)
-    make(search.walk, search.traffic, search.weights, move)
-    mark(search, move)
+    make_and_mark(search, move)
 
 
 @compiled
-def mark(search: WeightedSearch, move: Move) -> None:
-    """Note that moves are to be tried at the ends of all parts."""
+def make_and_mark(search: WeightedSearch, move: Move) -> None:
+    """Make a move, and note that moves are to be tried at the ends of all parts."""
+    make(search.walk, search.traffic, search.weights, move)
     n = len(search.dirty)
     begins_b = move.first + move.last - move.middle  # now
     for place in (move.first, begins_b, move.last):
@@ -197,8 +197,7 @@ def made_if_shorter(search: WeightedSearch, move: Move) -> bool:
     write_moved(walk, move)
     if not value_after(walk, traffic, weights, move) < walk.value[0] * (1 - _LEAST_GAIN):
         return False
-    make(walk, traffic, weights, move)
-    mark(search, move)
+    make_and_mark(search, move)
     insert_driven(search.archive, traffic, walk.tour, walk.value[1])
     return True
 

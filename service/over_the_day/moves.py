@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import compiled, inlined
-from service.over_the_day.travel import Cities, Moment, Traffic, driven, served, slice_at
+from service.over_the_day.travel import Cities, Moment, Traffic, begun, driven, served
 
 Array = NDArray[np.float64]
 
@@ -85,8 +85,7 @@ def drive_on(walk: DrivenTour, traffic: Traffic, weights: Array, place: int) -> 
     """Bring all that is known of a tour up to date, from a place on. O(n)."""
     tour, departure = walk.tour, walk.value[1]
     if place == 0:
-        at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
-        note(walk, 0, served(traffic, tour[0], at))
+        note(walk, 0, served(traffic, tour[0], begun(traffic, departure)))
         walk.ahead[0] = walk.back[0] = 0.0
     first = max(1, place)
     at = moment(walk, first - 1)
@@ -117,14 +116,8 @@ def moment(walk: DrivenTour, k: int) -> Moment:
 @compiled
 def write_moved(walk: DrivenTour, move: Move) -> None:
     """Write what stands at the places from `first` to before `last` after a move, to the buffer."""
-    to = move.first
-    if move.middle == move.last:
-        for k in range(move.middle - 1, move.first - 1, -1):
-            walk.buffer[to] = walk.tour[k]
-            to += 1
-        return
-    to = copied(walk, move.middle, move.last, to, move.turned_c)
-    copied(walk, move.first, move.middle, to, move.turned_b)
+    to = copied(walk, move.middle, move.last, move.first, move.turned_c)
+    copied(walk, move.first, move.middle, to, move.turned_b or move.middle == move.last)
 
 
 @compiled
@@ -195,10 +188,8 @@ def value_after(walk: DrivenTour, traffic: Traffic, weights: Array, move: Move) 
     """
     tour, first, last = walk.tour, move.first, move.last
     if first == 0:
-        departure = walk.value[1]
         city = walk.buffer[0]
-        at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
-        at = served(traffic, city, at)
+        at = served(traffic, city, begun(traffic, walk.value[1]))
         first = 1
     else:
         city = tour[first - 1]

@@ -92,6 +92,12 @@ def slice_at(traffic: Traffic, time: float, known: int) -> int:
     return known
 
 
+@inlined
+def begun(traffic: Traffic, departure: float) -> Moment:
+    """Return the moment at which a tour begins at a time."""
+    return Moment(departure, slice_at(traffic, departure, 0), 0.0)
+
+
 @compiled
 def driven(traffic: Traffic, i: int, j: int, at: Moment, weights: Array) -> Moment:
     """Return the moment of arrival at j of who leaves i at a moment."""
@@ -123,8 +129,7 @@ def served(traffic: Traffic, stop: int, at: Moment) -> Moment:
 @compiled
 def toured(traffic: Traffic, tour: Cities, departure: float, weights: Array) -> Moment:
     """Return the moment at which a tour ends that begins at a time. O(n)."""
-    at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
-    at = served(traffic, tour[0], at)
+    at = served(traffic, tour[0], begun(traffic, departure))
     for place in range(1, len(tour)):
         at = served(
             traffic, tour[place], driven(traffic, tour[place - 1], tour[place], at, weights)
@@ -238,7 +243,7 @@ def add_costs(traffic: Traffic, i: int, j: int, known: int, lengths: Array) -> N
 @compiled
 def sum_lengths(traffic: Traffic, tour: Cities, departure: float, lengths: Array) -> None:
     """Write the lengths of a tour, shape (m,). O(n)."""
-    at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
+    at = begun(traffic, departure)
     lengths[:] = 0.0
     n = len(tour)
     for place in range(n):
@@ -260,7 +265,7 @@ def write_reached(traffic: Traffic, tours: Cities, departures: Array, reached: A
     n = tours.shape[1]
     for k in range(len(tours)):
         departure, lengths = departures[k], reached[k]
-        at = Moment(departure, slice_at(traffic, departure, 0), 0.0)
+        at = begun(traffic, departure)
         lengths[0] = 0.0
         for place in range(n):
             i, j = tours[k, place], tours[k, (place + 1) % n]

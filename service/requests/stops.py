@@ -192,10 +192,10 @@ class Stops:
         Raises:
             InvalidInstance: The costs are too large, or too far apart, to be planned.
         """
-        planes = [source.points for source in self.sources if isinstance(source, Plane)]
         if self.day is not None:
             return self.day.instance
         ends = self.ends._asdict()
+        planes = [source.points for source in self.sources if isinstance(source, Plane)]
         if len(planes) == len(self.sources):
             return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
         return Instance(matrices=cost_matrices(self), **ends)

@@ -143,8 +143,8 @@ export class FleetForm {
   #showTrade() {
     const traded = isTraded(this.#asked);
     for (const each of document.querySelectorAll(".trade > *")) each.hidden = !traded;
-    const times = traded && timesOf(this.#asked);
     if (!traded) return;
+    const times = timesOf(this.#asked);
     const { objectives, clock } = this.#asked;
     this.#objectives.show(objectives, true);
     this.#clock.show(times === "own" ? [clock] : [], true, ["Times"]);

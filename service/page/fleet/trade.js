@@ -1,8 +1,8 @@
 /** Find what a fleet trades for its first objective, and what its times are measured by. */
 
+import { SPEED } from "../inputs/objective_fields.js";
 import { clockUnit } from "./units.js";
 
-const SPEED = 30; // km/h, until another is typed
 const STRAIGHT = { from: "great_circle" };
 
 /** The second objectives, by their measure or by `over` of their costs, each with its title and its name. */

@@ -1,7 +1,7 @@
 /** The fields of the objectives: names and units, and for stops how each is measured. */
 
 const TIMED = "speed"; // straight lines at a speed
-const SPEED = 30; // km/h, until another is typed
+export const SPEED = 30; // km/h, until another is typed
 const SOURCES = { great_circle: "Straight lines, m", [TIMED]: "Time in straight lines, s", road_time: "Time by road, s", road_distance: "Way by road, m" };
 const NTH = ["First", "Second", "Third", "Fourth"].map((each) => `${each} objective`);
 const OWN = "own"; // costs that came with the stops
