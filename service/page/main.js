@@ -152,7 +152,7 @@ function plan() {
 async function replan() {
   clearFaults();
   try {
-    const body = way.body(replanForm.changes, result.selected.tour);
+    const body = way.body(replanForm.changes, result.selected);
     const longer = way.with(replanForm.places);
     const { id } = answer;
     await run((mine) => replanned(mine.replan(id, body), longer), "The rest of the tour is being planned.");

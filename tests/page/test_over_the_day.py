@@ -1,22 +1,85 @@
-"""Tours over the day on the page: their hours beside the stops, and what is asked for."""
+"""Tours over the day on the page: departures, rush hours, the hours of stops, replanning."""
 
+import csv
+import io
+import json
 import re
+from collections.abc import Iterator
+from typing import Any
 
-from playwright.sync_api import Browser, expect
+import pytest
+from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import curl_body, needs_chromium, open_page, wait_until_planned
+from tests.helpers.accessibility import check_on_a_phone
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    saved,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
+HOUR, MINUTE = 3600, 60
+REQUEST: dict[str, Any] = {
+    "stops": [
+        {"id": f"order-{k}", "location": [24.93 + k % 3 / 100, 60.16 + k % 4 / 100]}
+        for k in range(7)
+    ],
+    "objectives": [
+        {"name": "way", "from": "great_circle"},
+        {"name": "time", "from": "great_circle", "speed": 30},
+    ],
+    "time_limit": 0.1,
+}
+HOURS = [[7.0 * HOUR, 1], [7.5 * HOUR, 1.6], [9.5 * HOUR, 1.1]]
 
-def test_the_hours_of_a_tour_stand_beside_its_stops(browser: Browser, released: str) -> None:
+
+@pytest.fixture(scope="module")
+def window(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all of these tests, each of which opens its stops."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+def opened(page: Page, **members: Any) -> Page:
+    """The page with stops opened, and nothing planned."""
+    page.get_by_role("button", name="Clear").click()
+    expect(page.locator("#count")).to_have_text("0 stops")
+    open_files(page, {"stops.json": json.dumps({**REQUEST, **members})})
+    expect(page.locator("#count")).to_have_text("7 stops")
+    return page
+
+
+def write(page: Page, label: str, text: str) -> None:
+    """Write a text into a field by its label, and leave it."""
+    field = page.get_by_label(label, exact=True)
+    field.fill(text)
+    field.press("Tab")
+
+
+def asked(page: Page) -> dict[str, Any]:
+    """The request that the page would send."""
+    body = curl_body(page)
+    return {
+        "departure": body.get("departure"),
+        "hours": [each.get("over_the_day") for each in body["objectives"]],
+    }
+
+
+def test_the_hours_of_a_tour_stand_beside_its_stops_and_in_files(
+    browser: Browser, released: str
+) -> None:
     with open_page(browser, released) as page:
         page.get_by_label("Example").select_option("Helsinki, rush hour")
         wait_until_planned(page)
-        asked = curl_body(page)
-        assert asked["departure"] == {"earliest": 25200, "latest": 30600}
-        assert asked["stops"][1]["service"] == 45
-        assert len(asked["objectives"][0]["over_the_day"]) == 5
+        body = curl_body(page)
+        assert body["departure"] == {"earliest": 25200, "latest": 30600}
+        assert body["stops"][1]["service"] == 45
+        assert len(body["objectives"][0]["over_the_day"]) == 5
         figures = page.locator("#tour-figures")
         expect(figures).to_contain_text(re.compile(r"Leaves at\s*[78]:\d\d"))
         page.locator("#order > summary").click()
@@ -24,4 +87,94 @@ def test_the_hours_of_a_tour_stand_beside_its_stops(browser: Browser, released: 
         expect(order).to_have_text(
             re.compile(r"^depot [78]:\d\d → order-\d+ .* → depot (9|10):\d\d$")
         )
-        assert len((order.text_content() or "").split(" → ")) == len(asked["stops"]) + 1
+        assert len((order.text_content() or "").split(" → ")) == len(body["stops"]) + 1
+        rows = list(csv.DictReader(io.StringIO(saved(page, "CSV").decode())))
+        assert all(25200 <= float(row["departure"]) <= 30600 for row in rows)
+        chart = page.get_by_role("img", name=re.compile("^Times of travel over the day"))
+        expect(chart).to_contain_text("1.9")
+        check_on_a_phone(page)
+
+
+def test_stops_get_rush_hours_and_a_departure_by_typing(window: Page) -> None:
+    page = opened(window)
+    page.get_by_text("Time of day", exact=True).click()
+    expect(page.get_by_label("Leaves at the earliest")).to_be_hidden()
+    write(page, "Rush hours", "7:00 1, 7:30 x1,6; 9:30 1.1")
+    assert asked(page) == {"departure": 7 * HOUR, "hours": [None, HOURS]}
+    write(page, "to", "8:30")
+    assert asked(page)["departure"] == {"earliest": 7 * HOUR, "latest": 8.5 * HOUR}
+    write(page, "Leaves at, or from", "9:15")  # which takes the other one along
+    assert asked(page)["departure"] == 9.25 * HOUR
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    expect(page.locator("#tour-figures")).to_contain_text(re.compile(r"Leaves at\s*9:15"))
+    write(page, "Rush hours", "")
+    write(page, "Leaves at, or from", "")
+    assert asked(page) == {"departure": None, "hours": [None, None]}
+
+
+def test_sliders_choose_when_tours_may_leave(window: Page) -> None:
+    objectives = [REQUEST["objectives"][0], {**REQUEST["objectives"][1], "over_the_day": HOURS}]
+    page = opened(window, objectives=objectives, departure=7 * HOUR)
+    latest = page.get_by_label("Leaves at the latest")
+    latest.press("ArrowRight")
+    assert asked(page)["departure"] == {"earliest": 7 * HOUR, "latest": 7 * HOUR + 5 * MINUTE}
+    expect(page.get_by_label("to", exact=True)).to_have_value("7:05")
+    expect(latest).to_have_attribute("aria-valuetext", "7:05")
+    page.get_by_label("Leaves at the earliest").press("PageUp")
+    departure = asked(page)["departure"]
+    assert isinstance(departure, int)  # both ends are where the first one is
+    assert departure > 7 * HOUR + 5 * MINUTE
+
+
+@pytest.mark.parametrize(
+    ("label", "text", "fault"),
+    [
+        ("Leaves at, or from", "soon", "Leaves at must be a time, as 7:30."),
+        ("Rush hours", "7:00 fast", "Rush hours must be times and factors in order, as 7:00 1;"),
+        ("Rush hours", "9:00 1; 8:00 2", "Rush hours must be times and factors in order, as"),
+        ("Rush hours", "9:00 0", "Rush hours must be times and factors in order, as"),
+    ],
+)
+def test_what_is_no_time_is_said(window: Page, label: str, text: str, fault: str) -> None:
+    page = opened(window, departure=7 * HOUR)
+    write(page, label, text)
+    expect(page.locator("#departure-fault")).to_contain_text(fault)
+    assert asked(page) == {"departure": 7 * HOUR, "hours": [None, None]}
+
+
+def test_visits_that_take_time_need_a_departure(window: Page) -> None:
+    stops = [{**stop, "service": 60} for stop in REQUEST["stops"]]
+    page = opened(window, stops=stops)
+    page.get_by_role("button", name="Plan", exact=True).click()
+    expect(page.locator("#departure-fault")).to_contain_text("Say when tours leave")
+    expect(page.get_by_label("Leaves at, or from")).to_be_focused()
+
+
+def test_matrices_of_slices_are_drawn_and_stay_with_their_stops(window: Page) -> None:
+    def matrix(cost: float) -> list[list[float]]:
+        return [[cost] * 7 for _ in range(7)]
+
+    slices = [{"from": 7 * HOUR, "matrix": matrix(2)}, {"from": 8 * HOUR, "matrix": matrix(3)}]
+    objectives = [REQUEST["objectives"][0], {"name": "time", "unit": "s", "slices": slices}]
+    page = opened(window, objectives=objectives, departure=7 * HOUR)
+    expect(page.get_by_role("img", name="Times of travel over the day")).to_contain_text("1.5")
+    expect(page.get_by_label("Rush hours")).to_be_disabled()
+    page.get_by_label("Delete order-3").click()
+    sent = curl_body(page)["objectives"][1]["slices"]
+    assert [len(each["matrix"]) for each in sent] == [6, 6]
+
+
+def test_the_rest_is_planned_from_the_time_at_which_the_vehicle_is_there(window: Page) -> None:
+    stops = [{**stop, "service": 60} for stop in REQUEST["stops"]]
+    page = opened(window, stops=stops, departure=7 * HOUR)
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    page.locator("#replanning > summary").click()
+    write(page, "Visited up to", "order-0")
+    page.get_by_role("button", name="Replan", exact=True).click()
+    figures = page.locator("#tour-figures")
+    expect(figures).to_contain_text(re.compile(r"Leaves at\s*7:01"))  # after the visit
+    write(page, "It is now", "10:20")
+    page.get_by_role("button", name="Replan", exact=True).click()
+    expect(figures).to_contain_text(re.compile(r"Leaves at\s*10:20"))

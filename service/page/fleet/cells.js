@@ -1,10 +1,10 @@
 /** The cells of the tables of a fleet: members of stops and vehicles as text, and text as their values. */
 
 import { SECONDS } from "../common/durations.js";
+import { timeOfDay, timeText } from "../common/times_of_day.js";
 import { clockUnit } from "./units.js";
 
-const [MINUTE, HOUR, MOST_HOURS] = [60, 3600, 1000]; // seconds, seconds, hours
-const TIME = /^(\d{1,3}):([0-5]\d)(?::([0-5]\d))?$/;
+const [MINUTE, HOUR] = [60, 3600]; // seconds
 const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+) ?s)?$/;
 const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
 const COUNTED = "a number in the unit of the times";
@@ -18,7 +18,7 @@ const TYPES = {
   number: { write: String, read: number, hint: "a number" },
   loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), number), hint: "whole numbers, as 2 or 2, 5" },
   words: { write: listed, read: (text) => pieces(text, /[;,|]/) },
-  time: { write: timeText, read: time, hint: "a time, as 10:30" },
+  time: { write: writtenTime, read: time, hint: "a time, as 10:30" },
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },
   spans: {
     write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
@@ -66,7 +66,7 @@ function valueOf(item, { member, several, part }) {
 
 const listOf = (value) => (Array.isArray(value) ? value : [value]);
 const spansOf = (value) => (Array.isArray(value[0]) ? value : value.length ? [value] : []);
-const spanText = (span, second) => listOf(span).map((each) => timeText(each, second)).join("-");
+const spanText = (span, second) => listOf(span).map((each) => writtenTime(each, second)).join("-");
 const pieces = (text, separator) => text.split(separator).map((each) => each.trim()).filter(Boolean);
 
 /** Texts as a list of values; undefined if one is not understood, or there is none. */
@@ -85,17 +85,12 @@ function number(text) {
 }
 
 function time(text, second) {
-  const [whole, hours, minutes, seconds = 0] = TIME.exec(text.trim()) ?? [];
-  if (!whole) return number(text);
-  return second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second;
+  const seconds = timeOfDay(text);
+  return seconds === undefined ? number(text) : second && seconds / second;
 }
 
-function timeText(value, second) {
-  const seconds = value * second;
-  if (!Number.isInteger(seconds) || seconds < 0 || seconds >= MOST_HOURS * HOUR) return String(value);
-  const two = (part) => String(part).padStart(2, "0");
-  const minutes = `${Math.floor(seconds / HOUR)}:${two(Math.floor(seconds / MINUTE) % MINUTE)}`;
-  return seconds % MINUTE ? `${minutes}:${two(seconds % MINUTE)}` : minutes;
+function writtenTime(value, second) {
+  return timeText(value * second) ?? String(value);
 }
 
 function lasting(text, second) {

@@ -29,10 +29,10 @@ export class ObjectiveFields {
   #changed(axis, member, value) {
     if (member === "speed") return { speed: speedIn(value) };
     if (member !== "source") return { [member]: value || undefined };
-    const { matrix, coordinates } = this.#own[axis];
-    if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates };
+    const { matrix, coordinates, slices } = this.#own[axis];
+    if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates, slices };
     // A unit that was typed for another source would be wrong; the service knows that of the source.
-    const others = { unit: undefined, matrix: undefined, coordinates: undefined };
+    const others = { unit: undefined, matrix: undefined, coordinates: undefined, slices: undefined };
     return value === TIMED ? { from: "great_circle", speed: SPEED, ...others } : { from: value, speed: undefined, ...others };
   }
 }
@@ -78,9 +78,9 @@ function labelled(title, input, label = title) {
 
 const input = (axis, member, value) => marked(Object.assign(document.createElement("input"), { value, autocomplete: "off" }), axis, member);
 
-function source(axis, { from, speed, matrix, coordinates }) {
+function source(axis, { from, speed, matrix, coordinates, slices }) {
   const made = marked(document.createElement("select"), axis, "source");
-  if (matrix || coordinates) made.append(new Option(matrix ? "Costs from the file" : "A plane from the file", OWN));
+  if (matrix || coordinates || slices) made.append(new Option(coordinates ? "A plane from the file" : "Costs from the file", OWN));
   made.append(...Object.entries(SOURCES).map(([name, title]) => new Option(title, name)));
   made.value = from === "great_circle" && speed != null ? TIMED : (from ?? OWN);
   return made;

@@ -1,6 +1,7 @@
 /** The form, put together: stops as a table and as text, the objectives, and the settings. */
 
 import { isCity, textOf } from "./cities.js";
+import { DayForm } from "./day_form.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.js";
 import { FleetForm } from "../fleet/fleet_form.js";
@@ -24,6 +25,7 @@ export class RequestForm {
   #table;
   #objectiveFields;
   #fleet;
+  #day = new DayForm((changed) => this.#change(changed));
   #text = new RequestText(element("fleet-request"));
   #onEdited;
   #settled;
@@ -63,6 +65,7 @@ export class RequestForm {
     element("typed").hidden = form !== "coordinates";
     element("named").hidden = !this.#isFleet && (Boolean(kind.movers || wanted.cost_layers) || !(kind.onGrid || form));
     this.#fleet.open(this.#isFleet ? this.#brought : null);
+    this.#day.open(this.#brought);
     this.#show(wanted.coordinates ?? []);
     element("rounding").hidden = !wanted.rounded;
     element("rounded").checked = Boolean(wanted.rounded);
@@ -137,7 +140,7 @@ export class RequestForm {
     this.#change(servedBy(this.#brought, this.ids.indexOf(stop), vehicle));
   }
 
-  /** Takes the changed request of a fleet. */
+  /** Takes the changed request of a fleet, or one with other hours. */
   #change(changed) {
     this.#brought = changed;
     this.#objectives = namesIn(changed);
@@ -196,6 +199,7 @@ export class RequestForm {
     element("count").textContent = shown ? counted(count, "stop", "stops") : "";
     for (const id of ["add", "place"]) element(id).disabled = form !== "coordinates" && !isMeasured(this.#brought);
     element("add").hidden = element("place").hidden = !shown;
+    this.#day.show(this.#brought);
     this.#text.show(kindOf(this.#brought).movers ? this.#brought : null);
     element("brought").textContent = described(this.#brought);
     element("brought").hidden = !element("brought").textContent;

@@ -8,7 +8,7 @@ export const isMeasured = (asked) => Boolean(asked.objectives?.every(({ from, me
 const hasOwnTimes = ({ clock }) => Boolean(clock?.matrix || clock?.coordinates);
 
 /** Whether some costs or times of a request are those of a matrix, and not measured between places. */
-export const isPriced = ({ objectives, clock }) => Boolean(objectives?.some(({ matrix }) => matrix) || clock?.matrix);
+export const isPriced = ({ objectives, clock }) => Boolean(objectives?.some(({ matrix, slices }) => matrix || slices) || clock?.matrix);
 
 /** The same request with other stops; objectives and a clock keep the rows and columns of `kept`. */
 function withStops(asked, stops, kept) {
@@ -18,7 +18,8 @@ function withStops(asked, stops, kept) {
 }
 
 function costsOf(objective, kept) {
-  const { matrix, coordinates } = objective;
+  const { matrix, coordinates, slices } = objective;
+  if (slices) return { ...objective, slices: slices.map((each) => costsOf(each, kept)) };
   if (matrix) return { ...objective, matrix: kept.map((from) => kept.map((to) => matrix[from][to])) };
   if (coordinates) return { ...objective, coordinates: kept.map((row) => coordinates[row]) };
   return objective;

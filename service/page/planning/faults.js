@@ -1,7 +1,7 @@
 /** Show each fault of an error at its field. */
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives" };
-for (const member of ["tour", "done", "remove", "add", "position"]) FIELD_OF[member] = "replan";
+for (const member of ["tour", "done", "remove", "add", "position", "now"]) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 
@@ -97,6 +97,10 @@ const SAID = [
   [/^objectives\/1\/measure (\w+) needs/, (_, measure) => `the second objective, ${measure}, needs`],
   [/\bneeds stops with due\b/, () => "needs stops that are due: write times into their column Due"],
   [/\bneeds vehicles with max_overtime\b/, () => "needs vehicles that may be late: fill their column Most overtime"],
+  [/^departure is required.*/, () => "say when tours leave: travel changes over the day, or visits take time"],
+  [/^clock is required.*/, () => "one objective must be a time: measure it by road, or in straight lines at a speed"],
+  [/^objectives\/([0-3])\/unit must be s\b.*?, got/, (_, axis) => `the ${NTH[axis]} objective must be in s, as tours leave at a time of day; its unit is`],
+  [/^objectives\/[0-3]\/over_the_day\/(\d+)\/[01]/, (_, at) => `number ${counted(at)} of the rush hours`],
   [/^clock must be the name of an objective.*/, () => "times must be those of one of both objectives"],
   [/^end must not be the start.*/, () => "end must not be the start; leave it empty for a tour that returns"],
   [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or click it into place"],

@@ -32,6 +32,8 @@ export class ReplanForm {
     this.#vehicle = null;
     element("replanning").hidden = !way;
     for (const id of ["at", "removed", "added"]) element(id).value = "";
+    element("now").value = "";
+    element("now-field").hidden = way?.instance.departure == null;
     const placed = way && (way.instance.coordinates || isMeasured(way.instance));
     for (const id of ["place-vehicle", "place-added", "added-field"]) element(id).hidden = !placed;
     for (const placing of this.#placings) placing.stop();
@@ -44,7 +46,7 @@ export class ReplanForm {
 
   get changes() {
     const names = element("removed").value.split(",").map((name) => name.trim());
-    return { at: element("at").value.trim(), removed: names.filter(Boolean), added: this.#added, vehicle: this.#vehicle };
+    return { at: element("at").value.trim(), now: element("now").value.trim(), removed: names.filter(Boolean), added: this.#added, vehicle: this.#vehicle };
   }
 
   /** The places that are not stops of the front yet. */

@@ -1,6 +1,7 @@
 /** Replanning: the stops of a way, and what has changed on it as the body of `POST /front/{id}/replan`. */
 
 import { Problem } from "./service.js";
+import { timeOfDay } from "../common/times_of_day.js";
 
 /**
  * The stops of a front that can be replanned: all stops so far, also those visited, in the order in which
@@ -13,19 +14,25 @@ export class Way {
     this.names = this.keys.map((key) => (typeof key === "number" ? String(key + 1) : key));
   }
 
-  /** The changes: `at` is the last stop visited, on a tour through these cities. */
-  body({ at, removed, added, vehicle }, tour) {
+  /** The changes: `at` is the last stop visited on a tour, and `now` the time of day, by default that at which it leaves there. */
+  body({ at, now, removed, added, vehicle }, { tour, times }) {
     const visit = (name) => tour.indexOf(this.names.indexOf(name));
     const unknown = [at, ...removed].find((name) => name && visit(name) < 0);
     if (unknown) throw new Problem({ code: "unknown-stop", detail: `the selected tour has no stop "${unknown}"` });
     const keys = tour.map((city) => this.keys[city]);
     return {
       tour: keys,
+      ...(times && { now: now ? timeNamed(now) : this.#leaves(tour, times, at ? visit(at) : 0) }),
       done: at ? keys.slice(0, visit(at) + 1) : [],
       remove: removed.map((name) => keys[visit(name)]),
       add: added.map((stop) => this.#placed(stop)),
       ...(vehicle && { position: this.#placed(vehicle) }),
     };
+  }
+
+  /** When a tour leaves its stop at a place. */
+  #leaves(tour, times, place) {
+    return times[place] + (this.instance.stops[tour[place]].service ?? 0);
   }
 
   /** The way with the added stops, once it is replanned. */
@@ -53,4 +60,10 @@ export class Way {
     if (this.instance.coordinates) return { id, coordinates: [row.slice(0, 2), row.slice(2)] };
     return { id, location: row };
   }
+}
+
+function timeNamed(text) {
+  const time = timeOfDay(text);
+  if (time === undefined) throw new Problem({ code: "invalid-request", detail: `the time now must be as 8:15, got "${text}"` });
+  return time;
 }

@@ -9,17 +9,20 @@ export function curl({ path, body }) {
   return `curl ${address} -H 'Content-Type: application/json' -d @- <<'END'\n${JSON.stringify(body)}\nEND\n`;
 }
 
-/** A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, and the answer's ids where it has them. */
+/**
+ * A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, the answer's ids
+ * where it has them, and the departure in seconds of the day where it has one.
+ */
 export function csv({ kind, front }, objectives) {
   const { movers } = kindNamed({ kind });
   const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
   if (movers) return csvOfPlans(front, titles, movers);
-  const rows = front.map(({ angle, lengths, tour, stops }) => {
+  const rows = front.map(({ angle, departure, lengths, tour, stops }) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
-    return [...(angle === undefined ? [] : [angle]), ...lengths, places.join(" ")];
+    return [...[angle, departure].filter((each) => each !== undefined), ...lengths, places.join(" ")];
   });
-  const angle = titles.length === 2 ? ["angle"] : [];
-  return [[...angle, ...titles, "tour"], ...rows].map(line).join("");
+  const before = [...(titles.length === 2 ? ["angle"] : []), ...(front[0]?.departure === undefined ? [] : ["departure"])];
+  return [[...before, ...titles, "tour"], ...rows].map(line).join("");
 }
 
 /** A route on each line, after the members of its plan; with its shift, if its vehicle has several. */

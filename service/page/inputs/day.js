@@ -1,0 +1,83 @@
+/** The time of day in a request: when tours may leave, and how the times of travel change. */
+
+import { unitOf } from "../fleet/units.js";
+import { kindOf } from "../common/kinds.js";
+import { timeOfDay, timeText } from "../common/times_of_day.js";
+
+const [LEAST, MOST] = [0.01, 100]; // factors that the service takes
+const BETWEEN = /\s*[;\n]\s*|\s*,\s*(?=\d{1,3}:)/;
+const PAIR = /^(\d[\d:]*)\s*[×x*=\s]\s*(\d+(?:[.,]\d+)?)$/i;
+
+/** Whether tours of a request can leave at a time. */
+export const canHaveDay = (asked) => Boolean(asked.stops && Array.isArray(asked.objectives)) && !kindOf(asked).movers;
+
+/** When tours may leave: the earliest and the latest second of the day; null if at no time in particular. */
+export function departuresIn({ departure }) {
+  if (departure == null) return null;
+  return typeof departure === "object" ? [departure.earliest, departure.latest] : [departure, departure];
+}
+
+/** The request whose tours leave at one of these times; null is for none. */
+export function leaving({ departure: _, ...others }, times) {
+  if (!times) return others;
+  const [earliest, latest] = times;
+  return { ...others, departure: earliest === latest ? earliest : { earliest, latest } };
+}
+
+/** The index of the objective that is measured in seconds of travel, as the service finds it; -1 if none is. */
+export function clockIn({ objectives, clock }) {
+  if (clock != null) return objectives.findIndex(({ name }) => name === clock);
+  const changing = objectives.findIndex(({ over_the_day: factors, slices }) => factors?.length || slices?.length);
+  return changing < 0 ? objectives.findIndex((each) => unitOf(each) === "s") : changing;
+}
+
+/** How the times of travel change: pairs of a second of the day and a factor from then on. */
+export function hoursIn(asked) {
+  const { over_the_day: factors, slices } = asked.objectives[clockIn(asked)] ?? {};
+  return slices?.length ? relative(slices) : (factors ?? []);
+}
+
+/** Whether these hours came with the costs of a file. */
+export const hasSlices = (asked) => Boolean(asked.objectives[clockIn(asked)]?.slices?.length);
+
+/** The request whose times of travel change so; its tours leave from the first of these hours on, if they left at no time. */
+export function changingOver(asked, hours) {
+  const axis = clockIn(asked);
+  const { over_the_day: _, ...objective } = asked.objectives[axis];
+  const changed = hours.length ? { ...objective, over_the_day: hours } : objective;
+  const departure = hours.length ? (asked.departure ?? hours[0][0]) : asked.departure;
+  return { ...asked, objectives: asked.objectives.with(axis, changed), ...(departure != null && { departure }) };
+}
+
+export const hoursText = (hours) => hours.map(([from, factor]) => `${timeText(from) ?? from} ${factor}`).join("; ");
+
+/** Hours as they are typed; undefined if they are not understood, too large, too small or out of order. */
+export function hoursTyped(text) {
+  const hours = text.split(BETWEEN).filter(Boolean).map(pair);
+  const fine = hours.every((each, at) => each && (!at || each[0] > hours[at - 1]?.[0]));
+  return fine ? hours : undefined;
+}
+
+function pair(text) {
+  const [, time, number] = PAIR.exec(text.trim()) ?? [];
+  const [from, factor] = time ? [timeOfDay(time), Number(number.replace(",", "."))] : [];
+  return from !== undefined && factor >= LEAST && factor <= MOST ? [from, factor] : undefined;
+}
+
+const known = new WeakMap(); // the hours of slices, by these: they are long to sum
+
+/** The mean cost of each slice, as a factor on that of the cheapest one. */
+function relative(slices) {
+  if (!known.has(slices)) {
+    const means = slices.map(({ matrix }) => mean(matrix));
+    const least = Math.min(...means);
+    known.set(slices, slices.map(({ from }, at) => [from, least > 0 ? means[at] / least : 1]));
+  }
+  return known.get(slices);
+}
+
+/** The mean cost of a leg; no leg leads from a stop to itself, or where there is no way. */
+function mean(matrix) {
+  const costs = matrix.flatMap((row, from) => row.filter((cost, to) => to !== from && cost != null));
+  return costs.reduce((sum, cost) => sum + cost, 0) / (costs.length || 1);
+}
