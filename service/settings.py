@@ -227,6 +227,8 @@ class Settings(BaseSettings):
     """the most metres from a stop to a road"""
     router_seconds: Seconds = 20.0
     """how long the routing engine may take for one request's costs, or streets"""
+    router_traffic: bool = False
+    """whether the routing engine, a Valhalla, has historical traffic, which requests may ask for"""
     router_pairs: Annotated[int, _whole(1, 10_000)] = 2500
     """the most pairs of stops in one question to the routing engine"""
     router_cache_bytes: Annotated[int, _whole(0, _MOST_BYTES)] = 2**26
@@ -255,7 +257,10 @@ class Settings(BaseSettings):
         """The routing engine, if there is one."""
         if self.router_url is None:
             return None
+        if self.router_traffic and self.router != "valhalla":
+            raise ValueError("PARETOUR_ROUTER_TRAFFIC needs PARETOUR_ROUTER=valhalla")
         named = {name.removeprefix("router_"): value for name, value in self if "router_" in name}
+        del named["traffic"]
         named["profile"] = self.router_profile or DEFAULT_PROFILES[self.router]
         # Less than the request's, so that the error names the slow engine as the cause.
         named["seconds"] = min(self.router_seconds, _ROUTER_SHARE * self.request_seconds)
@@ -266,7 +271,8 @@ class Settings(BaseSettings):
         """The limits of a request: the settings whose names begin with `max_`."""
         named = {name.removeprefix("max_"): value for name, value in self if name[:4] == "max_"}
         seconds = named.pop("time_limit")
-        return Limits(**named, seconds=seconds, roads=self.router_url is not None)
+        roads = self.router_url is not None
+        return Limits(**named, seconds=seconds, roads=roads, traffic=roads and self.router_traffic)
 
 
 PREFIX = "PARETOUR_"

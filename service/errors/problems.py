@@ -100,6 +100,11 @@ PROBLEMS: Mapping[str, Problem] = {
     "no-router": Problem(
         422, "{name} {measure} needs a routing engine, and none is configured", _ROADS
     ),
+    "no-traffic": Problem(
+        422,
+        "{name} needs a routing engine that has historical traffic, and none is configured",
+        _ROADS,
+    ),
     "no-road": Problem(422, "{detail}", _ROADS),
     "off-road": Problem(422, "{detail}", _ROADS),
     "paths-too-long": Problem(

@@ -1,6 +1,7 @@
 """The fields of requests about the time of day, and what they say about stops and costs."""
 
 from collections.abc import Sequence
+from datetime import date
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -11,9 +12,20 @@ from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional
 from service.requests.stop_fields import NamedStop, ObjectiveItem
-from service.requests.stops import FixedSource, Hours, OverTheDay, Slices, Source, Stop
+from service.requests.stops import (
+    FixedSource,
+    Hours,
+    Measured,
+    OverTheDay,
+    Slices,
+    Source,
+    Stop,
+    Traffic,
+)
 from service.requests.validation import show
 
+_YEARS = (1970, 2999)  # that Valhalla reads
+_MOST_TIMES = 2**23  # of travel, in all slices of one objective
 _LATEST = 864_000  # ten days
 _MOST_SLICES = 100  # every quarter of an hour, and a few more
 _LEAST_FACTOR, _MOST_FACTOR = 0.01, 100.0
@@ -29,6 +41,20 @@ class SliceItem(StrictModel):
     matrix: CostRows = Field(
         description=f"the costs from each stop (row) to each (column), {NO_WAY}; a leg that one"
         " slice has no way for is never driven"
+    )
+
+
+class TrafficItem(StrictModel):
+    """Which times of travel a routing engine is asked for."""
+
+    day: str = Field(
+        alias="date", description="the date, as 2026-11-27", json_schema_extra={"format": "date"}
+    )
+    begins: Annotated[list[TimeOfDay], Field(max_length=_MOST_SLICES, fail_fast=True)] = Field(
+        alias="at",
+        min_length=1,
+        description="seconds of that day, whole minutes: from each of them on, the costs are the"
+        " times that the engine knows for it",
     )
 
 
@@ -69,6 +95,10 @@ class DayObjectiveItem(ObjectiveItem):
         " ends; the first one holds before it too",
     )
 
+    traffic: TrafficItem | None = optional(
+        "with `from` road_time: the historical traffic of the operator's routing engine"
+    )
+
     choices: ClassVar[str] = "matrix, coordinates, from and slices"
 
     @property
@@ -79,7 +109,7 @@ class DayObjectiveItem(ObjectiveItem):
     @property
     def changes(self) -> bool:
         """Whether its costs change over the day."""
-        return bool(self.over_the_day or self.slices)
+        return bool(self.over_the_day or self.slices or self.traffic)
 
     def source(self, part: str, stops: Sequence[Stop]) -> Source:
         """Return the source of the costs between these stops, over the day.
@@ -90,10 +120,43 @@ class DayObjectiveItem(ObjectiveItem):
         """
         if self.sources == ["slices"]:
             return self._slices(part, len(stops))
-        return self.over(part, self.fixed_source(part, stops))
+        base = self.fixed_source(part, stops)
+        if self.traffic is not None and isinstance(base, Measured):
+            return self._traffic(part, len(stops))
+        return self.over(part, base)
+
+    def _traffic(self, part: str, n: int) -> Traffic:
+        assert self.traffic is not None
+        part, begins = f"{part}/traffic", self.traffic.begins
+        if self.measure != "road_time":
+            raise invalid(part, f"needs from road_time, got {self.measure}")
+        if self.over_the_day:
+            raise invalid(part, "must not be given together with over_the_day")
+        _check_times(f"{part}/at", [f"{k}" for k in range(len(begins))], begins)
+        for k, seconds in enumerate(begins):
+            if seconds % 60:
+                raise invalid(f"{part}/at/{k}", f"must be a whole minute, got {seconds:g}")
+        most = max(1, _MOST_TIMES // n**2)
+        if len(begins) > most:
+            demand = f"must have at most {most} times for {n} stops"
+            raise invalid(f"{part}/at", f"{demand}, got {len(begins)}")
+        return Traffic(self._date(f"{part}/date"), tuple(begins))
+
+    def _date(self, part: str) -> str:
+        assert self.traffic is not None
+        try:
+            found = date.fromisoformat(self.traffic.day)
+        except ValueError:
+            demand = f"must be a date, as 2026-11-27, got {show(self.traffic.day)}"
+            raise invalid(part, demand) from None
+        if not _YEARS[0] <= found.year <= _YEARS[1]:
+            raise invalid(part, f"must be of the years {_YEARS[0]} to {_YEARS[1]}, got {found}")
+        return found.isoformat()
 
     def over(self, part: str, base: FixedSource) -> Source:
         """Return a source with the factors of the day, if there are any."""
+        if self.traffic is not None:
+            raise invalid(f"{part}/traffic", "needs from road_time")
         if not self.over_the_day:
             return base
         begins, factors = zip(*self.over_the_day, strict=True)
@@ -105,8 +168,9 @@ class DayObjectiveItem(ObjectiveItem):
         return OverTheDay(base, np.array(begins, np.float64), np.array(factors, np.float64))
 
     def _slices(self, part: str, n: int) -> Slices:
-        if self.over_the_day:
-            raise invalid(f"{part}/over_the_day", "must not be given together with slices")
+        for name in ("over_the_day", "traffic"):
+            if getattr(self, name):
+                raise invalid(f"{part}/{name}", "must not be given together with slices")
         begins = [item.begins for item in self.slices]
         _check_times(f"{part}/slices", [f"{k}/from" for k in range(len(begins))], begins)
         matrices = []

@@ -26,8 +26,10 @@ JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
 FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
 _CITIES = (*FORMS, "objectives")
 _SOURCES = ("matrix", "coordinates", "from", "measure", "slices")
-# A speed is an option of one measure.
+# A speed and traffic are options of one measure each.
 _OF_A_SPEED: Schema = {"speed": {"properties": {"from": {"const": "great_circle"}}}}
+_OF_TRAFFIC: Schema = {"traffic": {"properties": {"from": {"const": "road_time"}}}}
+_OPTIONS = ("speed", "traffic")
 _SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
 # The schemas of an objective by its source of costs; those of fleets have names of their own.
 _Described = Mapping[str, tuple[str, Sequence[str]]]  # description and source, by name
@@ -87,7 +89,8 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     ]
     kinds = {**_FRONT_OBJECTIVES, **_IN_A_FILE}
     objectives = _objectives(parts["DayObjectiveItem"], limits, kinds)
-    items = [parts[name] for name in ("StopItem", "SliceItem", "DepartureRange")]
+    traffic = ["TrafficItem"] if limits.traffic else []
+    items = [parts[name] for name in ("StopItem", "SliceItem", "DepartureRange", *traffic)]
     return _by_title(*map(_without_null, items), *objectives, *map(_without_null, forms))
 
 
@@ -120,7 +123,7 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     """
     whole = limited_schema(ReplanRequest, limits, actors)
     parts = whole.pop("$defs")
-    del parts["DayObjectiveItem"]
+    del parts["DayObjectiveItem"], parts["TrafficItem"]
     fields = whole["properties"]
     fields["objectives"]["items"] = one_of(_FRONT_OBJECTIVES)
     fields["grid"]["items"]["items"] = {"enum": [0, 1]}
@@ -295,18 +298,20 @@ def _objectives(schema: Schema, limits: Limits, kinds: _Described) -> list[Schem
         measures = schema["properties"]["from"]["enum"]
         known = [measure for measure in measures if measure not in ROAD_MEASURES]
         schema = _with(schema, **{"from": {**schema["properties"]["from"], "enum": known}})
-    measured = {**schema, "dependentSchemas": _OF_A_SPEED}
+    traffic = limits.traffic and "traffic" in schema["properties"]
+    options = {**_OF_A_SPEED, **(_OF_TRAFFIC if traffic else {})}
+    measured = {**schema, "dependentSchemas": options}
     others = {
-        "from": _SOURCES,
-        "measure": (*_SOURCES, "speed", "over"),
-        "slices": (*_SOURCES, "speed", "over_the_day"),
+        "from": _SOURCES if traffic else (*_SOURCES, "traffic"),
+        "measure": (*_SOURCES, *_OPTIONS, "over"),
+        "slices": (*_SOURCES, *_OPTIONS, "over_the_day"),
     }
     return [
         _variant(
             measured if "from" in source else schema,
             name,
             description,
-            others.get("".join(source), (*_SOURCES, "speed")),
+            others.get("".join(source), (*_SOURCES, *_OPTIONS)),
             source,
         )
         for name, (description, source) in kinds.items()

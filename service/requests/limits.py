@@ -9,7 +9,7 @@ from service.front import PlanOptions
 from service.instance import Array, Kind
 from service.objectives import OBJECTIVES
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
-from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
+from service.requests.stops import ROAD_MEASURES, Measured, Source, Traffic, base_of
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
 _ID_BYTES = 40  # of ids that count as one cell of an answer: a UUID in quotation marks
@@ -36,6 +36,7 @@ class Limits:
         size: Tours to return, or initial tours in a request.
         seconds: The time limit of planning.
         roads: Whether a routing engine is configured, so that costs may be by road.
+        traffic: Whether it has historical traffic.
     """
 
     body_bytes: int
@@ -51,6 +52,7 @@ class Limits:
     fleet_stops: int = 500
     repairs: int = 200
     roads: bool = False
+    traffic: bool = False
 
     @property
     def of_options(self) -> Mapping[str, float]:
@@ -202,10 +204,13 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
 
 
 def check_router(sources: Sequence[Source], limits: Limits) -> None:
-    """Raise a refusal where costs by road are asked for, and no routing engine is configured."""
-    if limits.roads:
-        return
+    """Raise a refusal where costs by road or traffic are asked for, and no engine has them."""
     for m, source in enumerate(map(base_of, sources)):
+        if isinstance(source, Traffic) and not limits.traffic:
+            part = f"objectives/{m}/traffic"
+            raise Refusal("no-traffic", name=part, pointer=f"/{part}")
+        if limits.roads:
+            continue
         if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
             part = f"objectives/{m}/from"
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")

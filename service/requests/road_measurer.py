@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from service.errors import Cancelled
-from service.requests.stops import Stops
+from service.requests.stops import Array, RoadMeasure, Stops, Traffic
 from service.requests.task import Task, UnmeasuredFleet
 from service.roads.client import RoadClient
 from service.search.forbidden_legs import check_ways
@@ -18,7 +18,7 @@ _POLL_SECONDS = 0.05  # between two checks whether to stop
 
 def needs_roads(task: Task) -> bool:
     """Return whether a task lacks costs by road."""
-    return task.stops is not None and bool(task.stops.road_measures)
+    return task.stops is not None and bool(task.stops.road_measures or task.stops.traffic)
 
 
 async def measured_by_road(task: Task, client: RoadClient) -> Task:
@@ -33,10 +33,18 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     assert labels is not None
     began = time.perf_counter()
     stops = subject if isinstance(subject, Stops) else subject.stops
-    costs = await client.costs(stops.locations, [stop.id for stop in labels.stops])
+    ids = [stop.id for stop in labels.stops]
+    found: dict[RoadMeasure | Traffic, Array] = {}
+    if stops.road_measures:
+        costs = await client.costs(stops.locations, ids)
+        found |= {"road_time": costs.seconds, "road_distance": costs.metres}
+    for each in stops.traffic:
+        found[each] = await client.seconds_at(each.departures, stops.locations, ids)
     if isinstance(subject, Stops):
-        check_ways(np.isinf(costs.seconds), subject.ends, task.city_names, "no-road")
-    measured = subject.measured_by_road({"road_time": costs.seconds, "road_distance": costs.metres})
+        n = len(ids)
+        none = [np.isinf(costs.reshape(-1, n, n)).any(axis=0) for costs in found.values()]
+        check_ways(np.logical_or.reduce(none), subject.ends, task.city_names, "no-road")
+    measured = subject.measured_by_road(found)
     return replace(task, subject=measured, timings={"roads": 1000 * (time.perf_counter() - began)})
 
 

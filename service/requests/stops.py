@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from functools import cached_property
 from typing import Any, Literal
 
@@ -131,7 +132,27 @@ class Slices:
     costs: Array
 
 
-Source = FixedSource | OverTheDay | Slices
+@dataclass(frozen=True)
+class Traffic:
+    """A source of costs: the seconds by road in each slice of a day, as a routing engine knows it.
+
+    Args:
+        day: The date.
+        begins: When each slice begins, ascending seconds of the day that are whole minutes.
+    """
+
+    day: str
+    begins: tuple[float, ...]
+
+    @property
+    def departures(self) -> list[str]:
+        """When each slice begins, as 2026-11-27T07:30, in the time of the place."""
+        midnight = datetime.fromisoformat(self.day)
+        each = [midnight + timedelta(seconds=seconds) for seconds in self.begins]
+        return [time.isoformat(timespec="minutes") for time in each]
+
+
+Source = FixedSource | OverTheDay | Slices | Traffic
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +202,8 @@ class Stops:
     @property
     def measured(self) -> bool:
         """Whether no costs are left to be measured."""
-        return not any(isinstance(base_of(source), Measured) for source in self.sources)
+        unmeasured = Measured | Traffic
+        return not any(isinstance(base_of(source), unmeasured) for source in self.sources)
 
     @cached_property
     def instance(self) -> Instance:
@@ -227,8 +249,18 @@ class Stops:
         measures = {source.measure for source in bases if isinstance(source, Measured)}
         return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
 
-    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "Stops":
-        """Return these stops with a matrix, shape (n, n), in place of each measure by road."""
+    @property
+    def traffic(self) -> frozenset[Traffic]:
+        """The traffic that a routing engine has to be asked for."""
+        return frozenset(source for source in self.sources if isinstance(source, Traffic))
+
+    def measured_by_road(self, costs: Mapping[RoadMeasure | Traffic, Array]) -> "Stops":
+        """Return these stops with what was measured in place of each measure by road.
+
+        Args:
+            costs: A matrix for each measure, shape (n, n), and for traffic one in each of its s
+                slices, shape (s, n, n).
+        """
 
         def measured(source: FixedSource) -> FixedSource:
             match source:
@@ -238,7 +270,15 @@ class Stops:
                     return Matrix(changed_costs(costs[measure], source.steps, source.costs))
             return source
 
-        return replace(self, sources=[with_base(each, measured) for each in self.sources])
+        return replace(
+            self,
+            sources=[
+                Slices(np.array(each.begins), costs[each])
+                if isinstance(each, Traffic)
+                else with_base(each, measured)
+                for each in self.sources
+            ],
+        )
 
 
 def kind_of(sources: Sequence[Source]) -> Kind:
@@ -250,12 +290,12 @@ def kind_of(sources: Sequence[Source]) -> Kind:
 def with_base(source: Source, change: Callable[[FixedSource], FixedSource]) -> Source:
     """Return a source that is changed; of one that changes over the day, what the factors are of.
 
-    Matrices of slices stay as they are.
+    Slices and traffic stay as they are.
     """
     match source:
         case OverTheDay(base):
             return replace(source, base=change(base))
-        case Slices():
+        case Slices() | Traffic():
             return source
     return change(source)
 
@@ -310,5 +350,5 @@ def _costs(source: Source, locations: Array) -> Array:
             return changed_costs(_costs(base, locations), source.steps, source.costs)
         case Measured(measure):
             raise ValueError(f"{measure} must be measured before, by a routing engine")
-        case OverTheDay() | Slices():
+        case OverTheDay() | Slices() | Traffic():
             raise ValueError("costs that change over the day are not one matrix")

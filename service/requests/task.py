@@ -14,7 +14,7 @@ from service.front import PlanOptions
 from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
-from service.requests.stops import Array, Labels, RoadMeasure, Stops, cost_matrices
+from service.requests.stops import Array, Labels, RoadMeasure, Stops, Traffic, cost_matrices
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
 _BRIEF = 5000  # preferences times cities
@@ -72,7 +72,7 @@ class UnmeasuredFleet:
         objectives = zip(members["objectives"], self.rules.over, strict=True)
         return {**members, "objectives": [_objective(each, over) for each, over in objectives]}
 
-    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredFleet":
+    def measured_by_road(self, costs: Mapping[RoadMeasure | Traffic, Array]) -> "UnmeasuredFleet":
         """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""
         return replace(self, stops=self.stops.measured_by_road(costs))
 

@@ -37,6 +37,7 @@ from service.requests.stops import (
     Slices,
     Stop,
     Stops,
+    Traffic,
 )
 from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet, VehicleName
 
@@ -47,7 +48,7 @@ _TYPES: Mapping[str, type[Any]] = {
     for each in (
         *(Task, PlanOptions, EarlierTours, Labels),
         *(Stops, Matrix, Plane, Measured, Changed),
-        *(OverTheDay, Slices, Hours),
+        *(OverTheDay, Slices, Traffic, Hours),
         *(Coverage, SharedCoverage, UnmeasuredFleet, Rules),
     )
 }

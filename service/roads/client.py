@@ -49,7 +49,6 @@ class RoadClient:
 
     def __init__(self, settings: RouterSettings, observe: Observe = lambda *_: None) -> None:
         self._settings = settings
-        self._router = _interface(settings)
         self._transport = RouterTransport(settings.url, observe)
         self._cache = ArrayCache(settings.cache_bytes, settings.cache_seconds)
         self._drawing = asyncio.Semaphore(_DRAWN_AT_ONCE)
@@ -70,13 +69,28 @@ class RoadClient:
             RouterUnusable: Its answer is not as documented.
             RouterTooSlow: It takes too many seconds.
         """
+        asking = self._remembered(np.round(locations, _DECIMALS), ids)
+        return RoadCosts(*await self._in_time(asking, self._settings.seconds))
+
+    async def seconds_at(
+        self, departures: Sequence[str], locations: Array, ids: Sequence[str]
+    ) -> Array:
+        """Return the seconds by road between all stops at s times, shape (s, n, n).
+
+        Args:
+            departures: The times, as 2026-11-27T07:30.
+            locations: As of `costs`.
+            ids: As of `costs`.
+
+        Raises:
+            Refusal: As of `costs`.
+        """
         places = np.round(locations, _DECIMALS)
-        key = hashlib.sha256(places.tobytes()).digest()
-        costs = self._cache.get(key)
-        if costs is None:
-            costs = await self._in_time(self._asked(places, ids), self._settings.seconds)
-            self._cache.put(key, costs)
-        return RoadCosts(*costs)
+
+        async def each() -> Array:
+            return np.stack([(await self._remembered(places, ids, d))[0] for d in departures])
+
+        return await self._in_time(each(), self._settings.seconds)
 
     async def lines(
         self,
@@ -111,11 +125,18 @@ class RoadClient:
         """Close the connections to the engine."""
         await self._transport.close()
 
-    async def _asked(self, places: Array, ids: Sequence[str]) -> Array:
-        """Return both matrices, shape (2, n, n), as the engine answers now."""
-        questions = self._questions(places, ids)
-        await questions.check_snapped(self._settings.snap)
-        return await questions.costs(self._settings.pairs)
+    async def _remembered(
+        self, places: Array, ids: Sequence[str], departure: str | None = None
+    ) -> Array:
+        """Return both matrices, shape (2, n, n), at a time or at none in particular."""
+        key = hashlib.sha256(places.tobytes() + (departure or "").encode()).digest()
+        costs = self._cache.get(key)
+        if costs is None:
+            questions = self._questions(places, ids, departure)
+            await questions.check_snapped(self._settings.snap)
+            costs = await questions.costs(self._settings.pairs)
+            self._cache.put(key, costs)
+        return costs
 
     async def _drawn(
         self, locations: Array, ids: Sequence[str], counts: Mapping[Leg, int], seconds: float
@@ -148,8 +169,11 @@ class RoadClient:
                 await questions.streets(missing, self._settings.snap, keep)
         return found.lines
 
-    def _questions(self, places: Array, ids: Sequence[str]) -> Questions:
-        return Questions(self._router, self._transport, places, ids)
+    def _questions(
+        self, places: Array, ids: Sequence[str], departure: str | None = None
+    ) -> Questions:
+        router = _interface(self._settings, departure)
+        return Questions(router, self._transport, places, ids)
 
     async def _in_time(self, answers: Awaitable[_Result], seconds: float) -> _Result:
         """Return answers within a time limit, or log why there are none."""
@@ -165,7 +189,8 @@ class RoadClient:
         raise failure from None
 
 
-def _interface(settings: RouterSettings) -> RouterInterface:
+def _interface(settings: RouterSettings, departure: str | None) -> RouterInterface:
     if settings.router == "osrm":
+        assert departure is None, "OSRM knows no traffic by the hour"
         return Osrm(settings.profile)
-    return Valhalla(settings.profile, settings.snap)
+    return Valhalla(settings.profile, settings.snap, departure)

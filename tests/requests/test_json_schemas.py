@@ -59,6 +59,18 @@ def test_an_objective_has_one_source() -> None:
     assert SCHEMAS["SlicesObjective"]["properties"].keys() == {"name", "unit", "slices"}
 
 
+def test_the_schema_has_traffic_where_the_routing_engine_has() -> None:
+    limits = replace(LIMITS, roads=True, traffic=True)
+    schemas = front_schemas(limits, ["pa-one"])
+    measured = schemas["MeasuredObjective"]
+    reference, _ = measured["properties"]["traffic"]["anyOf"]
+    assert reference == {"$ref": "#/components/schemas/TrafficItem"}
+    assert measured["dependentSchemas"]["traffic"]["properties"]["from"] == {"const": "road_time"}
+    assert schemas["TrafficItem"]["required"] == ["date", "at"]
+    assert "traffic" not in schemas["MatrixObjective"]["properties"]
+    assert "traffic" not in schemas["SlicesObjective"]["properties"]
+
+
 def test_the_schema_says_which_speeds_there_are() -> None:
     schemas = {**SCHEMAS, **fleet_schemas(LIMITS)}
     for name in ("MeasuredObjective", "FleetMeasuredObjective"):

@@ -60,6 +60,22 @@ def test_no_way_by_road_is_shorter_than_the_great_circle(
     assert (costs.metres >= great_circle_matrix(stops) - snap).all()
 
 
+def test_a_time_may_be_asked_for(valhalla: RunningValhalla, stops: Array) -> None:
+    """The extract has no traffic: any time has the usual ways, which another algorithm finds."""
+
+    async def ask() -> Array:
+        client = RoadClient(RouterSettings(url=valhalla.url))
+        try:
+            times = ["2026-11-30T07:30", "2026-11-30T12:00"]
+            return await client.seconds_at(times, stops, [str(i) for i in range(60)])
+        finally:
+            await client.close()
+
+    morning, noon = asyncio.run(ask())
+    np.testing.assert_array_equal(morning, noon)
+    np.testing.assert_allclose(morning, _costs(valhalla.url, stops).seconds, rtol=0.05, atol=10)
+
+
 def test_a_stop_in_the_harbour_is_named(valhalla: RunningValhalla, stops: Array) -> None:
     places = np.vstack((stops[:7], HARBOUR))
     with pytest.raises(OffRoad, match="'order-7' must lie within 150 m"):

@@ -27,7 +27,7 @@ export function leaving({ departure: _, ...others }, times) {
 /** The index of the objective that is measured in seconds of travel, as the service finds it; -1 if none is. */
 export function clockIn({ objectives, clock }) {
   if (clock != null) return objectives.findIndex(({ name }) => name === clock);
-  const changing = objectives.findIndex(({ over_the_day: factors, slices }) => factors?.length || slices?.length);
+  const changing = objectives.findIndex(({ over_the_day: factors, slices, traffic }) => factors?.length || slices?.length || traffic);
   return changing < 0 ? objectives.findIndex((each) => unitOf(each) === "s") : changing;
 }
 
@@ -37,8 +37,11 @@ export function hoursIn(asked) {
   return slices?.length ? relative(slices) : (factors ?? []);
 }
 
-/** Whether these hours came with the costs of a file. */
-export const hasSlices = (asked) => Boolean(asked.objectives[clockIn(asked)]?.slices?.length);
+/** Where the times at each hour come from, if they are not typed: "slices" of a file, or "traffic" that a routing engine knows; else null. */
+export function hoursFrom({ objectives, clock }) {
+  const { slices, traffic } = objectives[clockIn({ objectives, clock })] ?? {};
+  return slices?.length ? "slices" : traffic ? "traffic" : null;
+}
 
 /** The request whose times of travel change so; its tours leave from the first of these hours on, if they left at no time. */
 export function changingOver(asked, hours) {

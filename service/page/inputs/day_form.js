@@ -1,6 +1,6 @@
 /** The fields about the time of day: when tours may leave, and a picture of how the times of travel change. */
 
-import { canHaveDay, changingOver, clockIn, departuresIn, hasSlices, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
+import { canHaveDay, changingOver, clockIn, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
 import { svgElement } from "../fleet/svg.js";
 import { tellFault } from "../planning/faults.js";
 import { timeOfDay, timeText } from "../common/times_of_day.js";
@@ -12,6 +12,11 @@ const MARKS = 4; // below the picture, at most
 const ENDS = ["departure", "departure-latest"];
 const NOT_A_TIME = "Leaves at must be a time, as 7:30";
 const NOT_HOURS = "Rush hours must be times and factors in order, as 7:00 1; 7:30 1.6; 9:30 1";
+
+const GIVEN = {
+  slices: "The times of travel at each hour came with the file.",
+  traffic: "The times of travel at each hour are those of the routing engine.",
+};
 
 const element = (id) => document.getElementById(id);
 const sliders = ENDS.map((id) => element(`${id}-slider`));
@@ -45,8 +50,8 @@ export class DayForm {
     for (const [axis, id] of ENDS.entries()) element(id).value = times ? written(times[axis]) : "";
     element("departure-sliders").hidden = !times;
     if (times) for (const [axis, slider] of sliders.entries()) place(slider, scaleOf(hours, times), times[axis]);
-    element("hours").value = hasSlices(asked) ? "" : hoursText(hours);
-    element("hours").disabled = hasSlices(asked) || clockIn(asked) < 0;
+    element("hours").value = hoursFrom(asked) ? "" : hoursText(hours);
+    element("hours").disabled = Boolean(hoursFrom(asked)) || clockIn(asked) < 0;
     element("hours-help").textContent = helpOn(asked);
     draw(hours, times);
   }
@@ -85,7 +90,8 @@ const written = (seconds) => timeText(Math.round(seconds)) ?? String(seconds);
 const pushed = (times, axis, value) => times.map((time, at) => (at === axis ? value : axis ? Math.min(time, value) : Math.max(time, value)));
 
 function helpOn(asked) {
-  if (hasSlices(asked)) return "The times of travel at each hour came with the file.";
+  const brought = GIVEN[hoursFrom(asked)];
+  if (brought) return brought;
   if (clockIn(asked) < 0) return "No objective is a time: measure one by road, or in straight lines at a speed.";
   return "From each time on, travel takes so much longer: 7:30 1.6 is 1.6 times as long.";
 }

@@ -32,7 +32,7 @@ export class ObjectiveFields {
     const { matrix, coordinates, slices } = this.#own[axis];
     if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates, slices };
     // A unit that was typed for another source would be wrong; the service knows that of the source.
-    const others = { unit: undefined, matrix: undefined, coordinates: undefined, slices: undefined };
+    const others = { unit: undefined, matrix: undefined, coordinates: undefined, slices: undefined, traffic: undefined };
     return value === TIMED ? { from: "great_circle", speed: SPEED, ...others } : { from: value, speed: undefined, ...others };
   }
 }

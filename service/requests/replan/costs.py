@@ -19,6 +19,7 @@ from service.requests.stops import (
     Slices,
     Source,
     Stop,
+    Traffic,
     changed_costs,
     with_base,
 )
@@ -85,13 +86,13 @@ def changed_sources(
     """Return the sources with changed costs, and the stops to or from which these are.
 
     Raises:
-        Refusal: A changed cost is of no objective or stop.
+        Refusal: A changed cost is of no objective or stop, or of traffic.
     """
     changed = _changes(entries, names, stops)
     steps = [stop for each in changed for step in each for stop in step]
     found = [
-        _changed_over_the_day(source, each) if each else source
-        for source, each in zip(sources, changed, strict=True)
+        _changed_over_the_day(source, name, each) if each else source
+        for source, name, each in zip(sources, names, changed, strict=True)
     ]
     return found, np.array(steps, np.int64)
 
@@ -130,6 +131,10 @@ def _between(source: FixedSource, chosen: NDArray[np.int64]) -> FixedSource:
 
 def _extended_over_the_day(source: Source, m: int, name: str, stops: AllStops) -> Source:
     """Return the source of an objective between all stops."""
+    if isinstance(source, Traffic):
+        for part, item in stops.new.items():
+            _check_given(Measured("road_time"), part, item, m, name)
+        return source
     if isinstance(source, Slices) and stops.new:
         demand = "needs objectives, as the costs of {} are a matrix for each slice of the day"
         raise invalid(next(iter(stops.new)), demand.format(show(name)))
@@ -218,8 +223,17 @@ def _changes(
     return changed
 
 
-def _changed_over_the_day(source: Source, entries: Mapping[tuple[int, int], float]) -> Source:
-    """Return a source with changed costs: in all slices, or before the factors of the day."""
+def _changed_over_the_day(
+    source: Source, name: str, entries: Mapping[tuple[int, int], float]
+) -> Source:
+    """Return a source with changed costs: in all slices, or before the factors of the day.
+
+    Raises:
+        Refusal: The costs are those of traffic.
+    """
+    if isinstance(source, Traffic):
+        demand = "must be left out, as the costs of {} are the traffic that a routing engine knows"
+        raise invalid("costs", demand.format(show(name)))
     if isinstance(source, Slices):
         steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))
         matrices = [changed_costs(matrix, steps, costs) for matrix in source.costs]
