@@ -1,10 +1,12 @@
 """`python -m tests.benchmarks day`: fronts over the day, beside planning on mean costs.
 
-Both planes of an instance are uniform, clustered or a city's streets. The first is driven at 30
-km/h through a square of 15 km, with a visit of one to four minutes at each stop, and a tour begins
-between half past six and eight. Times are 1.8 times as long from 7 to 9 o'clock (one peak), from 16
-to 18 as well (two), or only towards the middle in the morning and away from it in the afternoon
-(tide). The second objective is the distance in the other plane, the same all day.
+Both planes of an instance are uniform, clustered or a made-up city's streets. The first is driven
+at 30 km/h through a square of 15 km; or its times are those by road between places in central
+Helsinki, as a Valhalla tells them, and the other plane is uniform. A visit takes one to four
+minutes, and a tour begins between half past six and eight. Times are 1.8 times as long from 7 to 9
+o'clock (one peak), from 16 to 18 as well (two), or only towards the middle in the morning and away
+from it in the afternoon (tide). The second objective is the distance in the other plane, the same
+all day.
 
 Beside the service's planning of one second: planning on mean costs for one second, its tours driven
 through the day in both directions, with their best departures; planning without a day for one
@@ -13,7 +15,10 @@ Shares are hypervolumes in the box of all four. Prints a table and stores `resul
 """
 
 import argparse
+import asyncio
 import math
+import tempfile
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -32,10 +37,15 @@ from service.over_the_day.warm_up import warm_up
 from service.pareto import hypervolume, nondominated
 from service.planner import plan
 from service.preferences import fan, from_angles
-from tests.benchmarks.day_table import PROFILES, SIZES, day_table
+from service.roads.client import RoadClient
+from service.roads.router import RouterSettings
+from tests.benchmarks.day_table import PROFILES, SHAPES, SIZES, day_table
 from tests.benchmarks.rows import resume
+from tests.helpers.helsinki import reachable_places
+from tests.helpers.valhalla import valhalla_service
 
 Array = NDArray[np.float64]
+Drawn = Callable[[int, np.random.Generator], tuple[Array, Array, Array]]
 
 ACTORS = Path("service/actors")
 NETWORK = "pa-one-matrix"
@@ -45,6 +55,7 @@ SIZE = 100
 HOUR = 3600.0
 SECONDS_ACROSS = 15_000 / (30 / 3.6)
 GENERATORS = {"uniform": uniform, "clustered": clustered, "streets": streets}
+ROADS = "roads"
 BEGINS = np.array([0.0, 7.0, 9.0, 16.0, 18.0]) * HOUR
 PEAK = 1.8
 DEPARTURES = 100
@@ -56,29 +67,59 @@ def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser("python -m tests.benchmarks day", description=__doc__)
     parser.add_argument("--stops", dest="sizes", type=int, nargs="+", default=SIZES)
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each kind")
+    parser.add_argument("--shapes", nargs="+", choices=SHAPES, default=SHAPES)
     options = parser.parse_args(arguments)
     warm_up()
     actor = load_actors(ACTORS, threads=1)[NETWORK]
-    for n in options.sizes:
-        for shape in GENERATORS:
-            for profile in PROFILES:
-                days = [day_of(n, shape, profile, seed) for seed in range(options.count)]
-                measure = partial(measured, actor)
-                measure(day_of(n, shape, profile, COUNT), long=BRIEF)  # loads compiled code
-                key = f"{n} stops, {shape}, {profile}"
-                resume("day", key, actor.info.digest, days, measure)
+    with tempfile.TemporaryDirectory() as folder, valhalla_service(Path(folder)) as engine:
+        drawn: dict[str, Drawn] = {k: partial(_in_planes, v) for k, v in GENERATORS.items()}
+        drawn[ROADS] = partial(_by_road, engine.url)
+        for n in options.sizes:
+            for shape in options.shapes:
+                for profile in PROFILES:
+                    make = partial(day_of, n, drawn[shape], profile)
+                    days = [make(seed) for seed in range(options.count)]
+                    measure = partial(measured, actor)
+                    measure(make(COUNT), long=BRIEF)  # loads compiled code
+                    key = f"{n} stops, {shape}, {profile}"
+                    resume("day", key, actor.info.digest, days, measure)
     print(day_table())
 
 
-def day_of(n: int, shape: str, profile: str, seed: int) -> Day:
+def _in_planes(
+    generator: Callable[[int, np.random.Generator], Array], n: int, random: np.random.Generator
+) -> tuple[Array, Array, Array]:
+    """Places in the unit square, the seconds between them, and the distances in another plane."""
+    places, others = (generator(n, random) for _ in range(2))
+    times, distances = (np.linalg.norm(p[:, np.newaxis] - p, axis=2) for p in (places, others))
+    return places, times * SECONDS_ACROSS, distances
+
+
+def _by_road(url: str, n: int, random: np.random.Generator) -> tuple[Array, Array, Array]:
+    """The same of places in central Helsinki, by road; the other plane is uniform."""
+    located = asyncio.run(reachable_places(url, n, int(random.integers(2**31))))
+
+    async def ask() -> Array:
+        client = RoadClient(RouterSettings(url=url, seconds=120.0))
+        try:
+            return (await client.costs(located, [str(i) for i in range(n)])).seconds
+        finally:
+            await client.close()
+
+    corner = located.min(axis=0)
+    places = (located - corner) / (located.max(axis=0) - corner)
+    _, _, distances = _in_planes(uniform, n, random)
+    return places, asyncio.run(ask()), distances
+
+
+def day_of(n: int, drawn: Drawn, profile: str, seed: int) -> Day:
     """The day of n stops with this number."""
     random = np.random.default_rng([n, seed])
-    places, others = (GENERATORS[shape](n, random) for _ in range(2))
-    times, distances = (np.linalg.norm(p[:, np.newaxis] - p, axis=2) for p in (places, others))
+    places, times, distances = drawn(n, random)
     service = random.uniform(60, 240, n)
     service[0] = 0.0
     return Day(
-        costs=[_travel(places, times * SECONDS_ACROSS, profile), CostsOfDay.constant(distances)],
+        costs=[_travel(places, times, profile), CostsOfDay.constant(distances)],
         clock=0,
         service=service,
         earliest=6.5 * HOUR,

@@ -7,7 +7,7 @@ from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 
 SIZES = (50, 100, 200, 500)
-SHAPES = ("uniform", "clustered", "streets")
+SHAPES = ("uniform", "clustered", "streets", "roads")
 PROFILES = ("one peak", "two peaks", "tide")
 
 

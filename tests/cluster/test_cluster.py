@@ -162,6 +162,32 @@ def test_stops_have_their_ids_and_names_from_another_machine(client: httpx.Clien
         assert item["stops"][0] == "order-5"
 
 
+def test_a_day_and_the_rest_of_it_are_planned_on_another_machine(client: httpx.Client) -> None:
+    ids = ("depot", "school", "office", "shop")
+    times = [[0, 60, 80, 95], [60, 0, 40, 85], [75, 45, 0, 30], [90, 80, 30, 0]]
+    request = {
+        "stops": [{"id": id_, "service": 300 * (id_ != "depot")} for id_ in ids],
+        "objectives": [
+            {"name": "time", "matrix": times, "over_the_day": [[25_200, 1], [25_500, 2]]},
+            {"name": "risk", "slices": [{"from": 0, "matrix": times[::-1]}]},
+        ],
+        "departure": {"earliest": 25_200, "latest": 25_600},
+        "time_limit": 0.1,
+    }
+    front = client.post("/front", json=request).json()
+    for each in front["front"]:
+        assert each["times"][0] == each["departure"]
+        assert each["times"][-1] == each["departure"] + each["lengths"][0]
+    changes = {"done": ["depot", "shop"], "now": 27_000}
+    path = f"/front/{front['id']}/replan"
+    rest = client.post(path, json=changes, headers=LATER)
+    answer = ended(client, rest.headers["Location"])
+    assert {each["departure"] for each in answer["front"]} == {27_000}
+    # By the office, 2 x 30 s, or by the school, 2 x 80 s; 300 s at both, and back.
+    shortest = min(2 * (30 + 45 + 60), 2 * (80 + 40 + 75)) + 600
+    assert min(each["lengths"][0] for each in answer["front"]) == shortest
+
+
 def test_a_worker_that_takes_no_work_is_found(machines: Machines, client: httpx.Client) -> None:
     worker, url = machines.workers[-1], machines.redis.url
     assert takes_work(url)
