@@ -7,7 +7,7 @@ from starlette.requests import Request
 
 from service.api.body_budget import BodyAllowance
 from service.errors import Refusal
-from service.requests.multipart import split_files, split_parts
+from service.requests.multipart import Files, split_files, split_parts
 from service.requests.task import TaskKind, TaskSource
 
 _MULTIPART = "multipart/form-data"
@@ -39,10 +39,8 @@ async def receive_source(
     return TaskSource(kind, parts["request"], parts[upload])
 
 
-async def receive_files(
-    request: Request, most_bytes: int, allowance: BodyAllowance
-) -> list[tuple[str, bytes]]:
-    """Receive the files of a request, each with its name: the parts `file` of a form.
+async def receive_files(request: Request, most_bytes: int, allowance: BodyAllowance) -> Files:
+    """Receive the files of a request: the parts of a form.
 
     Raises:
         Refusal: As in receive_source.

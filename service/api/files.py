@@ -10,12 +10,21 @@ from service.api.body_budget import BodyBudget
 from service.api.responses import FileAnswer, compressed, json_bytes, problem_responses
 from service.api.task_parser import TaskParser
 from service.files.reading import NamedFile
+from service.files.upload import Upload
 
 _FILE = {"type": "string", "format": "binary", "description": "a file, with its filename"}
 _FORM = {
     "type": "object",
     "description": "One file; one for each objective; or stops and vehicles.",
-    "properties": {"file": {"type": "array", "items": _FILE, "minItems": 1}},
+    "properties": {
+        "file": {"type": "array", "items": _FILE, "minItems": 1},
+        "columns": {
+            "type": "string",
+            "contentMediaType": "application/json",
+            "description": "columns of tables that are to be taken for something else than their"
+            " names say: a list as `columns` of the answer, each taken for one of `choices`",
+        },
+    },
     "required": ["file"],
 }
 _BODY = {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}
@@ -51,8 +60,8 @@ def file_router(
         """
         client = client_of(request)
         with budget.open(client) as allowance:
-            received = await receive_files(request, most_bytes, allowance)
-            answer = await parser.read_files([NamedFile(*each) for each in received])
+            files, columns = await receive_files(request, most_bytes, allowance)
+            answer = await parser.read_files(Upload([NamedFile(*each) for each in files], columns))
             with answers.open(client, len(answer), always=True) as sent:
                 return sent.until_sent(await compressed(request, json_bytes(answer)))
 

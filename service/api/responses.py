@@ -247,8 +247,9 @@ class NoteItem(BaseModel):
 class ColumnItem(BaseModel):
     """A column of a table."""
 
+    file: str
     name: str
-    taken_for: str = Field(description="a field of stops, or `ignored`")
+    taken_for: str = Field(description="a field of stops or vehicles, or `ignored`")
 
 
 class FileAnswer(BaseModel):
@@ -258,7 +259,11 @@ class FileAnswer(BaseModel):
     request: dict[str, Any]
     notes: list[NoteItem]
     columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
-        default=None, description="of a table with a heading"
+        default=None, description="of tables with a heading"
+    )
+    choices: dict[str, list[str]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="by file, what its columns can be taken for instead: see the part `columns`",
     )
     planes: list[list[float]] | SkipJsonSchema[None] = Field(
         default=None,

@@ -5,7 +5,7 @@ import logging
 import os
 import resource
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -14,8 +14,7 @@ from anyio import BrokenWorkerProcess, CancelScope, CapacityLimiter, Lock, to_pr
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
-from service.files.reading import NamedFile
-from service.files.upload import read_upload
+from service.files.upload import Upload, read_upload
 from service.requests.limits import Limits, check_structure
 from service.requests.parser import parse_task
 from service.requests.replan.parser import ReplanSource, parse_replan
@@ -111,14 +110,14 @@ class TaskParser:
         if len(body) <= _MEDIUM:
             check_depth(body)
 
-    async def read_files(self, files: Sequence[NamedFile]) -> bytes:
+    async def read_files(self, upload: Upload) -> bytes:
         """Return the request that files describe, as JSON. Files are always read in a process.
 
         Raises:
             Refusal: They cannot be read, or hold too much.
             QueueFull: Too many bodies wait to be parsed.
         """
-        return await self._in_turn(read_upload, files, sum(len(file.data) for file in files))
+        return await self._in_turn(read_upload, upload, upload.length)
 
     async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
         """Parse a body in the process for its length, once those that came before it are parsed.

@@ -13,6 +13,7 @@ from service.files.reading import (
     Request,
     Source,
     UnreadableFile,
+    choices_of,
     reading_of_several,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
@@ -51,6 +52,16 @@ def read_files(
         UnreadableFile: A file is not of a known format, or is wrong; the message names it.
     """
     sources = [Source(file, bounds) for file in files]
+    try:
+        return _read_all(sources, wanted, unrounded)
+    except UnreadableFile as error:
+        error.columns = [column for source in sources for column in source.supposed]
+        error.choices = choices_of(sources)
+        raise
+
+
+def _read_all(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
+    files = [source.file for source in sources]
     if any(file.is_picture or file.is_yaml for file in files):
         from service.files.maps import read_map  # here because it is slow to load
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from types import MappingProxyType
 from typing import Any, Literal
 
 from service.errors.printable import printable
@@ -11,14 +12,6 @@ Request = dict[str, Any]
 _PICTURES = (b"\x89PNG", b"P5", b"P2")
 _PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
 _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
-
-
-class UnreadableFile(ValueError):
-    """A file that does not follow its format, or whose format is not supported."""
-
-
-class FileTooLarge(UnreadableFile):
-    """A file with more content than its bounds allow."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,10 +33,14 @@ class Bounds:
 
 @dataclass(frozen=True)
 class NamedFile:
-    """A file: its name, without folders, and its content."""
+    """A file: its name, without folders, and its content.
+
+    `chosen` are fields by the names of columns, which a person has chosen for them.
+    """
 
     name: str
     data: bytes
+    chosen: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def is_picture(self) -> bool:
@@ -72,25 +69,47 @@ class Note:
 class Column:
     """A column of a table, and the field that it was taken for, or `ignored`."""
 
+    file: str
     name: str
     taken_for: str
 
 
+class UnreadableFile(ValueError):
+    """A file that does not follow its format, or whose format is not supported.
+
+    Attributes:
+        columns: What the columns of tables were taken for, as far as they were read.
+        choices: What they may be taken for instead, by file.
+    """
+
+    columns: Sequence[Column] = ()
+    choices: Mapping[str, Sequence[str]] = MappingProxyType({})
+
+
+class FileTooLarge(UnreadableFile):
+    """A file with more content than its bounds allow."""
+
+
 @dataclass(frozen=True)
 class Reading:
-    """A request, its kind, and notes on what was assumed."""
+    """A request, its kind, and notes on what was assumed.
+
+    `choices` are the fields that the columns of each table may be taken for, by its file.
+    """
 
     kind: Kind
     request: Request
     name: str
     notes: tuple[Note, ...] = ()
     columns: tuple[Column, ...] = ()
+    choices: Mapping[str, Sequence[str]] = field(default_factory=dict)
     planes: list[list[float]] | None = None  # rows of x, y, x, y, if distances are to be rounded
 
     @property
     def document(self) -> Mapping[str, Any]:
         """The reading as members of JSON. The request may hold arrays."""
-        columns = {"columns": [asdict(each) for each in self.columns]} if self.columns else {}
+        listed = [asdict(each) for each in self.columns]
+        columns = {"columns": listed, "choices": self.choices} if listed else {}
         notes = [asdict(note) for note in self.notes]
         members = {"kind": self.kind, "request": self.request, "notes": notes}
         planes = {} if self.planes is None else {"planes": self.planes}
@@ -105,6 +124,8 @@ class Source:
     bounds: Bounds
     notes: list[Note] = field(default_factory=list)
     columns: list[Column] = field(default_factory=list)
+    choices: list[str] = field(default_factory=list)  # fields that its columns may be taken for
+    supposed: list[Column] = field(default_factory=list)  # columns, while they are being read
 
     @property
     def name(self) -> str:
@@ -141,7 +162,12 @@ def reading_of_several(
     notes = tuple(note for source in sources for note in source.notes)
     columns = tuple(column for source in sources for column in source.columns)
     name = ", ".join(source.name for source in sources)
-    return Reading(kind, request, name, notes, columns, planes)
+    return Reading(kind, request, name, notes, columns, choices_of(sources), planes)
+
+
+def choices_of(sources: Sequence[Source]) -> dict[str, list[str]]:
+    """Return the fields that the columns of each table may be taken for, by its file."""
+    return {source.name: source.choices for source in sources if source.choices}
 
 
 def quoted(text: object) -> str:

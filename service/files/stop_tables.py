@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.files.columns import FLEET, Columns, columns_of, ids_of, place_in
+from service.files.column_names import FLEET
+from service.files.columns import Columns, columns_of, ids_of, place_in
 from service.files.fleets import Stop, measured, planar, timed, with_vehicles
 from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
@@ -53,7 +54,9 @@ def _is_located(columns: Columns) -> bool:
 def _degrees(columns: Columns) -> bool:
     """Return whether x and y are degrees, as QGIS writes them; if so, rename their fields."""
     x, y = columns.find("x"), columns.find("y")
-    if x is None or y is None or any("x" in each or "y" in each for each in _others(columns)):
+    if x is None or y is None or columns.is_chosen(x) or columns.is_chosen(y):
+        return False
+    if any("x" in each or "y" in each for each in _others(columns)):
         return False
     rows = [row for _, row in columns.table.rows]
     exact = all(re.search(r"[.,]\d{3}", row[at]) for row in rows for at in (x, y))

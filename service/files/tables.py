@@ -3,8 +3,8 @@
 import csv
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import islice
 
 from service.files.reading import Source, quoted
@@ -22,10 +22,14 @@ _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
 
 @dataclass(frozen=True)
 class Table:
-    """The rows of a table, all with the same number of fields, and the heading if there is one."""
+    """The rows of a table, all with the same number of fields, and the heading if there is one.
+
+    `ignored` are the columns that were left out, by their places in the file.
+    """
 
     heading: list[str] | None
     rows: list[Row]
+    ignored: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def width(self) -> int:

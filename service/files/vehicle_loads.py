@@ -1,6 +1,7 @@
 """Read the columns of a table of vehicles that are about loads: capacities, and initial loads."""
 
-from service.files.columns import Columns, amount_of
+from service.files.column_names import amount_of
+from service.files.columns import Columns
 from service.files.fleets import Stop, Vehicle, all_demand
 
 

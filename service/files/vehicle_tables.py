@@ -2,14 +2,8 @@
 
 import re
 
-from service.files.columns import (
-    Columns,
-    columns_of,
-    fields_of,
-    fields_of_vehicles,
-    ids_of,
-    is_about_vehicles,
-)
+from service.files.column_names import fields_of, is_about_vehicles
+from service.files.columns import Columns, columns_of, columns_of_vehicles, ids_of
 from service.files.fleets import (
     Stop,
     Vehicle,
@@ -71,12 +65,13 @@ def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Col
     of_stops = {"latitude", "x", "place", "demand"} & set(fields_of(table.heading or []))
     if table.heading is None or (of_stops and not is_about_vehicles(table.heading)):
         raise source.refusal("must have columns of vehicles, as capacity, shift start, shift end")
-    columns = Columns(source, table, table.heading, fields_of_vehicles(table.heading))
+    columns = columns_of_vehicles(source, table)
     ids = {stop["id"] for stop in stops}
     for end, bound in (("start", "shift_from"), ("end", "shift_to")):
-        if (at := columns.find(end)) is None or bound in columns.fields:
+        at = columns.find(end)
+        if at is None or bound in columns.fields or columns.is_chosen(at):
             continue
-        texts = {text for _, row in table.rows if (text := row[at])}
+        texts = {text for _, row in columns.table.rows if (text := row[at])}
         if not texts & ids and all(map(is_time, texts)):
             columns.fields[at] = bound
     return columns

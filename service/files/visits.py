@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from service.files.columns import WINDOWS, Columns, seconds_of
+from service.files.column_names import WINDOWS, seconds_of
+from service.files.columns import Columns
 from service.files.fleets import Stop, spans
 from service.files.tables import number_in
 

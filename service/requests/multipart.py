@@ -6,6 +6,7 @@ bounded: the boundary, the headers of a part and the number of parts.
 
 import re
 from collections.abc import Collection, Iterator
+from typing import NamedTuple
 
 from python_multipart.multipart import parse_options_header
 
@@ -38,25 +39,36 @@ def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> di
     return contents
 
 
-def split_files(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
-    """Return the name and the content of each file of a multipart/form-data body, in order.
+class Files(NamedTuple):
+    """The name and the content of each file of a form, in order, and its part `columns`."""
 
-    Each is a part `file` with a filename.
+    files: list[tuple[str, bytes]]
+    columns: bytes | None
+
+
+def split_files(content_type: str, body: bytes) -> Files:
+    """Return the files of a multipart/form-data body.
+
+    Each is a part `file` with a filename; one part may be named `columns`.
 
     Raises:
         Refusal: The body is malformed, or has other parts or too many.
     """
     files: list[tuple[str, bytes]] = []
+    columns: bytes | None = None
     for name, content, filename in _parts(_delimiter(content_type), body):
+        if name == "columns" and columns is None:
+            columns = content
+            continue
         if name != "file" or not filename:
-            came = shorten(name)
-            raise _invalid(f"each part must be named file and have a filename, got {came!r}")
+            demand = "each part must be named file and have a filename, or once be named columns"
+            raise _invalid(f"{demand}, got {shorten(name)!r}")
         if len(files) == _MOST_FILES:
             raise _invalid(f"there must be at most {_MOST_FILES} parts, got more")
         files.append((filename, content))
     if not files:
         raise _invalid("the part file is required")
-    return files
+    return Files(files, columns)
 
 
 def _delimiter(content_type: str) -> bytes:

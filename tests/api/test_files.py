@@ -1,6 +1,7 @@
 """`POST /files`: files become requests that the service plans, or are refused with a code."""
 
 import io
+import json
 import zipfile
 from collections.abc import Iterator
 from dataclasses import replace
@@ -11,7 +12,7 @@ import openpyxl
 import pytest
 
 from tests.files.test_examples import FOLDER as EXAMPLES
-from tests.helpers.serving import LIMITS, app_of, serving
+from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 ORDERS = "Order ID;Breitengrad;Längengrad;demand\ndepot;60,1;24,9;0\n#1001;60,2;24,95;3\n"
 
@@ -44,10 +45,34 @@ def test_a_table_becomes_a_fleet_that_the_service_plans(address: str) -> None:
     answer = sent(address, ("ORDERS.CSV", ORDERS.encode("cp1252"))).json()
     assert (answer["kind"], answer["name"]) == ("fleet", "ORDERS.CSV")
     assert [stop["id"] for stop in answer["request"]["stops"]] == ["depot", "#1001"]
-    assert {"name": "Breitengrad", "taken_for": "latitude"} in answer["columns"]
+    column = {"file": "ORDERS.CSV", "name": "Breitengrad", "taken_for": "latitude"}
+    assert column in answer["columns"]
     assert {"encoding", "separator", "vehicle", "columns"} <= {n["code"] for n in answer["notes"]}
     planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=60)
     assert planned.status_code == 200, planned.text
+
+
+def test_columns_are_taken_for_what_is_chosen(address: str) -> None:
+    """Also those of a table that cannot be read as its names say."""
+    rows = b"ref,Nord-Sued,Ost-West,pieces\nA,60.17,24.94,0\nB,60.18,24.95,3\n"
+    refused = sent(address, ("orders.csv", rows))
+    assert (refused.status_code, refused.json()["code"]) == (422, "unreadable-file")
+    columns = refused.json()["columns"]
+    assert [each["name"] for each in columns] == ["ref", "Nord-Sued", "Ost-West", "pieces"]
+    assert {"latitude", "ignored"} <= {*refused.json()["choices"]["orders.csv"]}
+    chosen = {"Nord-Sued": "latitude", "Ost-West": "longitude", "pieces": "demand"}
+    part = [{**each, "taken_for": chosen.get(each["name"], "id")} for each in columns]
+    answer = httpx.post(
+        f"{address}/files",
+        files=[("file", ("orders.csv", rows)), ("columns", (None, json.dumps(part)))],
+    ).json()
+    assert answer["request"]["stops"][1] == {"id": "B", "location": [24.95, 60.18], "demand": [3]}
+    assert answer["columns"] == part
+    wrong = httpx.post(
+        f"{address}/files",
+        files=[("file", ("orders.csv", rows)), ("columns", (None, "[1]"))],
+    )
+    problem(wrong, 422, "invalid-parts")
 
 
 def test_a_table_with_windows_is_planned_without_a_routing_engine(address: str) -> None:

@@ -3,7 +3,12 @@
 import pytest
 from pydantic_core import to_json
 
-from service.files.columns import fields_of, fields_of_vehicles, is_about_vehicles
+from service.files.column_names import (
+    NAMES_OF_VEHICLES,
+    best_fields,
+    fields_of,
+    is_about_vehicles,
+)
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
 from service.requests.fleet import parse_fleet_request
@@ -187,5 +192,7 @@ def test_a_heading_is_taken_for_what_it_says(heading: str, fields: str) -> None:
 def test_a_driver_beside_places_is_a_column_of_stops_and_a_bound_one_of_vehicles() -> None:
     assert not is_about_vehicles(["id", "lat", "lon", "driver"])
     assert is_about_vehicles(["id", "lat", "lon", "max stops"])
-    of_loads = fields_of_vehicles(["max kg", "max boxes", "initial kg", "initial boxes"])
+    of_loads = best_fields(
+        ["max kg", "max boxes", "initial kg", "initial boxes"], NAMES_OF_VEHICLES
+    )
     assert of_loads == ["capacity", "capacity", "initial_load", "initial_load"]

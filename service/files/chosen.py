@@ -1,0 +1,93 @@
+"""Take columns of tables for what a person has chosen, in place of what their names say."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Annotated
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from service.errors import Refusal
+from service.errors.printable import printable
+from service.files.reading import NamedFile, Source, quoted
+from service.files.tables import Table
+from service.requests.fields import StrictModel, Text
+
+IGNORED = "ignored"
+_MOST = 1000  # columns
+
+
+class ChosenColumn(StrictModel):
+    """A column of a file, and the field that it is taken for, or `ignored`."""
+
+    file: Text
+    name: Annotated[str, Field(max_length=200)]
+    taken_for: Text
+
+
+_COLUMNS = TypeAdapter(Annotated[list[ChosenColumn], Field(max_length=_MOST)])
+
+
+def with_chosen(files: Sequence[NamedFile], part: bytes) -> list[NamedFile]:
+    """Return files with what was chosen for their columns, from a part of JSON.
+
+    Raises:
+        Refusal: The part is not a list of columns, or names a file that did not come.
+    """
+    try:
+        columns = _COLUMNS.validate_json(part)
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        place = "/".join(["columns", *map(str, fault["loc"])])
+        raise Refusal("invalid-parts", reason=f"{place}: {fault['msg']}") from None
+    names = [printable(file.name) for file in files]
+    for at, column in enumerate(columns):
+        if column.file not in names:
+            demand = f"columns/{at}/file must be the name of a file"
+            raise Refusal("invalid-parts", reason=f"{demand}, got {quoted(column.file)}")
+    return [
+        replace(file, chosen={c.name: c.taken_for for c in columns if c.file == name})
+        for file, name in zip(files, names, strict=True)
+    ]
+
+
+def without_ignored(source: Source, table: Table, fields: Collection[str]) -> Table:
+    """Return a table without the columns that are chosen to be ignored.
+
+    Args:
+        source: Its file, which is told the fields that its columns may be taken for.
+        table: The table.
+        fields: These fields.
+
+    Raises:
+        UnreadableFile: A chosen column does not exist, is chosen for no field, or none is left.
+    """
+    heading = table.heading or []
+    if heading:
+        source.choices.extend([*fields, IGNORED])
+    for name, field in source.file.chosen.items():
+        if name[:200] not in [each[:200] for each in heading]:
+            raise source.refusal("has no column of the name that was chosen", name)
+        if field not in (*fields, IGNORED):
+            demand = f"column {quoted(name)} must be taken for {', '.join(fields)} or {IGNORED}"
+            raise source.refusal(demand, field)
+    ignored = {at: name for at, name in enumerate(heading) if _is(source.file, name, IGNORED)}
+    if not ignored:
+        return table
+    kept = [at for at in range(len(heading)) if at not in ignored]
+    if not kept:
+        raise source.refusal("must have a column that is not ignored")
+    return Table(
+        [heading[at] for at in kept],
+        [(number, [row[at] for at in kept]) for number, row in table.rows],
+        ignored,
+    )
+
+
+def _is(file: NamedFile, name: str, field: str) -> bool:
+    return file.chosen.get(name[:200]) == field
+
+
+def chosen_fields(file: NamedFile, heading: Sequence[str]) -> list[str | None]:
+    """Return the field that each column of a heading was chosen for, or None."""
+    chosen: Mapping[str, str] = file.chosen
+    return [chosen.get(name[:200]) for name in heading]

@@ -1,0 +1,183 @@
+"""Recognise the columns of tables by their names."""
+
+import re
+import unicodedata
+from collections.abc import Mapping, Sequence
+
+# By field, the names that people give it, the best names first; without accents, units and signs.
+_NAMES = {
+    "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
+    " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
+    " stop ref reference code key name stopname customer kunde node city label site no nr number",
+    "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond",
+    "latitude": "latitude lat latitud breitengrad breite latd",
+    "place": "wkt wktgeom geom geometry thegeom point location coordinates coords coordinate latlon"
+    " latlng latlong position gps",
+    "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
+    "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
+    "demand": "demand qty quantity load amount pallets parcels boxes items weight volume menge"
+    " bedarf gewicht demanda cantidad kg",
+    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
+    " twstart twfrom twopen readytime ready earliest open opens opening from begin von start",
+    "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
+    " duedate duetime latest close closes closing to until end bis",
+    "window": "window timewindow tw deliverywindow zeitfenster windows timewindows deliverywindows",
+    "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
+    " servicezeit standzeit",
+    "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
+    "release": "release releasetime releasedate availablefrom readyatdepot",
+    "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
+    " qualifications qualification",
+    "vehicle": "vehicle vehicleid vehiclename van vanid driver driverid drivername truck truckid"
+    " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer",
+    "prize": "prize",
+    "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
+}
+_OF_WINDOWS = ("window_from", "window_to", "window")
+WINDOWS = ("window", "window_2", "window_3")  # the windows that a table may have
+_AMOUNTS = _NAMES["demand"].split()
+_OF_VEHICLES_ONLY = {
+    "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
+    " fahrer",
+    "capacity": "capacity vehiclecapacity maxcapacity payload kapazitaet kapazitat nutzlast "
+    + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
+    "shift_from": "shiftstart shiftfrom shiftbegin workstart schichtbeginn",
+    "shift_to": "shiftend shiftto workend schichtende",
+    "shift": "shift workinghours workhours schicht arbeitszeit",
+    "longest_time": "maxtime maxtraveltime maxdrivingtime maxduration maxrouteduration",
+    "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
+    "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
+    "max_stops": "maxstops maxnumberofstops maxtasks maxorders maxjobs maxvisits maxdeliveries",
+    "max_trips": "maxtrips maxnumberoftrips tripsperday maxtours",
+    "reload": "reload reloadat reloadstop reloadstops reloaddepot reloaddepots reloadlocation",
+    "max_overtime": "overtime maxovertime overtimelimit allowedovertime ueberstunden",
+    "initial_load": "initialload startload loadatstart loadonboard onboard "
+    + " ".join(f"initial{each}" for each in _AMOUNTS if each != "load"),
+    "per_km": "costperkm costkm kmcost perkm priceperkm kmkosten",
+}  # fields that only vehicles have
+NAMES_OF_VEHICLES = {
+    "start": "start startid startstop startplace startlocation startdepot",
+    "end": "end endid endstop endplace endlocation enddepot destination",
+    "depot": "depot depotid home base",
+    "start_latitude": "startlatitude startlat",
+    "start_longitude": "startlongitude startlon startlng",
+    "end_latitude": "endlatitude endlat",
+    "end_longitude": "endlongitude endlon endlng",
+    "depot_latitude": "depotlatitude depotlat homelatitude homelat latitude lat",
+    "depot_longitude": "depotlongitude depotlon depotlng homelongitude homelon homelng longitude"
+    " lon lng",
+    **_OF_VEHICLES_ONLY,
+    "id": f"{_OF_VEHICLES_ONLY['id']} id name type",
+    "capacity": f"{_OF_VEHICLES_ONLY['capacity']} {_NAMES['demand']}",
+    "shift_from": f"{_OF_VEHICLES_ONLY['shift_from']} {_NAMES['window_from']}",
+    "shift_to": f"{_OF_VEHICLES_ONLY['shift_to']} {_NAMES['window_to']}",
+    "shift": f"{_OF_VEHICLES_ONLY['shift']} {_NAMES['window']}",
+    "count": "count vehicles available anzahl",
+    "skills": "skills skill abilities capabilities qualifications qualification",
+}
+_PLACES = ("longitude", "latitude", "x", "y")
+_BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
+_AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
+_UNIT = re.compile(r"[\[(](.*?)[\])]")
+_HOURS_OF = (["working"], ["work"])  # whose hours are times of day
+_SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
+# Fields that a table may have several times.
+_SEVERAL = ("demand", "capacity", "initial_load", "cost")
+_NAMED_WINDOW = re.compile(r"^(timewindow|deliverywindow|window|tw)(?!s?$)")
+
+
+def _numbered(words: str, number: int) -> str:
+    """Return names of columns with a number at the end, or after `window`."""
+    known = words.split()
+    within = {_NAMED_WINDOW.sub(rf"\g<1>{number}", word) for word in known}
+    return " ".join([*(f"{word}{number}" for word in known), *sorted(within - {*known})])
+
+
+def _names_of_stops() -> dict[str, str]:
+    """Return the names of all fields of stops, with those of second and third windows."""
+    several = {
+        field.replace("window", window, 1): _numbered(_NAMES[field], number)
+        for number, window in enumerate(WINDOWS, 1)
+        for field in _OF_WINDOWS
+    }
+    first = {field: f"{_NAMES[field]} {several.pop(field)}" for field in _OF_WINDOWS}
+    return {**_NAMES, **first, **several}
+
+
+NAMES_OF_STOPS = _names_of_stops()
+FLEET = (
+    *(field for field in NAMES_OF_STOPS if field.startswith("window")),
+    *("demand", "service", "due", "release", "skills", "vehicle", "prize"),
+)
+
+
+def is_about_vehicles(heading: Sequence[str]) -> bool:
+    """Return whether a heading has columns of vehicles alone, and none of stops alone."""
+    stops, found = fields_of(heading), set(best_fields(heading, _OF_VEHICLES_ONLY))
+    located = {"latitude", "x", "place"} & set(stops)
+    return bool(found - ({"id", None} if located else {None})) and "demand" not in stops
+
+
+def amount_of(name: str) -> str:
+    """Return the amount that a column of demands or capacities is about, as `weight`, or ""."""
+    plain = plain_name(name)
+    forms = ("{}", "max{}", "capacity{}", "{}capacity", "initial{}")
+    return next((each for each in _AMOUNTS for form in forms if form.format(each) == plain), "")
+
+
+def fields_of(heading: Sequence[str], chosen: Sequence[str | None] = ()) -> list[str | None]:
+    """Return the field of stops that each column may be, or None; only some come several times.
+
+    A column `due` beside the begin of a window is its end, if no other column is.
+
+    Args:
+        heading: The names of the columns.
+        chosen: The field that was chosen for each column, or None.
+    """
+    taken = best_fields(heading, NAMES_OF_STOPS, chosen)
+    if "window_from" in taken and "window_to" not in taken and "due" not in chosen:
+        pairs = zip(heading, taken, strict=True)
+        return ["window_to" if plain_name(name) == "due" else each for name, each in pairs]
+    return taken
+
+
+def best_fields(
+    heading: Sequence[str], names: Mapping[str, str], chosen: Sequence[str | None] = ()
+) -> list[str | None]:
+    """Return the field that was chosen for each column, or else that it may be, or None.
+
+    Of two columns for a field that comes once, the one whose name comes first in `names` gets it,
+    and the other one gets None.
+    """
+    ranks = [_rank(plain_name(name), names) for name in heading]
+    taken = [*chosen] or [None] * len(heading)
+    for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):
+        field = ranks[at][0]
+        if taken[at] is None and (field in _SEVERAL or field not in taken):
+            taken[at] = field
+    return taken
+
+
+def seconds_of(name: str) -> int | None:
+    """Return the seconds of the unit in a heading, as in `service [min]`; None without a unit."""
+    unit = _UNIT.search(name)
+    plain = unit[1].strip().casefold() if unit else re.split(r"[\s_]", name.casefold())[-1]
+    return _SECONDS.get(plain)
+
+
+def _rank(plain: str, names: Mapping[str, str]) -> tuple[str | None, int]:
+    for field, words in names.items():
+        known = words.split()
+        for name in (plain, _AFTER.sub("", _BEFORE.sub("", plain))):
+            if name in known and (name == plain or field in _PLACES):
+                return field, known.index(name)
+    return None, 0
+
+
+def plain_name(name: str) -> str:
+    """Return a heading without its unit, reduced to small letters and digits."""
+    decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
+    words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
+    of_a_day = words[-1:] == ["hours"] and words[:1] in _HOURS_OF
+    kept = words[:-1] if len(words) > 1 and words[-1] in _SECONDS and not of_a_day else words
+    return "".join(kept)
