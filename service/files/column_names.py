@@ -15,7 +15,8 @@ _NAMES = {
     " latlng latlong position gps",
     "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
     "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
-    "demand": "demand qty quantity load amount pallets parcels boxes items weight volume menge"
+    "demand": "demand qty quantity load amount pallets parcels packages pieces cartons crates boxes"
+    " items weight volume menge"
     " bedarf gewicht demanda cantidad kg",
     "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
     " twstart twfrom twopen readytime ready earliest open opens opening from begin von start",

@@ -1,5 +1,6 @@
 /** Put the page together: a request on the left, its front on the right. */
 
+import { arrange, narrow } from "./result/arrangement.js";
 import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
@@ -8,6 +9,7 @@ import { formOf, kindOf } from "./common/kinds.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
+import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
 import { ReplanForm } from "./planning/replan_form.js";
 import { Way } from "./planning/replanning.js";
@@ -25,7 +27,6 @@ const element = (id) => document.getElementById(id);
 const { Result } = await import("./result/result.js");
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
-const narrow = matchMedia("(max-width: 860px)"); // the form is above its result, not beside it
 const result = new Result({
   onClick: (...place) => [placing, replanForm].forEach((each) => each.clicked(...place)),
   onMove(...moved) {
@@ -38,7 +39,10 @@ const result = new Result({
 const input = new RequestForm(form, service, edited, settled);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const examples = new Examples(element("example"), element("about"));
-const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"), () => element("file").focus());
+const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"), element("columns"), {
+  onDismissed: () => element("file").focus(),
+  onChosen: openFiles,
+});
 const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan, result.wait);
@@ -75,7 +79,7 @@ function edited(instance, fit) {
 function answered(found) {
   answer = found;
   exporting.show(found);
-  arrange();
+  placeResult();
   if (!found) replanForm.show(null);
 }
 
@@ -92,13 +96,7 @@ async function screen() {
   };
 }
 
-/** Where form and result are one above the other, moves the result to the top once one is planned. */
-function arrange() {
-  const [main, shown] = [form.parentElement, element("result")];
-  const above = main.firstElementChild === shown;
-  const wanted = narrow.matches && Boolean(above || answer || planning);
-  if (wanted !== above) main[wanted ? "prepend" : "append"](shown); // moved, it loses the focus
-}
+const placeResult = () => arrange(form, element("result"), answer || planning);
 
 /** Shows the states of a planning, which `states` asks it for; until the first one, says `waiting`. */
 async function run(states, waiting = "The network is building its front.") {
@@ -107,7 +105,7 @@ async function run(states, waiting = "The network is building its front.") {
   const mine = (planning = new Planning(service));
   clear();
   offer();
-  arrange();
+  placeResult();
   say(waiting);
   try {
     for await (const state of states(mine)) {
@@ -258,26 +256,27 @@ function openChosen() {
   element("file").value = "";
 }
 
-/** Opens files as a request, or says why that is not possible; until then nothing can be planned. */
-async function openFiles(files) {
+/** Opens files as a request, or says why that is not possible; until then nothing can be planned. `columns` were chosen. */
+async function openFiles(files, columns = []) {
   if (!files.length) return;
   const words = files.length > 1 ? "The files are being read." : "The file is being read.";
   try {
     await whileReading(words, async ({ signal }) => {
-      const brought = await brings(files, signal);
+      const brought = await brings(files, columns, signal);
       signal.throwIfAborted();
       forgetExample();
       open(brought.members, brought.objectives);
-      fileNotes.show(brought);
+      fileNotes.show(files, columns, brought);
     });
   } catch (error) {
+    fileNotes.refused(files, columns, error);
     await unread(error);
   }
 }
 
-async function brings(files, signal) {
+async function brings(files, columns, signal) {
   try {
-    return await read(service, files, (await equipment)?.roads ?? true, signal);
+    return await read(service, files, columns, (await equipment)?.roads ?? true, signal);
   } catch (error) {
     await started; // and the list says which example is shown instead
     throw error;
@@ -373,7 +372,7 @@ form.addEventListener("input", ({ target }) => {
   element("file-fault").textContent = "";
   if (target.id === "cities") clearFaults();
 });
-narrow.addEventListener("change", arrange);
+narrow.addEventListener("change", placeResult);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {
   forgetExample();
@@ -390,6 +389,7 @@ const started = start();
 offer(); // only now: before, the browser itself would send the form
 openChosen(); // while the page was being loaded
 equipment.then((map) => map && result.equip(map, service));
+equipment.then((map) => map?.roads === false && offerNoRoads());
 
 /** Opens what the address names, or else the first example, unless the user opened or typed something meanwhile. */
 async function start() {

@@ -54,13 +54,13 @@ def test_a_table_becomes_a_fleet_that_the_service_plans(address: str) -> None:
 
 def test_columns_are_taken_for_what_is_chosen(address: str) -> None:
     """Also those of a table that cannot be read as its names say."""
-    rows = b"ref,Nord-Sued,Ost-West,pieces\nA,60.17,24.94,0\nB,60.18,24.95,3\n"
+    rows = b"ref,Nord-Sued,Ost-West,sacks\nA,60.17,24.94,0\nB,60.18,24.95,3\n"
     refused = sent(address, ("orders.csv", rows))
     assert (refused.status_code, refused.json()["code"]) == (422, "unreadable-file")
     columns = refused.json()["columns"]
-    assert [each["name"] for each in columns] == ["ref", "Nord-Sued", "Ost-West", "pieces"]
+    assert [each["name"] for each in columns] == ["ref", "Nord-Sued", "Ost-West", "sacks"]
     assert {"latitude", "ignored"} <= {*refused.json()["choices"]["orders.csv"]}
-    chosen = {"Nord-Sued": "latitude", "Ost-West": "longitude", "pieces": "demand"}
+    chosen = {"Nord-Sued": "latitude", "Ost-West": "longitude", "sacks": "demand"}
     part = [{**each, "taken_for": chosen.get(each["name"], "id")} for each in columns]
     answer = httpx.post(
         f"{address}/files",

@@ -13,9 +13,9 @@ from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
 
 FOLDER = Path(__file__).parent / "examples"
-TABLE = "ref,y,x,pieces,note,when\nA,60.17,24.94,0,,\nB,60.18,24.95,3,ring twice,09:00-10:30\n"
+TABLE = "ref,y,x,what,note,when\nA,60.17,24.94,0,,\nB,60.18,24.95,3,ring twice,09:00-10:30\n"
 FROM_PIECES = [
-    {"file": "orders.csv", "name": "pieces", "taken_for": "demand"},
+    {"file": "orders.csv", "name": "what", "taken_for": "demand"},
     {"file": "orders.csv", "name": "when", "taken_for": "window"},
 ]
 
@@ -29,11 +29,11 @@ def taken(reading: Reading) -> dict[str, str]:
 
 
 def test_a_column_is_taken_for_what_was_chosen_and_makes_a_fleet() -> None:
-    reading = read(pieces="demand", when="window")
+    reading = read(what="demand", when="window")
     assert reading.kind == "fleet"
     assert reading.request["stops"][1]["demand"] == [3]
     assert reading.request["stops"][1]["window"] == [9 * 3600, 10.5 * 3600]
-    assert taken(reading)["pieces"] == "demand"
+    assert taken(reading)["what"] == "demand"
 
 
 def test_an_ignored_column_stays_in_its_place_among_the_others() -> None:
@@ -42,7 +42,7 @@ def test_an_ignored_column_stays_in_its_place_among_the_others() -> None:
     assert reading.kind == "front"
     assert list(taken(reading)) == ["id", "lat", "lon", "qty", "cost"]
     assert taken(reading)["qty"] == "ignored"
-    assert list(taken(read(pieces="demand", x="longitude", y="latitude"))) == heading
+    assert list(taken(read(what="demand", x="longitude", y="latitude"))) == heading
 
 
 def test_a_chosen_column_takes_a_field_from_another() -> None:
@@ -74,10 +74,10 @@ def test_columns_of_vehicles_may_be_chosen() -> None:
     ("chosen", "sentence"),
     [
         ({"piece": "demand"}, "orders.csv: has no column of the name that was chosen, got 'piece'"),
-        ({"pieces": "weight"}, "column 'pieces' must be taken for id, longitude, latitude, place,"),
+        ({"what": "weight"}, "column 'what' must be taken for id, longitude, latitude, place,"),
         ({"note": "demand"}, "row 3, column 'note' must be a number, got 'ring twice'"),
         ({"note": "place"}, "row 2, column 'note' must be a place, as 60.1, 24.9"),
-        ({"pieces": "demand", "note": "id"}, "column 'note' must be an id, got none"),
+        ({"what": "demand", "note": "id"}, "column 'note' must be an id, got none"),
         (dict.fromkeys(TABLE.splitlines()[0].split(","), "ignored"), "must have a column that is"),
     ],
 )
@@ -103,7 +103,7 @@ def test_a_part_that_is_no_list_of_columns_is_refused(part: bytes) -> None:
 
 def test_a_part_is_as_the_columns_of_the_answer() -> None:
     [file] = with_chosen([NamedFile("orders.csv", b"")], json.dumps(FROM_PIECES).encode())
-    assert file.chosen == {"pieces": "demand", "when": "window"}
+    assert file.chosen == {"what": "demand", "when": "window"}
 
 
 def tables() -> list[str]:

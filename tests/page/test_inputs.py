@@ -115,8 +115,9 @@ def test_stops_with_costs_keep_them_when_one_is_deleted(opened: Page) -> None:
     opened.get_by_role("button", name="Delete a").click()
     body = curl_body(opened)
     assert body["objectives"][1]["matrix"] == [[0, 4], [6, 0]]
-    opened.get_by_label("What the second objective is measured by").select_option("Way by road, m")
-    assert curl_body(opened)["objectives"][1] == {"name": "risk", "from": "road_distance"}
+    measure = opened.get_by_label("What the second objective is measured by")
+    measure.select_option("Straight lines, m")
+    assert curl_body(opened)["objectives"][1] == {"name": "risk", "from": "great_circle"}
 
 
 def test_both_objectives_have_names_and_units_of_the_user(opened: Page) -> None:
@@ -142,9 +143,11 @@ def test_both_objectives_have_names_and_units_of_the_user(opened: Page) -> None:
 
 
 def test_roads_that_the_service_has_not_are_refused_at_their_objective(opened: Page) -> None:
-    open_files(opened, {"stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
+    objectives = [{"name": "way", "from": "great_circle"}, {"name": "time", "from": "road_time"}]
+    stops = [{"id": "a", "location": [0, 0]}, {"id": "b", "location": [1, 0]}]
+    open_files(opened, {"stops.json": json.dumps({"stops": stops, "objectives": objectives})})
     source: Any = opened.get_by_label("What the second objective is measured by")
-    source.select_option("Time by road, s")
+    expect(source).to_have_value("road_time")
     opened.get_by_role("button", name="Plan", exact=True).click()
     expect(opened.locator("#objectives-fault")).to_contain_text("routing engine")
     expect(source).to_be_focused()

@@ -5,6 +5,19 @@ export const SPEED = 30; // km/h, until another is typed
 const SOURCES = { great_circle: "Straight lines, m", [TIMED]: "Time in straight lines, s", road_time: "Time by road, s", road_distance: "Way by road, m" };
 const NTH = ["First", "Second", "Third", "Fourth"].map((each) => `${each} objective`);
 const OWN = "own"; // costs that came with the stops
+const MISSING = "no routing engine here";
+let roads = true; // whether costs by road can be had
+
+/** Greys all measures by road, from now on. */
+export function offerNoRoads() {
+  roads = false;
+  for (const each of document.querySelectorAll('[data-member="source"] option')) greyed(each);
+}
+
+function greyed(option) {
+  if (roads || !option.value.startsWith("road_")) return option;
+  return Object.assign(option, { disabled: true, textContent: `${SOURCES[option.value]} (${MISSING})` });
+}
 
 export class ObjectiveFields {
   #element;
@@ -81,7 +94,7 @@ const input = (axis, member, value) => marked(Object.assign(document.createEleme
 function source(axis, { from, speed, matrix, coordinates, slices }) {
   const made = marked(document.createElement("select"), axis, "source");
   if (matrix || coordinates || slices) made.append(new Option(coordinates ? "A plane from the file" : "Costs from the file", OWN));
-  made.append(...Object.entries(SOURCES).map(([name, title]) => new Option(title, name)));
+  made.append(...Object.entries(SOURCES).map(([name, title]) => greyed(new Option(title, name))));
   made.value = from === "great_circle" && speed != null ? TIMED : (from ?? OWN);
   return made;
 }

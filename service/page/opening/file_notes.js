@@ -1,32 +1,48 @@
-/** The name of the open file, and notes on what was assumed when it was read. */
+/** The name of the open file, notes on what was assumed when it was read, and what its columns were taken for. */
+
+import { ColumnChoices } from "./column_choices.js";
 
 export class FileNotes {
   #status;
   #button;
+  #columns;
 
   /**
    * @param {HTMLElement} status a live region, which is read out when it is filled
    * @param {HTMLButtonElement} button dismisses the notes
-   * @param {() => void} onDismissed called once that was pressed and is gone, and the focus with it
+   * @param {HTMLDetailsElement} columns as of ColumnChoices
+   * @param {{ onDismissed: () => void, onChosen: (files: File[], columns: object[]) => void }} told called once the
+   *   button was pressed and is gone, and the focus with it; and with what was chosen for the columns of these files
    */
-  constructor(status, button, onDismissed) {
+  constructor(status, button, columns, { onDismissed, onChosen }) {
     this.#status = status;
     this.#button = button;
+    this.#columns = new ColumnChoices(columns, onChosen);
     button.addEventListener("click", () => {
       this.dismiss();
       onDismissed();
     });
   }
 
-  show({ name, notes }) {
+  /** Shows what was read from files, given what was chosen for their columns. */
+  show(files, chosen, read) {
+    const { name, notes } = read;
+    this.#columns.show(files, chosen, read);
     const list = made("ul");
-    list.append(...notes.map(({ text }) => made("li", { textContent: text })));
-    this.#status.replaceChildren(made("p", { textContent: name }), ...(notes.length ? [list] : []));
+    const said = notes.filter(({ code }) => code !== "columns"); // these are lists to choose from
+    list.append(...said.map(({ text }) => made("li", { textContent: text })));
+    this.#status.replaceChildren(made("p", { textContent: name }), ...(said.length ? [list] : []));
     this.#button.setAttribute("aria-label", `Dismiss the notes on ${name}`);
     this.#button.hidden = false;
   }
 
+  /** Shows the columns of files that cannot be read so. */
+  refused(files, chosen, problem) {
+    this.#columns.show(files, chosen, problem);
+  }
+
   dismiss() {
+    this.#columns.clear();
     this.#status.replaceChildren();
     this.#button.hidden = true;
   }

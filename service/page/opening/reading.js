@@ -7,18 +7,19 @@ import { Problem } from "../planning/service.js";
 import { withoutRoads } from "./roads.js";
 
 /**
- * The request that the form opens, the names of its objectives, and the file's name with the notes on it.
- * `roads` says whether the service has a routing engine.
+ * The request that the form opens, the names of its objectives, and the file's name with the notes on it and its
+ * columns. `chosen` are columns that are to be taken for something else than their names say. `roads` says whether
+ * the service has a routing engine.
  */
-export async function read(service, files, roads, signal) {
+export async function read(service, files, chosen, roads, signal) {
   const sorted = files.toSorted((one, other) => (one.name < other.name ? -1 : 1)); // as file dialogs have no order
   await Promise.all(sorted.map(checked));
-  const answer = await service.read(sorted, signal);
-  const { request, planes, name, notes } = roads ? answer : withoutRoads(answer);
+  const answer = await service.read(sorted, signal, chosen);
+  const { request, planes, name, notes, columns, choices } = roads ? answer : withoutRoads(answer);
   const { matrices, ...others } = request;
   // The form rounds distances itself, so that planes stay planes.
   const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
-  return { members, objectives: namesIn(members), name, notes };
+  return { members, objectives: namesIn(members), name, notes, columns, choices };
 }
 
 /** A file that the browser cannot read would look like a service that does not answer. */

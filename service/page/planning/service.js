@@ -4,8 +4,9 @@ import { EventSourceParserStream } from "../vendor/eventsource-parser/stream.js"
 
 /** An error of the service, or that it did not answer. */
 export class Problem extends Error {
-  constructor({ code, detail, errors = [] }, retryAfter = null) {
+  constructor({ code, detail, errors = [], columns, choices }, retryAfter = null) {
     super(detail);
+    Object.assign(this, { columns, choices }); // of files that cannot be read
     this.code = code;
     this.errors = errors;
     this.retryAfter = retryAfter; // seconds
@@ -30,9 +31,10 @@ export class Service {
   }
 
   /** The request made from files, with notes on what was assumed. */
-  async read(files, signal) {
+  async read(files, signal, columns = []) {
     const body = new FormData();
     for (const file of files) body.append("file", file);
+    if (columns.length) body.append("columns", JSON.stringify(columns));
     return content(await this.ask("files", { method: "POST", body, signal }));
   }
 
