@@ -36,6 +36,7 @@ from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner, make_runner
+from service.mcp import check_mcp
 from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
 from service.settings import Settings
@@ -68,6 +69,8 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
     Raises:
         ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
     """
+    if settings.mcp:
+        check_mcp()
     infos = _checked_actors(settings)
     metrics = Metrics()
     roads = None if settings.roads is None else RoadClient(settings.roads, metrics.routed)
@@ -93,6 +96,7 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
             parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
             streets=roads,
             tiles=Tiles(settings.tiles, settings.tiles_credit),
+            agents=settings.mcp,
         ),
     )
     if settings.traces:

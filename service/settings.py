@@ -248,6 +248,9 @@ class Settings(BaseSettings):
     origins: Words = ()
     """origins whose pages may call (CORS), separated by commas; or *"""
 
+    mcp: bool = False
+    """whether agents may call, by the Model Context Protocol at `/mcp`: 1 or 0"""
+
     # Observation.
     traces: str | None = Field(None, validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT")
     """where OpenTelemetry traces go, over HTTP"""

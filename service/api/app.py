@@ -1,9 +1,9 @@
 """The FastAPI application: every route, middleware and exception handler, put together."""
 
 from collections.abc import AsyncIterator, Mapping, Sequence
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, nullcontext
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastapi import APIRouter, FastAPI
 from starlette.middleware import Middleware
@@ -37,6 +37,9 @@ from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.requests.limits import Limits
 
+if TYPE_CHECKING:
+    from service.api.mcp import AgentRoute
+
 
 @dataclass(frozen=True, kw_only=True)
 class Edge:
@@ -53,6 +56,7 @@ class Edge:
         parser: The bounds of a process that parses bodies.
         streets: The streets that lines of GeoJSON may follow; by default there are none.
         tiles: The map tiles that the page draws under stops; by default there are none.
+        agents: Whether agents may call, by the Model Context Protocol at `/mcp`.
     """
 
     access: Access = field(default_factory=Access)
@@ -65,6 +69,7 @@ class Edge:
     parser: ParserBounds = field(default_factory=ParserBounds)
     streets: Streets | None = None
     tiles: Tiles = field(default_factory=Tiles)
+    agents: bool = False
 
     @property
     def middleware(self) -> list[Middleware]:
@@ -104,7 +109,8 @@ def create_app(
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         await engine.start()
-        yield
+        async with nullcontext() if agents is None else agents.running():
+            yield
         await engine.close()
         await store.close()
         await answers.close()
@@ -122,6 +128,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
+    agents = _agent_route(app, budget, most_bytes, version) if edge.agents else None
     refusals = problem_responses(401, 429)
     for guarded in (
         PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers).router(),
@@ -129,6 +136,7 @@ def create_app(
         StoredFrontRoutes(store, engine, answers).router(),
         _actor_router(actors),
         edge.metrics.router(),
+        *([] if agents is None else [agents.router()]),
     ):
         app.include_router(guarded, dependencies=edge.access.dependencies, responses=refusals)
     app.include_router(_health_router(engine))
@@ -137,6 +145,13 @@ def create_app(
         [edge.tiles.route(edge.streets is not None), *static_routes(), *guide_routes()]
     )
     return app
+
+
+def _agent_route(app: FastAPI, budget: BodyBudget, most_bytes: int, version: str) -> "AgentRoute":
+    """Return the route of agents; the protocol is loaded here alone, as it takes half a second."""
+    from service.api.mcp import AgentRoute
+
+    return AgentRoute(app, budget, most_bytes, version)
 
 
 class _DocumentedApp(FastAPI):

@@ -52,6 +52,18 @@ async def receive_files(request: Request, most_bytes: int, allowance: BodyAllowa
     return await asyncio.to_thread(split_files, content_type, body)
 
 
+async def receive_message(request: Request, most_bytes: int, allowance: BodyAllowance) -> bytes:
+    """Receive the body of a message of an agent, which is JSON.
+
+    Raises:
+        Refusal: As in receive_source.
+    """
+    content_type = _checked_content_type(request)
+    if content_type.lower().startswith(_MULTIPART):
+        raise Refusal("not-json", came=content_type)
+    return await _receive(request, most_bytes, allowance)
+
+
 def _checked_content_type(request: Request) -> str:
     content_type = request.headers.get("content-type", "")
     if content_type.partition(";")[0].strip().lower() not in ("application/json", _MULTIPART):

@@ -13,7 +13,7 @@ from starlette.datastructures import Headers
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.api.responses import PROBLEM_JSON, problem_response
+from service.api.responses import problem_response
 from service.errors import Refusal, ShuttingDown
 
 RawHeaders = list[tuple[bytes, bytes]]  # with names in lower case
@@ -198,7 +198,8 @@ class ProblemMiddleware(_Middleware):
 def _is_plain_error(message: Message) -> bool:
     if message["status"] < HTTPStatus.BAD_REQUEST:
         return False
-    return Headers(raw=message["headers"]).get("content-type", "") != PROBLEM_JSON
+    # Problem documents, and errors of the protocol of agents, are JSON already.
+    return not Headers(raw=message["headers"]).get("content-type", "").endswith("json")
 
 
 def _framework_refusal(method: str, start: Message, text: str) -> Refusal:

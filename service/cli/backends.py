@@ -67,7 +67,7 @@ class RemoteBackend:
             return client.actors()
 
     def _client(self) -> Client:
-        return Client(_with_scheme(self.url), api_key=self.api_key)
+        return Client(with_scheme(self.url), api_key=self.api_key)
 
 
 class LocalBackend:
@@ -169,7 +169,7 @@ def _result(job: Job[FrontOfAnyKind], plan: Plan, console: Console) -> FrontOfAn
         return front
 
 
-def _with_scheme(url: str) -> str:
+def with_scheme(url: str) -> str:
     """Return a URL, whose scheme is http where it has none, as localhost:8000.
 
     Raises:

@@ -251,6 +251,17 @@ def work(
 
 
 @app.command()
+@with_groups
+def mcp(*, service: options.Service) -> None:
+    """Let an agent plan, by the Model Context Protocol on stdin and stdout; needs the extra mcp."""
+    from service.cli.agents import serve_agent
+    from service.cli.errors import exit_on_error
+
+    with exit_on_error():
+        serve_agent(service)
+
+
+@app.command()
 def key(
     caller: Annotated[str, Argument(help="The name of the caller who will use the key.")],
 ) -> None:

@@ -18,7 +18,7 @@ from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
-from paretour.kinds import FrontOfAnyKind
+from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -135,6 +135,10 @@ class Calls:
         """Send a plan that was built before, and wait for the front."""
         return self._plan(plan, parse_front)
 
+    def plan_any(self, plan: Plan) -> Call[FrontOfAnyKind]:
+        """Send a plan that was built before, and wait for the front, whose kind is not known."""
+        return self._plan(plan, parse_any)
+
     def plan_fleet(self, plan: Plan) -> Call[FleetFront]:
         """Send a plan for a fleet that was built before, and wait for the front of its plans."""
         return self._plan(plan, parse_fleet)
@@ -232,6 +236,20 @@ class Calls:
         if (kind := answer.read("type", text)) != "FeatureCollection":
             raise unexpected("answer/type", "FeatureCollection", kind)
         return dict(answer.document)
+
+    def read_files(self, files: Mapping[str, bytes]) -> Call[Mapping[str, Any]]:
+        """Return the request that files describe, by their names, with its kind and notes.
+
+        Args:
+            files: The content of one file; of one for each objective; or of stops and vehicles.
+        """
+        content = {"files": [("file", named) for named in files.items()]}
+        request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
+        answer = _answer((yield from self._send(request)))
+        answer.read("kind", text)
+        answer.read("request", members)
+        answer.read("notes", each(members))
+        return answer.document
 
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""

@@ -1,0 +1,84 @@
+"""Build the server of the protocol: the tools, and errors as sentences."""
+
+from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager
+from typing import Any
+
+import httpx
+from mcp.server.context import ServerRequestContext
+from mcp.server.lowlevel import Server
+from mcp.types import (
+    CallToolRequestParams,
+    CallToolResult,
+    ListToolsResult,
+    PaginatedRequestParams,
+    TextContent,
+    ToolAnnotations,
+)
+from mcp.types import Tool as ListedTool
+from paretour import Refused, UnexpectedAnswer
+
+from service.errors import Refusal
+from service.mcp.tools import TOOLS, Planner
+
+# Given the HTTP request that brought a call, or None over stdio.
+Connect = Callable[[Any], AbstractAsyncContextManager[Planner]]
+_MOST_ERROR = 2000  # characters
+_INSTRUCTIONS = (
+    "Paretour plans tours under several objectives and returns the Pareto front: every tour that no"
+    " other beats in everything. Plan first, explain what is traded, ask the person for a budget or"
+    " a preference, then choose. Nothing is dispatched: the tools only plan and read."
+)
+
+
+def make_server(connect: Connect, version: str) -> Server[Any]:
+    """Return a server whose tools call the service that `connect` connects them with."""
+
+    async def list_tools(
+        _context: ServerRequestContext[Any, Any], _params: PaginatedRequestParams | None
+    ) -> ListToolsResult:
+        return ListToolsResult(tools=_LISTED)
+
+    async def call_tool(
+        context: ServerRequestContext[Any, Any], params: CallToolRequestParams
+    ) -> CallToolResult:
+        tool = _BY_NAME.get(params.name)
+        if tool is None:
+            return _answer(f"tool must be one of {', '.join(_BY_NAME)}", is_error=True)
+        try:
+            async with connect(context.request) as planner:
+                return _answer(await tool.call(planner, params.arguments or {}))
+        except (Refusal, Refused, ValueError) as error:
+            return _answer(str(error), is_error=True)
+        except UnexpectedAnswer as error:
+            return _answer(f"the service's answer is wrong: {error}", is_error=True)
+        except httpx.TransportError as error:
+            return _answer(f"the service does not answer: {error}", is_error=True)
+
+    return Server(
+        "paretour",
+        version=version,
+        title="Paretour",
+        instructions=_INSTRUCTIONS,
+        on_list_tools=list_tools,
+        on_call_tool=call_tool,
+    )
+
+
+def _answer(text: str, *, is_error: bool = False) -> CallToolResult:
+    shown = text[:_MOST_ERROR] if is_error else text
+    return CallToolResult(content=[TextContent(type="text", text=shown)], is_error=is_error)
+
+
+_BY_NAME = {tool.name: tool for tool in TOOLS}
+_LISTED = [
+    ListedTool(
+        name=tool.name,
+        description=tool.description,
+        input_schema=tool.arguments.model_json_schema(by_alias=True),
+        annotations=ToolAnnotations(
+            read_only_hint=tool.reads_only, destructive_hint=False, open_world_hint=False
+        ),
+    )
+    for tool in TOOLS
+]

@@ -1,0 +1,192 @@
+"""Define the tools: each calls the service by the client and returns a short text."""
+
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import numpy as np
+from paretour import (
+    AsyncClient,
+    FrontOfAnyKind,
+    Plan,
+    fleet_plan,
+    front_plan,
+    replan_plan,
+)
+from pydantic import ValidationError
+
+from service.mcp.arguments import (
+    Arguments,
+    ChooseTour,
+    PlanFile,
+    PlanFleet,
+    PlanFront,
+    Replan,
+    StoredFront,
+)
+from service.mcp.summaries import explanation, front_text, tour_text
+from service.requests.validation import refusal_of
+
+# A front is parsed in the event loop of the service: of these many stops that takes 50 ms.
+_MOST_STOPS = 100_000  # in all tours of a front
+_MOST_TOURS = 100  # by default
+
+
+@dataclass(frozen=True)
+class Planner:
+    """A service by its client, and the address of its page if it has one."""
+
+    client: AsyncClient
+    page: str | None = None
+
+    async def planned(self, plan: Plan, stops: int, assumed: Sequence[str] = ()) -> str:
+        """Plan a front of few enough tours to read, and return its text with what was assumed."""
+        if stops * _MOST_TOURS > _MOST_STOPS:
+            plan = replace(plan, request={"size": max(5, _MOST_STOPS // stops), **plan.request})
+        front = await self.client.plan_any(plan)
+        return front_text(front, self.link(front), assumed)
+
+    async def stored(self, front: str) -> FrontOfAnyKind:
+        """Return a front that was planned before."""
+        return await self.client.any_job(front).front()
+
+    def link(self, front: FrontOfAnyKind) -> str | None:
+        """Return the address at which people see a front."""
+        return None if self.page is None else f"{self.page.rstrip('/')}/#front={front.id}"
+
+
+Run = Callable[[Planner, Any], Awaitable[str]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tool:
+    """A tool: what an agent reads about it, its arguments, and what it does."""
+
+    name: str
+    description: str
+    arguments: type[Arguments]
+    run: Run
+    reads_only: bool = False
+
+    async def call(self, planner: Planner, arguments: Mapping[str, Any]) -> str:
+        """Return the answer to a call.
+
+        Raises:
+            Refusal: The arguments do not fit.
+            Refused: The service refuses the request.
+            ValueError: No tour can be chosen so.
+        """
+        try:
+            parsed = self.arguments.model_validate(arguments)
+        except ValidationError as error:
+            schema = self.arguments.model_json_schema()
+            raise refusal_of(error.errors(include_url=False), schema=schema) from None
+        return await self.run(planner, parsed)
+
+
+async def _plan_front(planner: Planner, asked: PlanFront) -> str:
+    stops = asked.stops or asked.coordinates or (asked.matrices or [[]])[0]
+    return await planner.planned(front_plan(cast(Any, asked.members())), len(stops))
+
+
+async def _plan_fleet(planner: Planner, asked: PlanFleet) -> str:
+    return await planner.planned(fleet_plan(cast(Any, asked.members())), len(asked.stops))
+
+
+async def _plan_file(planner: Planner, asked: PlanFile) -> str:
+    found = await planner.client.read_files({asked.name: asked.text.encode()})
+    request = dict(found["request"])
+    if asked.time_limit is not None:
+        request["time_limit"] = asked.time_limit
+    stops = request.get("stops") or request.get("coordinates") or []
+    notes = [str(note.get("text", "")) for note in found["notes"]]
+    return await planner.planned(Plan(f"/{found['kind']}", request), len(stops), notes)
+
+
+async def _explain_front(planner: Planner, asked: StoredFront) -> str:
+    front = await planner.stored(asked.front)
+    return explanation(front, planner.link(front))
+
+
+async def _choose_tour(planner: Planner, asked: ChooseTour) -> str:
+    front = await planner.stored(asked.front)
+    number = asked.number
+    if number is None:
+        number = _chosen(front, asked)
+    elif number >= len(front):
+        raise ValueError(f"number must be below {len(front)}, got {number}")
+    return tour_text(front, number, asked.first_stop, planner.link(front))
+
+
+def _chosen(front: FrontOfAnyKind, asked: ChooseTour) -> int:
+    """Return the number of the tour that a budget, weights, the knee or a balance chooses."""
+    ways: dict[str, Any] = asked.model_dump(include={"knee", "balance"})
+    known = [each.name for each in front.objectives or ()]
+    for name in ("at_most", "weights"):
+        given = getattr(asked, name)
+        ways[name] = given and {_objective(each, known): given[each] for each in given}
+    ways["prefer"] = None if asked.prefer is None else _objective(asked.prefer, known)
+    item = front.choose(**ways)
+    [number] = np.flatnonzero((front.lengths == item.lengths).all(axis=1))[:1]
+    return int(number)
+
+
+def _objective(name: str, known: list[str]) -> str | int:
+    """Return an objective by its name, or by its index where it has no such name."""
+    return int(name) if name not in known and name.isdecimal() else name
+
+
+async def _replan(planner: Planner, asked: Replan) -> str:
+    members = asked.members()
+    members.pop("front")
+    return await planner.planned(replan_plan(asked.front, cast(Any, members)), 0)
+
+
+TOOLS = (
+    Tool(
+        name="plan_front",
+        description="Plan tours through stops under two to four objectives, such as time against"
+        " distance. The answer is the front of all best trade-offs: its id, the range of each"
+        " objective, and up to five tours.",
+        arguments=PlanFront,
+        run=_plan_front,
+    ),
+    Tool(
+        name="plan_file",
+        description="Plan what the text of a file describes: stops, a fleet, or an instance of"
+        " TSPLIB and the like. The answer is as of plan_front, with what was assumed.",
+        arguments=PlanFile,
+        run=_plan_file,
+    ),
+    Tool(
+        name="plan_fleet",
+        description="Plan routes of several vehicles, with capacities, time windows and shipments,"
+        " under two objectives. The answer is a front of plans.",
+        arguments=PlanFleet,
+        run=_plan_fleet,
+    ),
+    Tool(
+        name="explain_front",
+        description="Explain what a planned front trades: the range of each objective, its knee,"
+        " and what a few per cent more of one objective buys of another.",
+        arguments=StoredFront,
+        run=_explain_front,
+        reads_only=True,
+    ),
+    Tool(
+        name="choose_tour",
+        description="Choose one tour of a planned front, and read its stops in order: within"
+        " budgets, by weights, at the knee, at a balance, or by its number.",
+        arguments=ChooseTour,
+        run=_choose_tour,
+        reads_only=True,
+    ),
+    Tool(
+        name="replan",
+        description="Plan the rest of a tour or of a fleet's day when stops are done, added or"
+        " removed, the vehicle is elsewhere, or costs have changed. The answer is a new front; the"
+        " earlier one stays as it is.",
+        arguments=Replan,
+        run=_replan,
+    ),
+)
