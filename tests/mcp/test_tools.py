@@ -2,6 +2,8 @@
 
 import asyncio
 import json
+import os
+import subprocess
 import sys
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
@@ -239,3 +241,17 @@ def test_a_wrong_address_ends_the_command() -> None:
     ended = paretour("mcp", "--url", "ftp://x")
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "--url must be a URL" in ended.stderr
+
+
+@pytest.mark.parametrize(("command", "setting"), [("mcp", "0"), ("serve", "1")])
+def test_a_missing_extra_is_named_at_the_start(command: str, setting: str) -> None:
+    code = "import sys; sys.modules['mcp'] = None; from service.__main__ import main; main()"
+    ended = subprocess.run(
+        [sys.executable, "-c", code, command],
+        cwd=ROOT,
+        env={**os.environ, "PARETOUR_MCP": setting},
+        capture_output=True,
+        text=True,
+    )
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert "agents need the extra paretour[mcp]" in ended.stderr
