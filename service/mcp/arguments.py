@@ -32,7 +32,7 @@ class Arguments(BaseModel):
 
 
 class Stop(_Item):
-    """A stop of a tour."""
+    """A stop of a tour. It may also have service, the seconds of a visit."""
 
     id: Id = Field(description="your own name for the stop")
     location: list[float] | None = Field(
@@ -105,6 +105,11 @@ class PlanFront(Arguments):
     closed: bool | None = Field(default=None, description="false: do not return to the start")
     start: int | str | None = Field(default=None, description="a stop, by index or id")
     end: int | str | None = Field(default=None, description="where open routes end, by index or id")
+    departure: float | dict[str, float] | None = Field(
+        default=None,
+        description="of stops whose objectives have over_the_day or slices, or with service: a"
+        " second of the day, or earliest and latest",
+    )
     time_limit: float | None = _TIME_LIMIT
 
 
@@ -184,7 +189,7 @@ class Replan(StoredFront):
     plan: Count | None = Field(
         default=None, description="of a fleet: the number of the plan that is driven"
     )
-    now: float | None = Field(default=None, description="of a fleet: the time, in seconds")
+    now: float | None = Field(default=None, description="the time, in seconds: of a fleet, or where costs change over the day")
     routes: list[dict[str, Any]] | None = Field(
         default=None, description="of a fleet: routes on their way, each with route and done"
     )
