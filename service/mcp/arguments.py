@@ -189,7 +189,10 @@ class Replan(StoredFront):
     plan: Count | None = Field(
         default=None, description="of a fleet: the number of the plan that is driven"
     )
-    now: float | None = Field(default=None, description="the time, in seconds: of a fleet, or where costs change over the day")
+    now: float | None = Field(
+        default=None,
+        description="the time, in seconds: of a fleet, or where costs change over the day",
+    )
     routes: list[dict[str, Any]] | None = Field(
         default=None, description="of a fleet: routes on their way, each with route and done"
     )

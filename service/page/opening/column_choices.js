@@ -1,4 +1,4 @@
-/** What the columns of an open table were taken for, as lists in which something else can be chosen. */
+/** Show what the columns of an open table were taken for, as lists in which something else can be chosen. */
 
 const LABELS = {
   id: "name",

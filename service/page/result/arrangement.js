@@ -1,4 +1,4 @@
-/** Where form and result stand: beside each other, or on a narrow window one above the other. */
+/** Place form and result beside each other, or on a narrow window one above the other. */
 
 export const narrow = matchMedia("(max-width: 860px)");
 
