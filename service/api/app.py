@@ -27,6 +27,7 @@ from service.api.middleware import (
 from service.api.openapi import complete
 from service.api.plan import PlanRoutes
 from service.api.request_bodies import request_schemas
+from service.api.response_headers import EXPOSED
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
 from service.api.site.guide import guide_routes
 from service.api.site.static import static_routes
@@ -79,7 +80,7 @@ class Edge:
             allow_origins=self.origins,
             allow_methods=["GET", "POST", "DELETE"],
             allow_headers=["Authorization", "Content-Type", "Idempotency-Key", "Prefer"],
-            expose_headers=["Location", "Preference-Applied", "Retry-After", "X-Request-ID"],
+            expose_headers=EXPOSED,
         )
         return [
             Middleware(SecurityHeadersMiddleware, self.tiles.source),

@@ -26,11 +26,12 @@ from limits.aio.strategies import MovingWindowRateLimiter, SlidingWindowCounterR
 from limits.errors import StorageError
 from starlette.requests import Request
 
-from service.api.middleware import ANONYMOUS
+from service.api.middleware import ANONYMOUS, ANSWER_HEADERS, RawHeaders
 from service.api.transport.connections import network_of
 from service.errors import Refusal
 
 _REDIS_SECONDS = 0.5  # the longest that a request waits for Redis
+_POLICY = "default"  # the name of the one policy that there is
 _NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _LOG = logging.getLogger("paretour")
 _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
@@ -65,6 +66,21 @@ def new_key() -> tuple[str, str]:
     return key, _digest(key)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Quota:
+    """What is left of a client's rate.
+
+    Attributes:
+        remaining: The requests that it may make at once.
+        seconds: The time until it may make more.
+        allowed: Whether the request that was counted last was within the rate.
+    """
+
+    remaining: int
+    seconds: int
+    allowed: bool
+
+
 class Rates:
     """A limit on the requests of each caller, in the notation of the package `limits`: 9/second.
 
@@ -82,28 +98,42 @@ class Rates:
         # Keeps only two numbers for each address, because there may be very many.
         self._addresses = SlidingWindowCounterRateLimiter(storage)
 
-    async def check(self, client: str, *, keyed: bool) -> None:
+    async def count(self, client: str, *, keyed: bool) -> Quota | None:
         """Count a request of a caller with a key, or of an address without one.
 
-        Raises:
-            Refusal: The client is over its rate.
+        Returns:
+            What is left; None where Redis does not answer.
         """
         limiter = self._callers if keyed else self._addresses
         try:
-            if await limiter.hit(self._rate, client):
-                return
+            allowed = await limiter.hit(self._rate, client)
             window = await limiter.get_window_stats(self._rate, client)
         except StorageError:
             _LOG.warning("rates are not counted: Redis does not answer")
-            return
-        wait = max(1, math.ceil(window.reset_time - time.time()))
-        raise Refusal(
+            return None
+        # Others may have used what was left in between, and less than a second is still one.
+        remaining = max(0, window.remaining) if allowed else 0
+        seconds = max(1, math.ceil(window.reset_time - time.time()))
+        return Quota(remaining=remaining, seconds=seconds, allowed=allowed)
+
+    def headers(self, quota: Quota) -> RawHeaders:
+        """Return the headers that tell a client its rate and what is left of it.
+
+        They are those of draft-ietf-httpapi-ratelimit-headers: lists of RFC 9651.
+        """
+        policy = f'"{_POLICY}";q={self._rate.amount};w={self._rate.get_expiry()}'
+        left = f'"{_POLICY}";r={quota.remaining};t={quota.seconds}'
+        return [(b"ratelimit-policy", policy.encode()), (b"ratelimit", left.encode())]
+
+    def refusal(self, client: str, quota: Quota) -> Refusal:
+        """Return the refusal of a request that is over the rate."""
+        return Refusal(
             "rate-limited",
             rate=self._rate,
             caller=client,
-            wait=wait,
+            wait=quota.seconds,
             limit=self._rate.amount,
-            headers={"Retry-After": str(wait)},
+            headers={"Retry-After": str(quota.seconds)},
         )
 
 
@@ -145,7 +175,16 @@ class Access:
         if self._keys:
             request.scope["caller"] = self._caller(request)
         if self._rates is not None:
-            await self._rates.check(client_of(request), keyed=bool(self._keys))
+            await self._count(self._rates, request)
+
+    async def _count(self, rates: Rates, request: Request) -> None:
+        client = client_of(request)
+        quota = await rates.count(client, keyed=bool(self._keys))
+        if quota is None:
+            return
+        request.scope[ANSWER_HEADERS].extend(rates.headers(quota))
+        if not quota.allowed:
+            raise rates.refusal(client, quota)
 
     def _caller(self, request: Request) -> str:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")

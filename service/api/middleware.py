@@ -76,6 +76,7 @@ class SecurityHeadersMiddleware(_Middleware):
 
 
 ANONYMOUS = "anonymous"
+ANSWER_HEADERS = "answer_headers"  # in a request's scope: what is known before there is an answer
 UNMATCHED = "unmatched"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 # Only in the log and the metrics, as in nginx: the client went away before its body had ended.
@@ -125,13 +126,15 @@ class RequestMiddleware(_Middleware):
         request_id = own_id if _SAFE_ID.fullmatch(own_id) else uuid.uuid4().hex
         scope["request_id"] = request_id
         scope["caller"] = ANONYMOUS
+        scope[ANSWER_HEADERS] = []
         status = None  # until an answer begins
 
         async def send_with_id(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                _set_headers(message, [(b"x-request-id", request_id.encode())])
+                own = (b"x-request-id", request_id.encode())
+                _set_headers(message, [own, *scope[ANSWER_HEADERS]])
             await send(message)
 
         try:

@@ -1,4 +1,4 @@
-"""The OpenAPI document: FastAPI's, with problem documents, security, summaries and examples.
+"""The OpenAPI document: FastAPI's, with problem documents, headers, summaries and examples.
 
 An operation's summary is the first line of its docstring. Examples are in
 `service/reference/examples.json`: requests and answers by operation, such as "POST /front"; and for
@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from service.api.response_headers import HEADERS, add_headers
 from service.api.responses import PROBLEM_JSON, Problem
 from service.errors import PROBLEMS, Refusal
 
@@ -33,6 +34,9 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
     document["security"] = [{}, {"key": []}]  # a key is needed if the settings have any
     _remove_default_refusals(document)
     _add_examples(document)
+    components["headers"] = HEADERS
+    for _, operation in _operations(document):
+        add_headers(operation["responses"])
 
 
 def example_refusal(code: str, operation: str = "") -> Refusal:

@@ -39,6 +39,14 @@ def limited() -> Iterator[str]:
         yield address
 
 
+def quota(answer: httpx.Response) -> tuple[int, int]:
+    """Return the requests left and the seconds that the answer's headers say, of a rate of 3."""
+    assert answer.headers["ratelimit-policy"] == '"default";q=3;w=3600'
+    said = re.fullmatch(r'"default";r=(\d+);t=(\d+)', answer.headers["ratelimit"])
+    assert said is not None
+    return int(said[1]), int(said[2])
+
+
 def bearing(key: str) -> dict[str, str]:
     return {"Authorization": f"Bearer {key}"}
 
@@ -97,20 +105,44 @@ def test_a_caller_over_its_rate_is_told_when_to_come_back_and_others_are_not(lim
     document = problem(refused, 429, "rate-limited")
     assert document["limit"] == 3
     assert 3500 < int(refused.headers["retry-after"]) <= 3600
+    assert quota(refused) == (0, int(refused.headers["retry-after"]))
     assert httpx.get(f"{limited}/actors", headers=bearing(LAB)).status_code == 200
     assert httpx.get(f"{limited}/health/live").status_code == 200
 
 
+def test_every_answer_that_is_counted_says_what_is_left(limited: str) -> None:
+    with httpx.Client(base_url=limited, headers=bearing(LAB)) as client:
+        accepted = client.post("/front", json=FRONT, headers={"Prefer": "respond-async"})
+        malformed = client.post("/fleet", json=[])
+        unknown = client.get("/front/x")
+    assert [accepted.status_code, malformed.status_code, unknown.status_code] == [202, 422, 404]
+    assert [quota(answer)[0] for answer in (accepted, malformed, unknown)] == [2, 1, 0]
+    assert all(3500 < quota(answer)[1] <= 3600 for answer in (accepted, malformed, unknown))
+
+
+def test_answers_that_are_not_counted_name_no_rate(url: str, limited: str) -> None:
+    for answer in (
+        httpx.get(f"{url}/actors", headers=bearing(LAB)),  # of a service without a rate
+        httpx.get(f"{limited}/actors", headers=bearing("nobody's")),
+        httpx.get(f"{limited}/health/live"),
+        httpx.get(f"{limited}/guide/"),
+    ):
+        assert not [name for name in answer.headers if name.startswith("ratelimit")]
+
+
 def test_without_keys_each_address_has_a_rate_and_a_latest_front() -> None:
-    edge = Edge(access=Access((), Rates("2/hour")))
+    edge = Edge(access=Access((), Rates("3/hour")))
     with serving(app_of(edge=edge)) as url:
         # uvicorn trusts the header where the proxy is at 127.0.0.1.
         one, other = ({"X-Forwarded-For": f"203.0.113.{last}"} for last in (1, 2))
-        assert httpx.post(f"{url}/front", json=FRONT, headers=one).status_code == 200
+        planned = httpx.post(f"{url}/front", json=FRONT, headers=one)
+        assert (planned.status_code, quota(planned)[0]) == (200, 2)
         assert httpx.get(f"{url}/tour?angle=30", headers=one).status_code == 200
+        assert quota(httpx.get(f"{url}/front/x", headers=one))[0] == 0
         refused = httpx.get(f"{url}/actors", headers=one)
         assert "203.0.113.1" in problem(refused, 429, "rate-limited")["detail"]
         assert 0 < int(refused.headers["retry-after"]) <= 7200
+        assert quota(refused) == (0, int(refused.headers["retry-after"]))
         problem(httpx.get(f"{url}/tour?angle=30", headers=other), 404, "no-front")
         assert httpx.get(f"{url}/health/live", headers=one).status_code == 200
 
@@ -197,5 +229,8 @@ def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -
             counted = [httpx.get(f"{url}/actors", headers=bearing(LAB)) for url in (one, other) * 2]
             assert [answer.status_code for answer in counted] == [200, 200, 200, 429]
             assert 3500 < int(counted[3].headers["retry-after"]) <= 3600
+            assert [quota(answer)[0] for answer in counted] == [2, 1, 0, 0]
             redis.end()
-            assert httpx.get(f"{one}/actors", headers=bearing(LAB)).status_code == 200
+            uncounted = httpx.get(f"{one}/actors", headers=bearing(LAB))
+            assert uncounted.status_code == 200
+            assert "ratelimit" not in uncounted.headers
