@@ -36,7 +36,7 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
     _add_examples(document)
     components["headers"] = HEADERS
     for _, operation in _operations(document):
-        add_headers(operation["responses"])
+        add_headers(operation)
 
 
 def example_refusal(code: str, operation: str = "") -> Refusal:

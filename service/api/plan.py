@@ -15,9 +15,11 @@ from service.api.body import receive_source
 from service.api.body_budget import BodyAllowance, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
+from service.api.middleware import ANSWER_HEADERS
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
+from service.api.response_headers import REPLAYED
 from service.api.responses import (
     AcceptedAnswer,
     CoverageAnswer,
@@ -193,22 +195,26 @@ class PlanRoutes:
         record = await self._new_record(request, task, body)
         self._answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
-            first = await self._submit(record, task, allowance)
+            first = await self._submit(request, record, task, allowance)
             return _accepted_response(self._engine.state(first).record, geometry)
         if record.key is None:
             record = await self._run(request, record, task, body.deadline)
         else:
-            first = await self._submit(record, task, allowance)
+            first = await self._submit(request, record, task, allowance)
             record = await record_in_time(self._engine, first, body.deadline)
         if record.problem is None:
             return await self._answers.front(request, record, geometry, body.deadline.left())
         # The problem may be that of an earlier request that this one repeats.
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
-    async def _submit(self, record: Record, task: Task, allowance: BodyAllowance) -> Record:
+    async def _submit(
+        self, request: Request, record: Record, task: Task, allowance: BodyAllowance
+    ) -> Record:
         """Submit a job. Its body counts against the budget until the engine releases it."""
         first = await self._engine.submit(record, task)
-        if first.id == record.id:
+        if first.id != record.id:
+            request.scope[ANSWER_HEADERS].append(REPLAYED)
+        else:
             holding = asyncio.create_task(self._hold(record, allowance.hand_over()))
             self._held.add(holding)
             holding.add_done_callback(self._held.discard)

@@ -169,12 +169,18 @@ def test_events_end_when_the_job_is_cancelled(client: httpx.Client) -> None:
 
 def test_a_repeat_with_the_same_key_is_the_same_front(client: httpx.Client) -> None:
     key = {"Idempotency-Key": "same"}
-    first = client.post("/front", json=SHORT, headers=key).json()
+    answer = client.post("/front", json=SHORT, headers=key)
+    first = answer.json()
     assert first["status"] == "done"
-    assert client.post("/front", json=SHORT, headers=key).json() == first
-    assert later(client, SHORT, **key) == f"/front/{first['id']}"
+    repeat = client.post("/front", json=SHORT, headers=key)
+    assert repeat.json() == first
+    accepted = client.post("/front", json=SHORT, headers={**key, **LATER})
+    assert accepted.headers["location"] == f"/front/{first['id']}"
     other = client.post("/front", json=LONG, headers=key)
     problem(other, 422, "idempotency-mismatch")
+    answers = (answer, repeat, accepted, other)
+    replayed = [each.headers.get("idempotent-replayed") for each in answers]
+    assert replayed == [None, "true", "true", None]
     assert later(client, SHORT) != f"/front/{first['id']}"
 
 
@@ -211,8 +217,10 @@ def test_a_job_that_fails_says_why(engine: Engine) -> None:
         assert (found["problem"]["status"], found["problem"]["code"]) == (500, "internal-error")
         assert "no tour" not in json.dumps(found)
         key = {"Idempotency-Key": "k"}
-        for _ in range(2):
-            problem(client.post("/front", json=SHORT, headers=key), 500, "internal-error")
+        for _ in range(2):  # what failed is tried again, and not replayed
+            answer = client.post("/front", json=SHORT, headers=key)
+            problem(answer, 500, "internal-error")
+            assert "idempotent-replayed" not in answer.headers
 
 
 def test_a_job_whose_worker_is_killed_ends_with_a_front(engine: Engine) -> None:
