@@ -104,6 +104,7 @@ class Metrics(Collector):
         yield GaugeMetricFamily(
             "paretour_queue_depth", "fronts that wait for a worker", stats.waiting
         )
+        yield GaugeMetricFamily("paretour_workers", "workers that are alive", stats.workers)
         yield GaugeMetricFamily("paretour_workers_busy", "workers that plan a front", stats.working)
         yield CounterMetricFamily(
             "paretour_worker_restarts", "workers that were lost and replaced", stats.lost

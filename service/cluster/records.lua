@@ -131,13 +131,15 @@ function verbs.idle(now)
   return {here, redis.call('LLEN', messages), idle}
 end
 
-function verbs.standing(_)
+-- How many records wait and are being planned; how many workers were lost, and are alive.
+function verbs.standing(now)
   local working = 0
   for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
     if redis.call('HGET', front_of(id), 'status') == 'running' then working = working + 1 end
   end
   local waiting = redis.call('ZCARD', UNFINISHED) - working
-  return {waiting, working, tonumber(redis.call('GET', LOST) or 0) or 0}
+  local alive = redis.call('ZCOUNT', WORKERS, '(' .. now - 5, '+inf')
+  return {waiting, working, tonumber(redis.call('GET', LOST) or 0) or 0, alive}
 end
 
 -- The refusal of one more record of a client, where it has no place: 'full', or how many it may have.

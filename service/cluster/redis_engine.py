@@ -115,7 +115,7 @@ class RedisEngine:
         self._on_front = on_front
         self._subscriptions = Subscriptions(redis, lambda id_: self._spawn(self._claim(id_)))
         self._tasks: set[asyncio.Task[None]] = set()
-        self._stats = EngineStats(waiting=0, working=0, lost=0)
+        self._stats = EngineStats(waiting=0, working=0, lost=0, workers=0)
         self._closed = False
         self._log = logging.getLogger("paretour")
 
@@ -134,8 +134,8 @@ class RedisEngine:
     async def stats(self) -> EngineStats:
         """Return the numbers of the whole cluster, as last known."""
         with suppress(StoreUnavailable):
-            waiting, working, lost = await self._store.call("standing")
-            self._stats = EngineStats(waiting=waiting, working=working, lost=lost)
+            waiting, working, lost, workers = await self._store.call("standing")
+            self._stats = EngineStats(waiting=waiting, working=working, lost=lost, workers=workers)
         return self._stats
 
     async def check_open(self) -> None:

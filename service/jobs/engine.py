@@ -31,11 +31,12 @@ class JobState:
 
 @dataclass(frozen=True, kw_only=True)
 class EngineStats:
-    """The numbers of waiting tasks, of busy workers, and of workers lost and replaced."""
+    """The numbers of waiting tasks; of workers: alive, busy, and lost and replaced."""
 
     waiting: int
     working: int
     lost: int
+    workers: int
 
 
 class Engine(Protocol):

@@ -154,7 +154,12 @@ class LocalEngine:
     async def stats(self) -> EngineStats:
         """Return the numbers for the metrics."""
         workers = self._workers
-        return EngineStats(waiting=workers.waiting, working=workers.working, lost=workers.lost)
+        return EngineStats(
+            waiting=workers.waiting,
+            working=workers.working,
+            lost=workers.lost,
+            workers=workers.live,
+        )
 
     async def check_open(self) -> None:
         """Raise ShuttingDown when no more jobs are taken."""

@@ -75,14 +75,15 @@ class FixedStats:
 
 
 def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
-    engine = FixedStats(EngineStats(waiting=3, working=2, lost=1))
+    engine = FixedStats(EngineStats(waiting=3, working=2, lost=1, workers=4))
     metrics = Metrics()
     metrics.watch(engine)
     with serving(app_of(edge=Edge(metrics=metrics))) as url:
         counted = samples(url)
-        engine.now = EngineStats(waiting=0, working=2, lost=1)
+        engine.now = EngineStats(waiting=0, working=2, lost=1, workers=4)
         later = samples(url)
     assert counted["paretour_queue_depth",] == 3
+    assert counted["paretour_workers",] == 4
     assert counted["paretour_workers_busy",] == 2
     assert counted["paretour_worker_restarts_total",] == 1
     assert later["paretour_queue_depth",] == 0
@@ -108,6 +109,7 @@ def test_fronts_are_counted_by_phase_and_size_class(quick_actors: dict[str, str]
             answer = httpx.post(f"{service.url}/front", json=request, timeout=60)
             assert answer.status_code == 200
         counted = samples(service.url)
+    assert counted["paretour_workers",] == 1
     for phase in ("construction", "improvement", "selection", "bound"):
         assert counted["paretour_planning_seconds_count", "20", phase] == 2
         assert counted["paretour_planning_seconds_count", "100", phase] == 1

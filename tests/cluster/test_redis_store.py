@@ -201,3 +201,16 @@ def test_a_redis_that_takes_no_more_is_unavailable(tmp_path: Path) -> None:
             await store.close()
 
     asyncio.run(test())
+
+
+def test_a_worker_counts_as_alive_for_five_seconds_after_its_last_sign(redis: Redis) -> None:
+    seconds = iter([100.0, 104.0, 106.0])
+
+    async def count() -> list[int]:
+        async with redis_store(
+            redis.url, entries=9, max_age=60, clock=lambda: next(seconds)
+        ) as store:
+            await store.call("present", "machine:1")
+            return [(await store.call("standing"))[3] for _ in range(2)]
+
+    assert asyncio.run(count()) == [1, 0]

@@ -100,6 +100,11 @@ class WorkerPool:
         return sum(any(not each.ended for each in running) for running in workers)
 
     @property
+    def live(self) -> int:
+        """The number of processes that have started and live."""
+        return sum(worker.started for worker in self._workers)
+
+    @property
     def lost(self) -> int:
         """The number of processes that were lost and replaced."""
         return self._workers.lost
