@@ -7,7 +7,7 @@ _REPLAYED = "Idempotent-Replayed"
 REPLAYED = (_REPLAYED.lower().encode(), b"true")
 # Which headers a page of another origin may read (CORS).
 EXPOSED = (
-    *(_REPLAYED, "Location", "Preference-Applied"),
+    *(_REPLAYED, "Link", "Location", "Preference-Applied"),
     *(*_RATE, "Retry-After", "X-Request-ID"),
 )
 _RATE_LIMITED = "429"
@@ -30,6 +30,13 @@ HEADERS: dict[str, dict[str, Any]] = {
         "description": "how many requests (q) in how many seconds (w) one client may make",
         "schema": {"type": "string", "examples": ['"default";q=1000;w=60']},
     },
+}
+LINK: dict[str, dict[str, Any]] = {
+    "Link": {
+        "description": 'the address of the next page, with rel="next"; left out on the last (RFC'
+        " 8288)",
+        "schema": {"type": "string"},
+    }
 }
 
 

@@ -155,6 +155,29 @@ class FrontAnswer(BaseModel):
     )
 
 
+class ListedFrontItem(BaseModel):
+    """A front in a list."""
+
+    id: str
+    status: Status
+    kind: KindName
+    stored_at: str = Field(
+        description="when it was submitted or, once it is finished, when it was finished (RFC 3339)"
+    )
+    cities: int = Field(description="its cities, stops or places")
+    points: int
+    hypervolume: float
+    objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
+        default=None, description="as the request names them"
+    )
+
+
+class FrontsAnswer(BaseModel):
+    """A page of the caller's fronts, the newest first; `Link` leads to the next page."""
+
+    fronts: list[ListedFrontItem]
+
+
 class AcceptedAnswer(BaseModel):
     """Where a front will be found."""
 

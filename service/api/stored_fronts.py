@@ -1,4 +1,4 @@
-"""The routes that read, follow, cancel and forget fronts: `/front/{id}`, its events, `/tour`."""
+"""The routes that list, read, follow and forget fronts: `/front`, `/front/{id}`, `/tour`."""
 
 import asyncio
 from collections.abc import AsyncIterator, Mapping
@@ -15,10 +15,19 @@ from starlette.responses import Response, StreamingResponse
 from service.api.auth import caller_of, client_of
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
-from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
+from service.api.response_headers import LINK
+from service.api.responses import (
+    FrontAnswer,
+    FrontsAnswer,
+    TourAnswer,
+    json_bytes,
+    json_response,
+    problem_responses,
+)
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
-from service.jobs.record import Record
+from service.jobs.listing import ListedFront
+from service.jobs.record import UNFINISHED, Record
 from service.jobs.store import Store
 from service.kinds.table import KINDS
 from service.requests.fields import GEOMETRY, Geometry, NonNegativeInteger
@@ -28,6 +37,10 @@ PLAN = (
     "for a fleet's front in GeoJSON: the number of the plan whose routes are drawn, from 0; by"
     " default all plans are drawn"
 )
+_MOST_LISTED = 100
+_LIMIT = "the most fronts of the answer"
+_AFTER = "where the page begins, as the `Link` of the page before says; by default at the newest"
+_LARGEST = 2**53  # above the numbers of all records, and exact in JSON
 _HEARTBEAT = 15.0  # seconds without an event, after which a comment shows that the stream is alive
 
 
@@ -44,6 +57,11 @@ class StoredFrontRoutes:
         router = APIRouter(tags=["fronts"])
         missing = problem_responses(404, 410, 503)
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
+        router.get(
+            "/front",
+            response_model=FrontsAnswer,
+            responses={200: {"headers": LINK}, **problem_responses(422, 503)},
+        )(self.list_fronts)
         router.get(
             "/front/{id}",
             response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
@@ -65,6 +83,27 @@ class StoredFrontRoutes:
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.get_tour)
         return router
+
+    async def list_fronts(
+        self,
+        request: Request,
+        limit: Annotated[int, Query(ge=1, le=_MOST_LISTED, description=_LIMIT)] = 20,
+        after: Annotated[int, Query(ge=1, le=_LARGEST, description=_AFTER)] = _LARGEST,
+    ) -> Response:
+        """List the caller's own fronts, the newest first: of its key or, without keys, its address.
+
+        A front is listed from when it was submitted, and anew when it is finished. If there are
+        more than `limit`, the header `Link` has the address of the next page.
+        """
+        caller = caller_of(request)
+        found = await self._store.fronts(caller, client_of(request), after, limit + 1)
+        page = found[:limit]
+        present = [await self._present(caller, each) for each in page]
+        response = json_response({"fronts": [each.document() for each in present]})
+        if len(found) > limit:
+            address = f"/front?limit={limit}&after={page[-1].number}"
+            response.headers["Link"] = f'<{address}>; rel="next"'
+        return response
 
     async def get_front(
         self,
@@ -102,6 +141,23 @@ class StoredFrontRoutes:
         names = [each["name"] for each in record.front.objectives or ()]
         index = query.choose(record.front.lengths, record.front.directions, names)
         return await self._answers.tour(request, record, index, query.geometry)
+
+    async def _present(self, caller: str, listed: ListedFront) -> ListedFront:
+        """Return what is known of a front now: the engine may know more than the store."""
+        if listed.status not in UNFINISHED:
+            return listed
+        try:
+            stored = await self._store.get(caller, listed.id)
+        except (NotFound, Expired):  # deleted meanwhile
+            return listed
+        record = self._engine.state(stored).record
+        return ListedFront.of(
+            record.front,
+            number=listed.number,
+            stored_at=listed.stored_at.timestamp(),
+            id=listed.id,
+            status=record.status,
+        )
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
         """Return the present state of the caller's record with an id, or of its latest record."""

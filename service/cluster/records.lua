@@ -65,6 +65,31 @@ function verbs.latest(_)
   return redis.call('EXISTS', gone_of(client)) == 1 and 'expired' or 'unknown'
 end
 
+-- The id, number, time and status of a caller's newest records for a client, the newest first, with
+-- numbers below one.
+function verbs.page(_)
+  local caller, client, highest, most = ARGV[3], ARGV[4], '(' .. ARGV[5], tonumber(ARGV[6])
+  local found = {}
+  local function take(id)
+    local its, number, kept, status, members = unpack(
+      redis.call('HMGET', front_of(id), 'caller', 'number', 'kept', 'status', 'members'))
+    if its ~= caller or not (tonumber(number) and kept and status and members) then return end
+    found[#found + 1] = {id, number, kept, status}
+  end
+  for _, id in ipairs(redis.call('ZREVRANGEBYSCORE', UNFINISHED, highest, '-inf')) do
+    if client_of(id) == client then take(id) end
+  end
+  local unfinished = #found
+  for _, id in ipairs(redis.call('ZREVRANGEBYSCORE', owned_by(client), highest, '-inf')) do
+    if #found - unfinished == most then break end
+    take(id)
+  end
+  table.sort(found, function(one, other) return tonumber(one[2]) > tonumber(other[2]) end)
+  return {unpack(found, 1, math.min(#found, most))}
+end
+
+function verbs.members(_) return redis.call('HGET', front_of(ARGV[3]), 'members') end
+
 function verbs.source(_) return redis.call('HGETALL', work_of(ARGV[3])) end
 
 function verbs.forget(_) forget(ARGV[3]) end

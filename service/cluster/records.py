@@ -7,18 +7,20 @@ the columns in `jobs.store` and the keys in `stored_records.lua` therefore stay 
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 from pydantic_core import to_json
 
 from service.errors import Cancelled, DeadlineExceeded
 from service.front import Progress
 from service.jobs.engine import JobState
-from service.jobs.record import Record, StopReason
+from service.jobs.listing import ListedFront
+from service.jobs.record import Record, Status, StopReason
 from service.jobs.store import (
     SOURCE_COLUMNS,
     UnreadableRecord,
     front_columns,
+    listed_from,
     record_columns,
     record_from,
     source_from,
@@ -85,6 +87,19 @@ def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:
     try:
         return _decode(*hashes)
     except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+        raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
+
+
+def listed_front(row: Iterable[bytes], members: bytes) -> ListedFront:
+    """Return what a list says of a record: its id, number, time and status, and its members.
+
+    Raises:
+        UnreadableRecord: They are damaged, or of another program.
+    """
+    try:
+        id_, number, kept, status = (each.decode() for each in row)
+        return listed_from(int(number), float(kept), id_, cast(Status, status), members)
+    except ValueError as error:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
 
 

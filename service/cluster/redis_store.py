@@ -1,6 +1,7 @@
 """The store in Redis, shared by all replicas."""
 
-from collections.abc import Callable
+import asyncio
+from collections.abc import Callable, Sequence
 from time import time
 from typing import Any
 
@@ -9,6 +10,7 @@ from redis.asyncio import Redis
 from service.cluster.records import (
     Argument,
     StoredRecord,
+    listed_front,
     record_arguments,
     stored_source,
 )
@@ -21,8 +23,9 @@ from service.errors import (
     QueueFull,
     ShareFull,
 )
+from service.jobs.listing import ListedFront
 from service.jobs.record import Record
-from service.jobs.store import STORE_BYTES
+from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
 from service.requests.task import TaskSource
 
 NOBODY = "none of the cluster was there in the last 5 s"
@@ -84,6 +87,16 @@ class RedisStore(RecordScript):
         """Return the caller's record that was finished last for this client."""
         return (await self.find("latest", caller, client)).record
 
+    async def fronts(self, caller: str, client: str, below: int, most: int) -> list[ListedFront]:
+        """Return the caller's newest records for this client, as `Store.fronts` does."""
+        await self._evict()
+        while True:
+            rows = await self.call("page", caller, client, below, most)
+            # One by one, because the members of a record may be long.
+            found = [listed for row in rows if (listed := await self._listed(caller, row))]
+            if len(found) == len(rows):
+                return found
+
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
         await self.call("forget", record.id)
@@ -112,6 +125,19 @@ class RedisStore(RecordScript):
                     stored = await self.read(id_, *hashes, caller=arguments[0])
                     if stored is not None:
                         return stored
+
+    async def _listed(self, caller: str, row: Sequence[bytes]) -> ListedFront | None:
+        """Return what a list says of a record; None if it is gone, or damaged and dropped now."""
+        id_ = row[0]
+        members = await self.call("members", id_)
+        if members is None:
+            return None
+        try:
+            return await asyncio.to_thread(listed_front, row, members)
+        except UnreadableRecord as error:
+            log_dropped(id_.decode(errors="replace")[:80], error)
+            await self.call("drop", id_, caller)
+            return None
 
     async def _earlier(self, caller: str, verb: str, *arguments: Argument) -> Record | None:
         """Return the earlier record that an admission finds, if there is one that can be read."""

@@ -16,6 +16,7 @@ _PLANS = (*_PLANNED, *_FLEET)
 _FILES = ("POST /files",)
 _BODIES = (*_PLANS, *_FILES)
 _TOUR = ("GET /tour",)
+_LIST = "GET /front"
 _STORED = "GET /front/{id}"
 _ROADS = ("POST /front", *_FLEET, *_REPLAN, _STORED, *_TOUR)
 
@@ -87,7 +88,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "idempotency-mismatch": Problem(422, "this Idempotency-Key was used with another body", _PLANS),
     "invalid-instance": Problem(422, "{reason}", _PLANS),
     "invalid-parts": Problem(422, "{reason}", _BODIES),
-    "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
+    "invalid-request": Problem(422, "{detail}", (*_PLANS, _LIST, _STORED, *_TOUR)),
     "no-plan": Problem(422, "{reason}", _PLANS),
     "no-actor": Problem(
         422,

@@ -12,6 +12,7 @@ from time import time
 from typing import TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
+from service.jobs.listing import ListedFront
 from service.jobs.record import Record
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
@@ -21,6 +22,7 @@ from service.jobs.store import (
     SOURCE_SHARE,
     STORE_BYTES,
     UnreadableRecord,
+    listed_from,
     log_dropped,
     record_columns,
     record_from,
@@ -44,6 +46,10 @@ _LOG = logging.getLogger("paretour")
 
 _FINISHED = f"NOT {UNFINISHED}"
 _SUMS = f"SELECT count(*), total(size), min(kept), max(size) FROM front WHERE {_FINISHED}"
+_PAGE = """
+SELECT number, kept, id, status, members FROM front
+WHERE caller = ? AND client = ? AND number < ? ORDER BY number DESC LIMIT ?
+"""
 # The records dropped by dropping the oldest of the client with most again and again.
 _FIRST_OUT = f"""
 SELECT number FROM (
@@ -133,6 +139,10 @@ class SqliteStore:
     async def latest(self, caller: str, client: str) -> Record:
         """Return the caller's record that was finished last for this client."""
         return await self._found("caller = ? AND client = ?", caller, client, among=_FINISHED)
+
+    async def fronts(self, caller: str, client: str, below: int, most: int) -> list[ListedFront]:
+        """Return the caller's newest records for this client, as `Store.fronts` does."""
+        return await self._in_thread(self._fronts, caller, client, below, most)
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
@@ -235,6 +245,20 @@ class SqliteStore:
                 return record
         known = self._database.execute(f"SELECT 1 FROM gone WHERE {where}", values).fetchone()
         return Expired if known else NotFound
+
+    def _fronts(self, *bounds: str | int) -> list[ListedFront]:
+        """Return a page of records; those that cannot be read are dropped."""
+        self._evict()
+        found, damaged = [], []
+        for number, kept, id_, status, members in self._database.execute(_PAGE, bounds):
+            try:
+                found.append(listed_from(number, kept, id_, status, members))
+            except UnreadableRecord as error:
+                log_dropped(str(id_)[:80], error)
+                damaged.append(number)
+        for number in damaged:
+            self._drop("number = ?", number)
+        return self._fronts(*bounds) if damaged else found
 
     def _select(self, where: str, *values: str) -> list[Record]:
         """Return the records that can be read; the others are dropped."""

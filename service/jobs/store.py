@@ -12,6 +12,7 @@ from typing import Any, Protocol, get_args
 import numpy as np
 from pydantic_core import to_json
 
+from service.jobs.listing import ListedFront
 from service.jobs.record import Record, Status
 from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskKind, TaskSource
@@ -52,6 +53,16 @@ class Store(Protocol):
         Raises:
             NotFound: The client never had one.
             Expired: It was dropped.
+        """
+
+    async def fronts(self, caller: str, client: str, below: int, most: int) -> list[ListedFront]:
+        """Return the caller's newest records for this client, unfinished ones too.
+
+        Args:
+            caller: The name of the API key.
+            client: The caller or, without keys, an address.
+            below: Only those with a number below this.
+            most: At most so many.
         """
 
     async def delete(self, record: Record) -> None:
@@ -124,6 +135,27 @@ def record_from(columns: Mapping[str, Any]) -> Record:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
 
 
+def listed_from(
+    number: int,
+    stored_at: float,
+    id: str,  # noqa: A002
+    status: Status,
+    members: bytes,
+) -> ListedFront:
+    """Return what a list says of a record, given some of its columns.
+
+    Raises:
+        UnreadableRecord: They are damaged, or of another program.
+    """
+    try:
+        _check_status(status)
+        front = FrontDocument.from_members(json.loads(members))
+        return ListedFront.of(front, number=number, stored_at=stored_at, id=id, status=status)
+    # All that parsers may raise for damaged bytes.
+    except Exception as error:
+        raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
+
+
 def source_from(columns: Mapping[str, Any]) -> TaskSource:
     """Return the source in these columns. The column `upload` may be missing."""
     return TaskSource(columns["kind"], columns["body"], columns.get("upload"))
@@ -163,8 +195,7 @@ def _check(record: Record) -> None:
     if not all(isinstance(text, str) for text in texts):
         raise ValueError("id, caller, request_id, status and digest are not texts")
     ends = np.frombuffer(front.ends, np.int64)
-    if record.status not in get_args(Status):
-        raise ValueError(f"status is {record.status!r}")
+    _check_status(record.status)
     if source is not None and source.kind not in get_args(TaskKind):
         raise ValueError(f"kind is {source.kind!r}")
     if not isinstance(record.problem, dict | None):
@@ -173,3 +204,8 @@ def _check(record: Record) -> None:
         raise ValueError("angles and ends differ in number")
     if (int(ends[-1]) if len(ends) else 0) != len(front.tours) or (np.diff(ends) < 1).any():
         raise ValueError("ends are not those of the tours")
+
+
+def _check_status(status: str) -> None:
+    if status not in get_args(Status):
+        raise ValueError(f"status is {status!r}")

@@ -24,7 +24,8 @@ def test_a_long_path_is_shown_shortened(client: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "method", "allowed"), [("/front", "PUT", "POST"), ("/front/x", "POST", "DELETE, GET")]
+    ("path", "method", "allowed"),
+    [("/front", "PUT", "GET, POST"), ("/front/x", "POST", "DELETE, GET")],
 )
 def test_a_method_that_a_path_lacks_is_405_and_names_all_others(
     client: httpx.Client, path: str, method: str, allowed: str

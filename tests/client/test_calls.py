@@ -140,3 +140,23 @@ def test_a_front_can_be_forgotten(connect: Connect) -> None:
     service = Answers(httpx.Response(204))
     connect(transport=service).job("f").forget()
     assert (service.requests[0].method, service.requests[0].url.path) == ("DELETE", "/front/f")
+
+
+def listed(id_: str) -> dict[str, Any]:
+    return {
+        **{"id": id_, "status": "done", "kind": "front", "cities": 3, "points": 2},
+        **{"stored_at": "2026-03-02T09:30:12Z", "hypervolume": 0.5},
+    }
+
+
+def test_a_list_is_read_page_by_page_until_there_are_enough() -> None:
+    call = Calls(timeout=1, patience=1).fronts(most=3)
+    first = next(call)
+    assert (first.path, first.content["params"]) == ("/front", {"limit": 3})
+    link = {"Link": '</behind/a/proxy/front?limit=3&after=17>; rel="next"'}
+    page = {"fronts": [listed("c"), listed("b")]}
+    second = call.send(httpx.Response(200, json=page, headers=link))
+    assert second.content["params"] == {"limit": 1, "after": "17"}
+    with pytest.raises(StopIteration) as ended:
+        call.send(httpx.Response(200, json={"fronts": [listed("a")]}, headers=link))
+    assert [each.id for each in ended.value.value] == ["c", "b", "a"]

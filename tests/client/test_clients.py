@@ -110,6 +110,15 @@ def test_a_front_of_stops_is_given_as_geojson(url: str, connect: Connect) -> Non
         client.geojson(found.id, geometry="roads")
 
 
+def test_the_newest_fronts_are_listed(url: str, connect: Connect) -> None:
+    client = connect(url)
+    made = [client.front(coordinates=CITIES, time_limit=0).id for _ in range(3)]
+    newest, older = client.fronts(most=2)
+    assert [newest.id, older.id] == made[:0:-1]
+    assert (newest.kind, newest.status, newest.cities) == ("front", "done", len(CITIES))
+    assert newest.stored_at >= older.stored_at
+
+
 def test_the_actors_are_named(url: str, connect: Connect) -> None:
     named = {actor.name: actor.inputs for actor in connect(url).actors()}
     assert named["pa-one"] == "coordinates"

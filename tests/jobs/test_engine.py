@@ -353,6 +353,33 @@ def test_without_keys_the_latest_front_is_that_of_an_address_behind_a_proxy(
         assert by_id.json()["front"] == fronts[0]
 
 
+def test_fronts_are_listed_page_by_page_to_their_address_alone(engine: Engine) -> None:
+    us, them = ({"X-Forwarded-For": f"203.0.113.{last}"} for last in (1, 2))
+    with engine.serve() as served:
+        client = served.client
+        made = [client.post("/front", json=SHORT, headers=us).json()["id"] for _ in range(3)]
+        first = client.get("/front?limit=2", headers=us)
+        second = client.get(first.links["next"]["url"], headers=us)
+        listed = first.json()["fronts"] + second.json()["fronts"]
+        assert [each["id"] for each in listed] == made[::-1]
+        assert "link" not in second.headers
+        front = client.get(f"/front/{made[-1]}").json()
+        assert listed[0].items() >= {k: front[k] for k in ("kind", "cities", "points")}.items()
+        assert (listed[0]["status"], listed[0]["hypervolume"]) == ("done", front["hypervolume"])
+        assert client.get("/front", headers=them).json() == {"fronts": []}
+        path = later(client, LONG, **them)
+        until_found(client, path)
+        [running] = client.get("/front", headers=them).json()["fronts"]
+        assert (running["id"], running["status"]) == (id_of(path), "running")
+        client.delete(path)
+
+
+@pytest.mark.parametrize("query", ["limit=0", "limit=101", "limit=x", "after=0", "after=x"])
+def test_a_page_that_cannot_be_is_refused(client: httpx.Client, query: str) -> None:
+    document = problem(client.get(f"/front?{query}"), 422, "invalid-request")
+    assert document["errors"][0]["parameter"] == query.partition("=")[0]
+
+
 def test_a_caller_sees_its_own_jobs_alone(engine: Engine) -> None:
     (our_key, ours), (their_key, theirs) = new_key(), new_key()
     hashes = [KeyHash(caller="us", digest=ours), KeyHash(caller="them", digest=theirs)]
@@ -366,6 +393,7 @@ def test_a_caller_sees_its_own_jobs_alone(engine: Engine) -> None:
             client.get(f"{path}/events", headers=them),
         ):
             problem(answer, 404, "unknown-front")
+        assert client.get("/front", headers=them).json() == {"fronts": []}
         problem(client.get("/tour?angle=3", headers=them), 404, "no-front")
         with_key = {"Idempotency-Key": "k"}
         ids = {later(client, SHORT, **who, **with_key) for who in (us, them)}

@@ -113,6 +113,23 @@ def test_the_latest_of_a_client_is_not_that_of_another_without_a_key(run: Run) -
     run(test, clock=clock, entries=3)
 
 
+def test_the_records_of_a_client_are_listed_page_by_page_the_newest_first(run: Run) -> None:
+    async def test(store: Any) -> None:
+        for name in "abc":
+            await store.put(record(name, client="192.0.2.1"))
+        await store.put(record("d", client="192.0.2.2"))
+        await store.admit(job("e", client="192.0.2.1"))
+        page = await store.fronts("us", "192.0.2.1", 2**53, 3)
+        assert [each.id for each in page] == ["e", "c", "b"]
+        assert [each.status for each in page] == ["queued", "done", "done"]
+        [rest] = await store.fronts("us", "192.0.2.1", page[-1].number, 3)
+        assert rest.id == "a"
+        assert await store.fronts("us", "192.0.2.1", rest.number, 3) == []
+        assert await store.fronts("them", "192.0.2.1", 2**53, 3) == []
+
+    run(test, entries=9)
+
+
 def test_the_oldest_makes_way_when_the_store_is_full(run: Run) -> None:
     async def test(store: Any) -> None:
         for id_ in "abc":

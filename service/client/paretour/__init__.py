@@ -19,6 +19,7 @@ from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
 from paretour.fronts import Objective
 from paretour.kinds import FrontOfAnyKind
+from paretour.listing import ListedFront
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -62,6 +63,7 @@ __all__ = [
     "FrontOfAnyKind",
     "FrontRequest",
     "Job",
+    "ListedFront",
     "Objective",
     "ObjectiveRequest",
     "Path",

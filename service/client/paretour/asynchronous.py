@@ -91,6 +91,7 @@ class AsyncClient:
     tour = _result(Calls.tour)
     geojson = _result(Calls.geojson)
     read_files = _result(Calls.read_files)
+    fronts = _result(Calls.fronts)
     actors = _result(Calls.actors)
     submit = _job(Calls.submit)
     submit_coverage = _job(Calls.submit_coverage)

@@ -19,6 +19,7 @@ from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
 from paretour.kinds import FrontOfAnyKind, parse_any
+from paretour.listing import PAGE, ListedFront, next_page, parse_listed
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -250,6 +251,24 @@ class Calls:
         answer.read("request", members)
         answer.read("notes", each(members))
         return answer.document
+
+    def fronts(self, most: int = PAGE) -> Call[tuple[ListedFront, ...]]:
+        """Return what the service lists of your newest fronts, at most so many, the newest first.
+
+        They are those of your API key or, where the service has no keys, of your address.
+        """
+        found: list[ListedFront] = []
+        after = None
+        while len(found) < most:
+            more = {} if after is None else {"after": after}
+            params = {"limit": min(most - len(found), PAGE), **more}
+            response = yield from self._get("/front", params)
+            page = _answer(response).read("fronts", each(parse_listed))
+            found += page
+            after = next_page(response)
+            if not page or after is None:
+                break
+        return tuple(found[:most])
 
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""
