@@ -1,25 +1,17 @@
 """Plan for the command: in this process, or by a service at a URL."""
 
-import json
 from dataclasses import asdict, dataclass
-from functools import partial
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import Protocol
 
 import httpx
-from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Progress, Refused
+from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
 from paretour.calls import address_of
-from paretour.kinds import parse_any
 from rich.console import Console
 
 from service.cli.errors import UsageError
 from service.cli.options import Service
-from service.cli.progress import interrupt_flag, progress_bar, until_done
-
-if TYPE_CHECKING:
-    from service.requests.task import Task
-
-LOADING = "loading the search"
+from service.cli.progress import ConsoleDisplay, progress_bar
 
 
 class Backend(Protocol):
@@ -86,42 +78,15 @@ class LocalBackend:
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
         from service.cli.configuration import load_settings, load_with
-        from service.errors import Cancelled, Refusal
-        from service.jobs.task_runner import load_runner
-        from service.requests.parser import parse_task
-        from service.requests.task import TaskKind, TaskSource
+        from service.library.local_planner import load_planner
 
-        runner = load_with(
-            lambda settings: load_runner(
-                settings.actors,
-                settings.threads,
-                settings.limits,
-                settings.own_actors,
-                settings.roads,
-            ),
-            load_settings(),
-        )
-        upload = None if plan.file is None else plan.file.content
-        kind = cast(TaskKind, plan.path.removeprefix("/"))
+        planner = load_with(load_planner, load_settings())
         try:
-            source = TaskSource(kind, plan.json, upload)
-            task = parse_task(source, runner.limits, runner.infos)
-            if task.actor in runner.actors:
-                runner.actors[task.actor].load()  # before the clock of its time limit starts
-            _warm_up(task, console)
-            with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
-                run = partial(
-                    runner.run, task, interrupted, lambda found, _: show(Progress(**asdict(found)))
-                )
-                document = until_done(run, interrupted, runner.terminate)
-        except Cancelled:
-            raise KeyboardInterrupt from None
-        except Refusal as error:
+            return planner.plan(plan, ConsoleDisplay(console)).front()
+        except Refused as error:
             if error.status >= HTTPStatus.INTERNAL_SERVER_ERROR:
-                raise Refused(error.document("")) from None
-            raise UsageError(str(error)) from None
-        status = "cancelled" if interrupted() else "done"
-        return parse_any(json.loads(document.json(id="", status=status)))
+                raise
+            raise UsageError(error.detail) from None
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors in the directory that the settings name."""
@@ -133,21 +98,6 @@ class LocalBackend:
             load_settings(),
         )
         return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
-
-
-def _warm_up(task: "Task", console: Console) -> None:
-    """Compile what a task needs, or load it, and show how far that is."""
-    from service.jobs.compiled_code import warm_up
-    from service.jobs.parts import Compiling, Part, parts_of
-
-    if parts := parts_of(task):
-        with console.status(LOADING) as shown:
-
-            def show(told: Part | Compiling) -> None:
-                if isinstance(told, Compiling):
-                    shown.update(str(told))
-
-            warm_up(parts, show)
 
 
 def _result(job: Job[FrontOfAnyKind], plan: Plan, console: Console) -> FrontOfAnyKind:

@@ -1,19 +1,14 @@
-"""Show progress on stderr while a front is planned, and end its search at Ctrl-C."""
+"""Show progress on stderr while a front is planned."""
 
-import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, wait
-from contextlib import contextmanager
-from threading import Event, Thread
-from types import FrameType
-from typing import Any, TypeVar
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 
 from paretour import Progress
 from rich import progress as bars
 from rich.console import Console
 
-T = TypeVar("T")
-_POLL_SECONDS = 0.02
+LOADING = "loading the search"
 
 
 @contextmanager
@@ -40,48 +35,18 @@ def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[Progres
         yield show
 
 
-def until_done(
-    run: Callable[[], T], interrupted: Callable[[], bool], terminate: Callable[[], None]
-) -> T:
-    """Run a function in a thread, and return its result; this thread waits for Ctrl-C meanwhile.
+@dataclass(frozen=True)
+class ConsoleDisplay:
+    """Shows on a console how far a plan in this process is."""
 
-    Args:
-        run: The function.
-        interrupted: As `interrupt_flag` yields it.
-        terminate: Called repeatedly after Ctrl-C: it ends a running call of the network.
-    """
-    future: Future[T] = Future()
+    console: Console
 
-    def compute() -> None:
-        try:
-            future.set_result(run())
-        except BaseException as error:
-            future.set_exception(error)
+    @contextmanager
+    def loading(self) -> Iterator[Callable[[str], None]]:
+        """Say that the search is loaded; yields a function that says how far that is."""
+        with self.console.status(LOADING) as shown:
+            yield shown.update
 
-    Thread(target=compute, daemon=True).start()  # a second Ctrl-C does not wait for it
-    while not wait((future,), _POLL_SECONDS).done:
-        if interrupted():
-            terminate()
-    return future.result()
-
-
-@contextmanager
-def interrupt_flag() -> Iterator[Callable[[], bool]]:
-    """Set a flag at the first Ctrl-C instead of raising KeyboardInterrupt.
-
-    A second Ctrl-C does what Ctrl-C did before the block.
-
-    Yields:
-        A function that returns whether the flag is set.
-    """
-    pressed = Event()
-
-    def press(_signal: int, _frame: FrameType | None) -> None:
-        pressed.set()
-        signal.signal(signal.SIGINT, before)
-
-    before: Any = signal.signal(signal.SIGINT, press)
-    try:
-        yield pressed.is_set
-    finally:
-        signal.signal(signal.SIGINT, before)
+    def planning(self, seconds: float) -> AbstractContextManager[Callable[[Progress], None]]:
+        """Show a bar, as `progress_bar` does."""
+        return progress_bar(self.console, seconds)

@@ -21,8 +21,9 @@ from rich.console import Console
 from service.actor import load_actors
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
-from service.cli.backends import LOADING, LocalBackend, RemoteBackend
+from service.cli.backends import LocalBackend, RemoteBackend
 from service.cli.errors import UsageError
+from service.cli.progress import LOADING
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started

@@ -6,8 +6,14 @@
         front = client.front(coordinates=cities, time_limit=2)
         tour = front.choose(balance=0.3).tour
 
-AsyncClient is the same for asynchronous programs. Both send the requests of `calls` and read the
-events of `events`. They only need the address of a service.
+Without a service, and with the whole package, `plan` does the same in this process:
+
+    import paretour
+
+    front = paretour.plan(coordinates=cities, time_limit=2)
+
+AsyncClient is the same as Client for asynchronous programs. Both send the requests of `calls` and
+read the events of `events`. They only need the address of a service.
 """
 
 from importlib.metadata import PackageNotFoundError, version
@@ -19,7 +25,9 @@ from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
 from paretour.fronts import Objective
 from paretour.kinds import FrontOfAnyKind
+from paretour.library import plan, plan_coverage, plan_fleet, plan_robots, replan
 from paretour.listing import ListedFront
+from paretour.many import InstanceFailed, plan_many
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -62,6 +70,7 @@ __all__ = [
     "Front",
     "FrontOfAnyKind",
     "FrontRequest",
+    "InstanceFailed",
     "Job",
     "ListedFront",
     "Objective",
@@ -84,6 +93,12 @@ __all__ = [
     "coverage_plan",
     "fleet_plan",
     "front_plan",
+    "plan",
+    "plan_coverage",
+    "plan_fleet",
+    "plan_many",
+    "plan_robots",
     "read_ros_map",
+    "replan",
     "replan_plan",
 ]

@@ -27,10 +27,12 @@ class Refused(Exception):
         errors: The wrong fields, each with its `detail` and a JSON `pointer` or `parameter`.
         limit: The most that is allowed, if a limit was exceeded.
         actual: The number that was over the limit.
+        document: The problem document.
     """
 
     def __init__(self, document: Mapping[str, Any]) -> None:
         problem = members(document, "problem")
+        self.document = document
         self.detail: str = problem.read("detail", text)
         super().__init__(self.detail)
         self.status: int = problem.read("status", count)

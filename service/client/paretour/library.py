@@ -1,0 +1,119 @@
+"""Plan in this process, without a service: needs the whole package, of which the client is a part.
+
+What plans is imported by the first call, as it takes seconds and loads a compiler.
+"""
+
+from functools import cache
+from importlib import import_module
+from typing import Any, Unpack, cast, overload
+from weakref import WeakKeyDictionary
+
+from paretour.bars import Bars, Display, Silent
+from paretour.kinds import FrontOfAnyKind
+from paretour.members import (
+    CoverageRequest,
+    FleetRequest,
+    FrontRequest,
+    ReplanFleetRequest,
+    ReplanRequest,
+    RobotsRequest,
+)
+from paretour.plans import FleetFront, RobotFront
+from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
+from paretour.values import Front
+
+_planned: WeakKeyDictionary[FrontOfAnyKind, Any] = WeakKeyDictionary()  # what `replan` starts from
+
+
+def plan(*, progress: bool = False, **request: Unpack[FrontRequest]) -> Front:
+    """Plan a front in this process, as `Client.front` has a service do. Ctrl-C ends it early.
+
+    Args:
+        progress: Whether to show a bar, which needs tqdm.
+        **request: The members of the request, as of `Client.front`.
+
+    Returns:
+        The front; after Ctrl-C the best so far.
+
+    Raises:
+        Refused: The request cannot be planned.
+        ModuleNotFoundError: Only the client is installed, or tqdm is not.
+    """
+    return cast(Front, _run(front_plan(request), progress))
+
+
+def plan_coverage(
+    png: bytes | None = None, *, progress: bool = False, **request: Unpack[CoverageRequest]
+) -> Front:
+    """Plan a front over a map in this process, as `Client.coverage` and `plan` do."""
+    return cast(Front, _run(coverage_plan(request, png), progress))
+
+
+def plan_fleet(*, progress: bool = False, **request: Unpack[FleetRequest]) -> FleetFront:
+    """Plan a front of plans for a fleet in this process, as `Client.fleet` and `plan` do."""
+    return cast(FleetFront, _run(fleet_plan(request), progress))
+
+
+def plan_robots(
+    png: bytes | None = None, *, progress: bool = False, **request: Unpack[RobotsRequest]
+) -> RobotFront:
+    """Plan for several robots on a map in this process, as `Client.robots` and `plan` do."""
+    return cast(RobotFront, _run(coverage_plan(request, png), progress))
+
+
+@overload
+def replan(front: Front, *, progress: bool = False, **request: Unpack[ReplanRequest]) -> Front: ...
+@overload
+def replan(
+    front: FleetFront, *, progress: bool = False, **request: Unpack[ReplanFleetRequest]
+) -> FleetFront: ...
+def replan(front: Front | FleetFront, *, progress: bool = False, **request: Any) -> Any:
+    """Plan the rest of a front that was planned in this process, as `Client.replan` does.
+
+    Args:
+        front: The front.
+        progress: As of `plan`.
+        **request: What has changed, and the options of the new front.
+
+    Raises:
+        ValueError: The front was not planned in this process.
+        Refused: The front cannot be replanned so.
+    """
+    if front not in _planned:
+        raise ValueError("front must be one that was planned in this process")
+    return _run(replan_plan(front, cast(ReplanRequest, request)), progress, _planned[front])
+
+
+def _run(plan: Plan, progress: bool, earlier: Any = None) -> FrontOfAnyKind:
+    display: Display = Bars() if progress else Silent()
+    planner = _planner()
+    if earlier is None:
+        planned = planner.plan(plan, display)
+    else:
+        planned = planner.replan(plan, earlier, display)
+    front: FrontOfAnyKind = planned.front()
+    _planned[front] = planned
+    return front
+
+
+@cache
+def _planner() -> Any:
+    return whole_package("service.library.local_planner").load_default_planner()
+
+
+def whole_package(module: str) -> Any:
+    """Return a module of the whole package.
+
+    Raises:
+        ModuleNotFoundError: Only the client is installed.
+    """
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name is None or not module.startswith(error.name):
+            raise
+        raise ModuleNotFoundError(
+            "only the client of Paretour is installed; to plan in this process, install the whole "
+            "package: pip install paretour",
+            name=error.name,
+        ) from None

@@ -1,0 +1,1 @@
+"""Plan in this process, for the command line and for programs that import `paretour`."""

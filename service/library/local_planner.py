@@ -1,0 +1,145 @@
+"""Plan a request in this process, and answer as the service does."""
+
+import json
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+from paretour import FrontOfAnyKind, Plan, Progress, Refused
+from paretour.kinds import parse_any
+
+from service.errors import Cancelled, Refusal
+from service.jobs.compiled_code import warm_up
+from service.jobs.parts import Compiling, Part, parts_of
+from service.kinds.front_document import FrontDocument
+from service.library.interrupts import interrupt_flag, until_done
+from service.requests.parser import parse_task
+from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import StoredFront
+from service.requests.task import Task, TaskKind, TaskSource
+from service.requests.task_codec import encode_task
+from service.settings import Settings
+
+if TYPE_CHECKING:
+    from service.jobs.task_runner import TaskRunner
+
+
+class Display(Protocol):
+    """Shows how far a plan is."""
+
+    def loading(self) -> AbstractContextManager[Callable[[str], None]]:
+        """Say that the search is loaded; yields a function that says how far that is."""
+
+    def planning(self, seconds: float) -> AbstractContextManager[Callable[[Progress], None]]:
+        """Say that a front is planned; yields a function that shows progress."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What was planned: the task, its front as a document, and whether Ctrl-C ended it."""
+
+    task: Task
+    document: FrontDocument
+    interrupted: bool
+
+    @property
+    def answer(self) -> bytes:
+        """The answer as JSON. No service has stored the front, so it has no id."""
+        return self.document.json(id="", status="cancelled" if self.interrupted else "done")
+
+    def front(self) -> FrontOfAnyKind:
+        """Return the front as the client does."""
+        return parse_any(json.loads(self.answer))
+
+
+@dataclass(frozen=True)
+class LocalPlanner:
+    """Plans in this process, one task after another, with the actors and limits of the settings.
+
+    Args:
+        runner: Runs the tasks.
+        loaded: The parts of the compiled code that are loaded.
+    """
+
+    runner: "TaskRunner"
+    loaded: set[Part] = field(default_factory=set)
+
+    def plan(self, plan: Plan, display: Display) -> Planned:
+        """Plan what a request asks for. Ctrl-C ends the search with the best front so far.
+
+        Raises:
+            Refused: The request cannot be planned, as the service would refuse it.
+            KeyboardInterrupt: Ctrl-C was pressed before there was a front.
+        """
+        upload = None if plan.file is None else plan.file.content
+        source = TaskSource(cast(TaskKind, plan.path.removeprefix("/")), plan.json, upload)
+        parse = partial(parse_task, source, self.runner.limits, self.runner.infos)
+        return self._planned(parse, plan, display)
+
+    def replan(self, plan: Plan, earlier: Planned, display: Display) -> Planned:
+        """Plan the rest of what was planned before, in the same way; raises as `plan` does."""
+        stored = StoredFront("", TaskSource("task", encode_task(earlier.task)), earlier.document)
+        source = ReplanSource(plan.json, stored)
+        parse = partial(parse_replan, source, self.runner.limits, self.runner.infos)
+        return self._planned(parse, plan, display)
+
+    def _planned(self, parse: Callable[[], Task], plan: Plan, display: Display) -> Planned:
+        try:
+            task = parse()
+            if task.actor in self.runner.actors:
+                self.runner.actors[task.actor].load()  # before the clock of its time limit starts
+            self._load(task, display)
+            with interrupt_flag() as interrupted, display.planning(plan.seconds) as show:
+                run = partial(
+                    self.runner.run,
+                    task,
+                    interrupted,
+                    lambda found, _: show(Progress(**asdict(found))),
+                )
+                document = until_done(run, interrupted, self.runner.terminate)
+        except Cancelled:
+            raise KeyboardInterrupt from None
+        except Refusal as error:
+            raise Refused(error.document("")) from None
+        return Planned(task, document, interrupted())
+
+    def _load(self, task: Task, display: Display) -> None:
+        """Compile what a task needs, or load it, and show how far that is."""
+        missing = parts_of(task) - self.loaded
+        if not missing:
+            return
+        with display.loading() as say:
+
+            def tell(told: Part | Compiling) -> None:
+                if isinstance(told, Part):
+                    self.loaded.add(told)
+                else:
+                    say(str(told))
+
+            warm_up(missing, tell)
+
+
+def load_default_planner() -> LocalPlanner:
+    """Return the planner with the settings of the environment.
+
+    Raises:
+        ValueError: A setting is wrong, or as of load_runner.
+    """
+    given: dict[str, Any] = {}  # by the program: nothing
+    return load_planner(Settings(**given))
+
+
+def load_planner(settings: Settings) -> LocalPlanner:
+    """Return the planner with the actors, the limits and the routing engine of the settings.
+
+    Raises:
+        ValueError: As of load_runner.
+    """
+    from service.jobs.task_runner import load_runner  # it loads all that plans
+
+    runner = load_runner(
+        settings.actors, settings.threads, settings.limits, settings.own_actors, settings.roads
+    )
+    return LocalPlanner(runner)

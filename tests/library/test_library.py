@@ -1,0 +1,176 @@
+"""The package as a library: fronts planned in the caller's process, or in several of its own."""
+
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import paretour
+import pytest
+
+from tests.helpers.command import ROOT
+
+CITIES = np.random.default_rng(1).random((12, 4))
+STOPS = [{"id": f"stop-{number}"} for number in range(6)]
+COSTS = np.random.default_rng(2).integers(1, 99, (2, 6, 6))
+OBJECTIVES: Any = [
+    {"name": name, "matrix": costs} for name, costs in zip(("time", "risk"), COSTS, strict=True)
+]
+pytestmark = pytest.mark.usefixtures("compiled")
+
+
+def python(code: str, *options: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, *options, "-c", code]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+
+
+def test_a_front_has_the_lengths_of_its_tours() -> None:
+    front = paretour.plan(coordinates=CITIES, time_limit=0.1)
+    for tour in front:
+        way = CITIES[np.append(tour.tour, tour.tour[0])].reshape(-1, 2, 2)
+        assert np.linalg.norm(np.diff(way, axis=0), axis=2).sum(axis=0) == pytest.approx(
+            tour.lengths
+        )
+    assert (front.status, front.id) == ("done", "")
+
+
+def test_a_front_of_matrices_is_that_of_named_objectives() -> None:
+    named = paretour.plan(stops=STOPS, objectives=OBJECTIVES, time_limit=0.1)
+    plain = paretour.plan(matrices=COSTS, time_limit=0.1)
+    np.testing.assert_array_equal(named.lengths, plain.lengths)
+    assert named.names == ["time", "risk"]
+
+
+def test_a_fleet_is_planned_and_replanned() -> None:
+    front = paretour.plan_fleet(
+        stops=STOPS,
+        objectives=OBJECTIVES,
+        vehicles=[{"id": "van", "start": 0, "end": 0}],
+        time_limit=0.2,
+    )
+    rest = paretour.replan(front, remove=["stop-3"], time_limit=0.2)
+    assert {stop for plan in rest.plans for route in plan.routes for stop in route.stops} == {
+        f"stop-{number}" for number in (0, 1, 2, 4, 5)
+    }
+
+
+def test_tours_are_replanned_and_so_is_what_was_replanned() -> None:
+    front = paretour.plan(stops=STOPS, objectives=OBJECTIVES, time_limit=0.1)
+    rest = paretour.replan(front, done=["stop-0"], remove=["stop-3"], time_limit=0.1)
+    assert rest[0].stops is not None
+    assert "stop-3" not in rest[0].stops
+    assert len(paretour.replan(rest, remove=["stop-5"], time_limit=0.1))
+
+
+def test_maps_are_covered_by_one_robot_and_by_two() -> None:
+    request: Any = {
+        "grid": np.zeros((8, 8), dtype=int),
+        "cell_size": 1,
+        "spacing": 3,
+        "time_limit": 0.1,
+    }
+    assert len(paretour.plan_coverage(**request, cost_layer=np.ones((8, 8))))
+    robots: Any = [{"id": "a", "start": 0}, {"id": "b", "start": 1}]
+    assert len(paretour.plan_robots(**request, robots=robots))
+
+
+def test_a_front_of_a_service_cannot_be_replanned_here() -> None:
+    from paretour.values import parse_front
+
+    from tests.helpers.answers import FRONT
+
+    with pytest.raises(ValueError, match="planned in this process"):
+        paretour.replan(parse_front(FRONT), done=[0])
+
+
+def test_what_cannot_be_planned_is_refused_as_by_a_service() -> None:
+    with pytest.raises(paretour.Refused) as raised:
+        paretour.plan(coordinates=CITIES, seed=-1)
+    assert raised.value.code == "invalid-request"
+    assert raised.value.errors[0]["pointer"] == "/seed"
+
+
+def test_ctrl_c_returns_the_best_front_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
+    from paretour.bars import Silent
+
+    class PressCtrlC(Silent):
+        def planning(self, seconds: float) -> Any:  # noqa: ARG002
+            from contextlib import nullcontext
+
+            return nullcontext(
+                lambda _: signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+            )
+
+    monkeypatch.setattr("paretour.library.Silent", PressCtrlC)
+    front = paretour.plan(coordinates=np.random.default_rng(5).random((100, 4)), time_limit=10)
+    assert (front.status, front.terminated) == ("cancelled", "cancelled")
+    assert len(front)
+
+
+def test_progress_is_a_bar_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+    paretour.plan(
+        coordinates=np.random.default_rng(5).random((100, 4)), time_limit=0.3, progress=True
+    )
+    assert "hypervolume" in capsys.readouterr().err
+
+
+def test_many_are_planned_in_order_in_processes_of_a_program_without_guard(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import numpy as np, paretour\n"
+        "given = [np.random.default_rng(n).random((n, 4)) for n in (5, 7, 6, 8)]\n"
+        "many = [{'coordinates': each} for each in given]\n"
+        "fronts = paretour.plan_many(many, workers=2, progress=True, time_limit=0.05)\n"
+        "print([front.tours.shape[1] for front in fronts])\n"
+        "try:\n"
+        "    paretour.plan_many([*many, {'coordinates': [[0, 0, 1, 1]], 'seed': -1}], workers=2)\n"
+        "except paretour.InstanceFailed as error:\n"
+        "    print(error.index, error.__cause__.code, error)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, program], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    shapes, failed = done.stdout.splitlines()
+    assert shapes == "[5, 7, 6, 8]"
+    assert failed.startswith("4 invalid-request instance 4: seed must be")
+    assert "4/4" in done.stderr
+
+
+def test_none_are_planned_in_no_process() -> None:
+    assert paretour.plan_many([]) == []
+    with pytest.raises(ValueError, match="workers must be at least 1, got 0"):
+        paretour.plan_many([{"coordinates": CITIES}], workers=0)
+
+
+def test_the_import_loads_nothing_that_plans() -> None:
+    code = (
+        "import sys, paretour;"
+        "sys.exit(len({'service', 'numba', 'scipy', 'onnxruntime', 'tqdm'} & set(sys.modules)))"
+    )
+    assert python(code).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("hidden", "call", "sentence"),
+    [
+        ("service", "plan(coordinates=[])", "install the whole package: pip install paretour"),
+        ("service", "plan_many([])", "install the whole package: pip install paretour"),
+        ("tqdm", "plan(progress=True)", "progress needs tqdm: pip install tqdm"),
+    ],
+)
+def test_what_is_not_installed_is_named(hidden: str, call: str, sentence: str) -> None:
+    code = f"""
+import sys
+class Hide:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] == {hidden!r}:
+            raise ModuleNotFoundError(name, name=name)
+sys.meta_path.insert(0, Hide())
+import paretour
+paretour.{call}
+"""
+    failed = python(code)
+    assert failed.stderr.splitlines()[-1].endswith(sentence)
