@@ -14,7 +14,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from queue import SimpleQueue
 from typing import Any, BinaryIO, Self, TypeVar
 
@@ -68,8 +68,10 @@ class Crew:
 
     def __exit__(self, *_: object) -> None:
         for worker in self._workers:
-            worker.end()
+            worker.kill()
         self._threads.shutdown(cancel_futures=True)
+        for worker in self._workers:
+            worker.close()
         self._lock.close()
 
 
@@ -98,9 +100,12 @@ class _Worker:
             raise Refused(answer)
         return parse_any(json.loads(answer))
 
-    def end(self) -> None:
+    def kill(self) -> None:
         self._process.kill()
-        self._process.wait()
+
+    def close(self) -> None:
+        with suppress(BrokenPipeError), self._process:  # it did not read all that was written
+            pass
 
 
 def _send(stream: BinaryIO | Any, message: object) -> None:
