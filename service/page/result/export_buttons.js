@@ -1,5 +1,6 @@
 /** The buttons that copy what is on the screen, or save it as a file. */
 
+import { areLocated, csvOfVisits, fillSheet, gpxOf, routesOf } from "./driver.js";
 import { csv, curl, download } from "./exports.js";
 import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
@@ -8,7 +9,7 @@ import { python } from "./python.js";
 const ALONE = "This link opens the front without its maps: the request is too long for an address.";
 const COPIED = "Copied"; // a button's text, for a moment after it was last pressed
 const MOMENT = 1500; // ms
-const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png"];
+const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png", "stops-csv", "gpx", "print"];
 
 const element = (id) => document.getElementById(id);
 
@@ -19,8 +20,9 @@ export class ExportButtons {
   /**
    * @param {Service} service the service that has the front
    * @param {() => Promise<{ request: object, asked: object, example: string | null, objectives: object[],
-   *   picture: object, balance: number, driven: boolean } | null>} screen what is on the screen, the
-   *   file of its example, and whether its lines can follow the streets; null if the form cannot be read
+   *   picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
+   *   screen, the file of its example, whether its lines can follow the streets, and the selected tour or
+   *   plan, as of `routesOf`; null if the form cannot be read
    */
   constructor(service, screen) {
     this.#service = service;
@@ -35,6 +37,9 @@ export class ExportButtons {
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
     on("csv", ({ objectives }) => download("front.csv", "text/csv", csv(this.#shown, objectives)));
     on("geojson", ({ driven }) => this.#saveGeojson(driven));
+    on("stops-csv", (shown) => download("stops.csv", "text/csv", csvOfVisits(this.#routes(shown))));
+    on("gpx", (shown) => this.#saveGpx(this.#routes(shown)));
+    on("print", (shown) => (fillSheet(element("sheet"), this.#routes(shown)), print()));
     on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
     on("png", async ({ picture }) => download("front.png", "image/png", await pngOf(svgOf(picture))));
   }
@@ -44,7 +49,17 @@ export class ExportButtons {
     this.#shown = answer;
     say("");
     for (const id of OF_FRONT) element(id).disabled = !answer;
-    if (!answer?.stops?.every(({ location }) => location)) element("geojson").disabled = true;
+    if (answer?.stops?.every(({ location }) => location)) return;
+    element("geojson").disabled = element("gpx").disabled = true;
+  }
+
+  #routes({ selected, asked }) {
+    return routesOf(selected, this.#shown, asked);
+  }
+
+  #saveGpx(routes) {
+    if (!areLocated(routes)) return say("Not all of its stops have places.");
+    download("tour.gpx", "application/gpx+xml", gpxOf(routes));
   }
 
   async #copyLink({ asked, example, objectives, balance }, button) {

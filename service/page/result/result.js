@@ -163,10 +163,18 @@ export class Result {
     this.#balance = balance ?? MIDDLE;
   }
 
-  /** What is exported: a picture, the balance of the selected tour, and whether its lines can follow the streets. */
+  /** What is exported: a picture, the selected tour or plan with its balance, and whether its lines can follow the streets. */
   get taken() {
     const driven = Boolean(this.#routed) && this.#maps.driven;
-    return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, driven };
+    const movers = this.#kind.movers ?? null;
+    const selected = this.#selected && { item: this.#selected, round: movers ? [] : this.#names(), movers };
+    return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, driven, selected };
+  }
+
+  /** The names of the stops of the selected tour, back to its start where it is closed. */
+  #names() {
+    const names = named(this.#selected, this.#ids);
+    return this.#closed && names.length > 1 ? [...names, names[0]] : names;
   }
 
   get #picture() {
@@ -272,14 +280,12 @@ export class Result {
     element("legend").querySelector(`.${name}`).hidden = !there;
   }
 
-  /** The order of a tour's stops, back to its start where it is closed; of a plan each vehicle has its own. */
+  /** The order of a tour's stops; of a plan each vehicle has its own. */
   #order() {
     element("order").hidden = Boolean(this.#kind.movers && this.#selected);
     if (!element("order").open || element("order").hidden) return;
-    const names = named(this.#selected, this.#ids);
-    const back = this.#closed && names.length > 1 ? [names[0]] : [];
     const hours = hoursOf(this.#selected);
-    const visits = [...names, ...back].map((name, at) => (hours.length ? `${name} ${hours[at]}` : name));
+    const visits = this.#names().map((name, at) => (hours.length ? `${name} ${hours[at]}` : name));
     element("order").querySelector("p").textContent = visits.join(" → ");
   }
 }
