@@ -189,12 +189,12 @@ class Access:
     def _caller(self, request: Request) -> str:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")
         if scheme.lower() != "bearer":
-            raise _unauthorized("Bearer and an API key, and it was missing")
+            raise _unauthorized("an API key is needed, as Authorization: Bearer KEY, and none came")
         digest = _digest(key.strip())
         # All hashes are compared, so that the time taken does not tell how near a guess was.
         matches = [hash_.caller for hash_ in self._keys if compare_digest(hash_.digest, digest)]
         if not matches:
-            raise _unauthorized("an API key of this service; this one is unknown")
+            raise _unauthorized("this service does not know that API key")
         return matches[0]
 
 
@@ -216,5 +216,5 @@ def _digest(key: str) -> str:
     return hashlib.sha256(key.encode()).hexdigest()
 
 
-def _unauthorized(demand: str) -> Refusal:
-    return Refusal("unauthorized", demand=demand, headers={"WWW-Authenticate": "Bearer"})
+def _unauthorized(reason: str) -> Refusal:
+    return Refusal("unauthorized", reason=reason, headers={"WWW-Authenticate": "Bearer"})

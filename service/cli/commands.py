@@ -16,7 +16,7 @@ from service.cli.options import with_groups
 
 app = Typer(
     name="paretour",
-    help="Tours under two objectives: the whole front of trade-offs.",
+    help="Plan tours with more than one goal, and choose among all trade-offs.",
     epilog="Results go to stdout, all else to stderr. Exit codes: 0 a front, even if Ctrl-C"
     " ended its search; 1 a fault of paretour; 2 a wrong command, file or request; 3 a service that"
     " cannot be reached, refuses the key, or fails; 130 Ctrl-C before there was a front.",

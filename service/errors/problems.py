@@ -37,7 +37,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "malformed-http": Problem(400, "the request must be HTTP/1.1: {reason}", _NONE),
     "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
     "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _BODIES),
-    "unauthorized": Problem(401, "Authorization must be {demand}"),
+    "unauthorized": Problem(401, "{reason}"),
     "no-front": Problem(
         404, "there is no front to choose a tour from: plan one with POST /front", _TOUR
     ),

@@ -134,7 +134,7 @@ def changed(**entry: Any) -> dict[str, Any]:
         ({"done": ["x"]}, "/done/0", "must be the id of a stop"),
         ({"done": [12]}, "/done/0", "must be a stop of the front, 0 to 11, got 12"),
         ({"done": [1, 2, "1"]}, "/done/2", "must not be done/0 again"),
-        ({"done": [1], "remove": [1]}, "/remove/0", "must not be done"),
+        ({"done": [1], "remove": [1]}, "/remove/0", "must be a stop that is not done"),
         ({"remove": [0]}, "/remove/0", "must not be where the way goes on"),
         ({"done": [1], "remove": [0]}, "/remove/0", "must not be where the way ends"),
         ({"position": 99}, "/position", "must be a stop of the front"),

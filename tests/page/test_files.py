@@ -232,7 +232,7 @@ def test_a_list_of_angles_in_a_file_is_asked_for(opened: Page) -> None:
     open_files(opened, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
     assert curl_body(opened)["preferences"] == [10, 80]
     opened.get_by_text("More settings").click()
-    opened.get_by_label("Directions of the network").fill("7")
+    opened.get_by_label("Trade-offs for the network").fill("7")
     assert curl_body(opened)["preferences"] == 7
 
 

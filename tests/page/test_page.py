@@ -238,7 +238,7 @@ def test_a_plan_of_no_stops_is_refused_in_words_of_the_page(page: Page) -> None:
 
 def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
     page.get_by_role("button", name="Clear").click()
-    page.get_by_role("button", name="Click into place").click()
+    page.get_by_role("button", name="Add on the map").click()
     for x, y in [(100, 160), (190, 130), (130, 90)]:
         page.locator("#plane-1").click(position={"x": x, "y": y})
         page.locator("#plane-2").click(position={"x": y, "y": x})

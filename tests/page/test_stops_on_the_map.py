@@ -131,14 +131,14 @@ def test_a_finger_scrolls_past_stops_and_moves_the_one_it_has_chosen(opened: Pag
 
 def test_a_place_that_is_clicked_on_the_first_of_two_maps_is_seen_at_once(opened: Page) -> None:
     open_files(opened, {"stops.csv": PLANES})
-    opened.get_by_role("button", name="Click into place").click()
+    opened.get_by_role("button", name="Add on the map").click()
     opened.locator("#plane-1").click(position={"x": 90, "y": 60})
     expect(opened.locator("#plane-1 .ring.waiting")).to_be_visible()
     expect(opened.locator("#plane-2 .ring.waiting")).to_have_count(0)
     opened.locator("#plane-2").click(position={"x": 90, "y": 60})
     expect(opened.locator("#count")).to_have_text("4 stops")
     expect(opened.locator(".ring.waiting")).to_have_count(0)
-    opened.get_by_role("button", name="Click into place").click()
+    opened.get_by_role("button", name="Add on the map").click()
 
 
 def place_of_stop(page: Page, number: int, plane: str = "#plane-1") -> Place:

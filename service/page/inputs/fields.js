@@ -12,7 +12,7 @@ const FIELDS = [
   { name: "start", label: "Start", value: "1", stop: true },
   { name: "end", label: "End elsewhere", stop: true },
   { name: "open", label: "Open route: no way back to the start", box: true },
-  { name: "preferences", label: "Directions of the network", where: "more" },
+  { name: "preferences", label: "Trade-offs for the network", where: "more" },
   { name: "seed", label: "Seed", value: "0", where: "more", plans: true },
   { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
 ];

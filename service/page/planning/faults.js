@@ -103,7 +103,7 @@ const SAID = [
   [/^objectives\/[0-3]\/over_the_day\/(\d+)\/[01]/, (_, at) => `number ${counted(at)} of the rush hours`],
   [/^clock must be the name of an objective.*/, () => "times must be those of one of both objectives"],
   [/^end must not be the start.*/, () => "end must not be the start; leave it empty for a tour that returns"],
-  [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or click it into place"],
+  [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or add it on the map"],
 ];
 
 // The same of sentences about the cells of tables.

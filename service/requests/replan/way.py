@@ -231,7 +231,10 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest) -> RestOfWay:
     start = _start(front, request, done[-1] if done else begin)
     for index, stop in enumerate(removed):
         if stop in done:
-            raise invalid(f"remove/{index}", f"must not be done, got {show(_name(front, stop))}")
+            raise invalid(
+                f"remove/{index}",
+                f"must be a stop that is not done, got {show(_name(front, stop))}",
+            )
         if stop in (start, end):
             where = "goes on" if stop == start else "ends"
             demand = f"must not be where the way {where}, got {show(_name(front, stop))}"
