@@ -24,7 +24,7 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
     with serving(app, warm=False) as address, open_page(browser, address) as page:
         status = page.locator("#status")
         expect(status).to_contain_text("The search is being compiled")
-        expect(page.get_by_role("button", name="Stop")).to_be_enabled()
+        expect(page.get_by_role("button", name="Stop", exact=True)).to_be_enabled()
         warm.touch()
         wait_until_planned(page)
         expect(page.get_by_label("A front of")).to_be_visible()

@@ -285,8 +285,7 @@ export class Result {
     element("order").hidden = Boolean(this.#kind.movers && this.#selected);
     if (!element("order").open || element("order").hidden) return;
     const hours = hoursOf(this.#selected);
-    const visits = this.#names().map((name, at) => (hours.length ? `${name} ${hours[at]}` : name));
-    element("order").querySelector("p").textContent = visits.join(" → ");
+    element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visit(name, hours[at])));
   }
 }
 
@@ -297,6 +296,13 @@ function unreached(uncovered) {
   const described = regions.reduce((sum, region) => sum + region.cells, 0);
   const where = `${described < cells ? "more than " : ""}${counted(regions.length, "region", "regions")}`;
   return `${length(square_metres)} m² in ${where} cannot be reached.`;
+}
+
+/** An item of the order of stops: its name, and when the tour is there if that is known. */
+function visit(name, hour) {
+  const item = Object.assign(document.createElement("li"), { textContent: name });
+  if (hour) item.append(" ", Object.assign(document.createElement("time"), { textContent: hour }));
+  return item;
 }
 
 /** The names of the stops of a tour, in its order. */

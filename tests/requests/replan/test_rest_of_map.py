@@ -161,7 +161,12 @@ def test_what_may_have_changed_everywhere_has_touched_every_place() -> None:
         ("cost_layer", {"done": ["a"]}, "/done/0", "must be"),
         ("cost_layer", {"done": [6]}, "/done/0", "must be a stop of the front, 0 to 5, got 6"),
         ("cost_layer", {"remove": [0]}, "/remove/0", "must not be where the way goes on"),
-        ("cost_layer", {"remove": [1], "done": [1]}, "/remove/0", "must be a stop that is not done"),
+        (
+            "cost_layer",
+            {"remove": [1], "done": [1]},
+            "/remove/0",
+            "must be a stop that is not done",
+        ),
         ("cost_layer", {"add": [[2, 1]] * 15}, "/add", "at most 20"),
         ("second_matrix", {"add": [[2, 1]]}, "/add/0", "only a cost layer"),
         ("second_coordinates", {"position": [2, 1]}, "/position", "only a cost layer"),
