@@ -164,6 +164,7 @@ def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) ->
         "get_metrics",
         "get_tour",
         "list_actors",
+        "list_fronts",
         "plan_coverage",
         "plan_fleet",
         "plan_front",

@@ -125,7 +125,8 @@ def test_a_row_with_line_breaks_in_it_is_one_line_on_a_terminal_and_elsewhere_as
 
 def test_names_that_a_service_gives_are_labels_without_escape_sequences() -> None:
     objectives = tuple(Objective(name=f"{HOSTILE}{m}", unit="\x1b[32mm") for m in range(2))
-    front: Any = SimpleNamespace(objectives=objectives)
+    labels = [each.label for each in objectives]
+    front: Any = SimpleNamespace(objectives=objectives, labels=labels)
     assert not any(OBEYED.search(label) for label in labels_of(front))
     assert OBEYED.search(lengths_as_text(front, (1.0, 2.0))) is None
 

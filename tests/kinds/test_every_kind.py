@@ -15,7 +15,7 @@ from click.testing import Result
 from rich.console import Console
 from typer.testing import CliRunner
 
-from service.cli import backends
+from service.cli import backends, progress
 from service.cli.commands import app as command_line
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.serving import LIMITS, app_of, events_of, problem, serving
@@ -331,9 +331,10 @@ def test_ctrl_c_gives_the_best_so_far(
 ) -> None:
     @contextmanager
     def pressed(_: Console, __: float) -> Iterator[Callable[[object], None]]:
-        yield lambda progress: progress.points and signal.raise_signal(signal.SIGINT)  # type: ignore[attr-defined]
+        yield lambda found: found.points and signal.raise_signal(signal.SIGINT)  # type: ignore[attr-defined]
 
-    monkeypatch.setattr(backends, "progress_bar", pressed)
+    for module in (backends, progress):  # by a service, and in this process
+        monkeypatch.setattr(module, "progress_bar", pressed)
     result = planned(asked[kind], place, "--json", limit=LONG)
     if refused_here(kind, place, result):
         return
