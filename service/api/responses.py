@@ -45,7 +45,7 @@ class FaultItem(BaseModel):
 class Problem(BaseModel):
     """Why a request was refused (RFC 9457)."""
 
-    type: str = Field(description="always about:blank; the code tells problems apart")
+    type: str = Field(description="where the guide explains the code: `/guide/errors#CODE`")
     title: str
     status: int
     code: str = Field(description="stable; the one member to branch on")

@@ -35,6 +35,7 @@ from typing import Any
 from service.errors.problems import PROBLEMS
 
 MOST_FAULTS = 20  # the most that one problem document lists
+_GUIDE = "/guide/errors"  # the page that has a row for each code
 _LONGEST_NAME = 100  # characters of a caller's name for a stop, where it is quoted
 
 
@@ -93,7 +94,7 @@ class Refusal(Exception):
     def document(self, request_id: str) -> dict[str, Any]:
         """Return the problem document (RFC 9457) without the members that are None."""
         members = {
-            "type": "about:blank",
+            "type": f"{_GUIDE}#{self.code}",
             "title": HTTPStatus(self.status).phrase,
             "status": self.status,
             "code": self.code,

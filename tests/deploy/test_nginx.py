@@ -37,6 +37,7 @@ def refusal_of(answer: httpx.Response, status: int, code: str) -> dict[str, Any]
     document = answer.json()
     assert answer.headers["content-type"] == "application/problem+json"
     assert (answer.status_code, document["status"], document["code"]) == (status, status, code)
+    assert document["type"] == f"/guide/errors#{code}"
     return document
 
 

@@ -10,11 +10,16 @@ def codes() -> str:
     """Return the table of codes as Markdown, by status and code."""
     ordered = sorted(PROBLEMS.items(), key=lambda item: (item[1].status, item[0]))
     rows = [
-        f"| {problem.status} | `{code}` | {_sentence(problem)} | {_operations(problem)} |"
+        f"| {problem.status} | {_anchored(code)} | {_sentence(problem)} | {_operations(problem)} |"
         for code, problem in ordered
     ]
     head = ["| status | code | sentence | answered by |", "|---|---|---|---|"]
     return "\n".join([*head, *rows]) + "\n"
+
+
+def _anchored(code: str) -> str:
+    """Return a code with the anchor that the `type` of its problem documents leads to."""
+    return f'<a id="{code}"></a>`{code}`'
 
 
 def _sentence(problem: Problem) -> str:

@@ -12,6 +12,7 @@ PAGES = (README, *sorted(GUIDE.glob("*.md")))
 _FENCE = re.compile(r"^```(\w+)(?: +(\S+))?\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+_ANCHOR = re.compile(r'<a id="([^"]+)"></a>')
 
 
 @dataclass(frozen=True)
@@ -35,9 +36,11 @@ def links(page: Path) -> list[str]:
 
 
 def anchors(page: Path) -> set[str]:
-    """Return the anchors of a page's headings, as GitHub makes them."""
-    found = _HEADING.findall(_FENCE.sub("", page.read_text()))
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found}
+    """Return the anchors of a page's headings, as GitHub makes them, and those in its text."""
+    text = _FENCE.sub("", page.read_text())
+    headings = _HEADING.findall(text)
+    made = {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return made.union(_ANCHOR.findall(text))
 
 
 def commands(page: Path) -> list[str]:

@@ -252,7 +252,9 @@ def test_tables_of_figures_are_those_of_the_stored_results(name: str) -> None:
 
 def test_the_table_of_codes_is_that_of_the_service() -> None:
     table = made_part(GUIDE / "errors.md", "codes")
-    assert set(re.findall(r"^\| \d+ \| `([a-z-]+)`", table, re.MULTILINE)) == set(PROBLEMS)
+    assert set(re.findall(r"^\| \d+ \| <a .*></a>`([a-z-]+)`", table, re.MULTILINE)) == set(
+        PROBLEMS
+    )
     assert table == codes(), "run python -m tests.guide"
 
 

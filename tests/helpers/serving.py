@@ -150,6 +150,7 @@ def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
     document = response.json()
     assert document["status"] == status
     assert document["code"] == code
+    assert document["type"] == f"/guide/errors#{code}"
     assert document["title"]
     assert document["detail"]
     assert document["request_id"] == response.headers["x-request-id"]

@@ -8,6 +8,9 @@ from urllib.parse import urljoin
 import httpx
 import pytest
 
+from service.api.openapi import example_refusal
+from service.errors import PROBLEMS
+from tests.guide.pages import GUIDE, anchors
 from tests.helpers.serving import app_of, problem, serving
 
 PAGES = sorted(path.stem for path in Path("service/guide").glob("*.md"))
@@ -42,6 +45,23 @@ def test_every_link_of_a_page_leads_to_something(client: httpx.Client, name: str
         assert answer.status_code == 200, target
         _, _, anchor = target.partition("#")
         assert not anchor or anchor in _ID.findall(answer.text), target
+
+
+def test_the_type_of_every_problem_leads_to_its_code(client: httpx.Client) -> None:
+    shown = _ID.findall(client.get("/guide/errors").text)
+    assert len(shown) == len(set(shown))
+    for code in PROBLEMS:
+        page, _, anchor = example_refusal(code).document("")["type"].partition("#")
+        assert (page, anchor) == ("/guide/errors", code)
+        assert code in shown
+        assert code in anchors(GUIDE / "errors.md")
+
+
+def test_the_type_of_an_answer_is_an_address_of_the_guide(client: httpx.Client) -> None:
+    refused = client.get("/nothing")
+    page = client.get(urljoin(str(refused.url), problem(refused, 404, "no-such-path")["type"]))
+    assert page.status_code == 200
+    assert '<a id="no-such-path"></a>' in page.text
 
 
 def test_every_page_lists_all_others(client: httpx.Client) -> None:
