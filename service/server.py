@@ -28,6 +28,7 @@ from service.api.task_parser import ParserBounds
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets, most_connections
 from service.api.transport.protocol import Connection
+from service.api.transport.proxies import TrustedProxies
 from service.cluster import check_cluster
 from service.errors import NoWorker
 from service.jobs.engine import Engine
@@ -122,7 +123,7 @@ def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:
         )
     )
     configure_logging(plain=sys.stderr.isatty())
-    server = make_server(app, connections, settings.drain_seconds)
+    server = make_server(app, connections, settings.drain_seconds, settings.root_path or "")
     try:
         sockets = bound_sockets(settings.host, settings.port)
     except OSError as error:
@@ -144,15 +145,25 @@ class _Server(uvicorn.Server):
             listening.listen(_IN_KERNEL)
 
 
-def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> uvicorn.Server:
-    """Return a server of HTTP/1.1 alone, over these connections."""
+def make_server(
+    app: FastAPI, connections: Connections, drain_seconds: int, root_path: str = ""
+) -> uvicorn.Server:
+    """Return a server of HTTP/1.1 alone, over these connections.
+
+    Args:
+        app: The application.
+        connections: The connections, and the proxies that are trusted.
+        drain_seconds: What requests in progress have at the end.
+        root_path: The path that a proxy takes away from those of all requests.
+    """
     config = uvicorn.Config(
-        app,
+        TrustedProxies(app, connections.limits.proxies),  # type: ignore[arg-type]
+        root_path=root_path,
         http=partial(Connection, connections),  # type: ignore[arg-type]  # called like a class
         ws="none",
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",
-        forwarded_allow_ips=connections.limits.proxies,
+        proxy_headers=False,  # TrustedProxies reads them
         server_header=False,
         log_config=None,
         access_log=False,

@@ -27,6 +27,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from service.actor_info import RELEASED
 from service.api.auth import KeyHash
 from service.api.site.tiles import checked_template
+from service.api.transport.proxies import MOST_LETTERS, ROOT_PATH
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
 from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
@@ -94,6 +95,12 @@ def _checked_address(value: str) -> str:
     return value
 
 
+def _checked_root_path(value: str) -> str:
+    if not (value and len(value) <= MOST_LETTERS and ROOT_PATH.fullmatch(value)):
+        raise ValueError("must be like /tours")
+    return value
+
+
 def _number(least: float, most: float, kind: str = "number") -> WrapValidator:
     """Return the check that a setting is a finite number in a range, which its error names."""
 
@@ -158,7 +165,9 @@ class Settings(BaseSettings):
     """how long a request's head may take, and a connection may be idle"""
 
     forwarded_allow_ips: str = Field("127.0.0.1", validation_alias="FORWARDED_ALLOW_IPS")
-    """proxies whose X-Forwarded-For is trusted, separated by commas; or *"""
+    """proxies whose X-Forwarded headers are trusted, separated by commas; or *"""
+    root_path: Annotated[str, AfterValidator(_checked_root_path)] | None = None
+    """path under which a proxy serves all this, such as /tours, and which it takes away"""
 
     # Map tiles under the stops on the page, which browsers load from there.
     tiles: Annotated[str, AfterValidator(checked_template)] | None = None

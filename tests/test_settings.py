@@ -31,6 +31,8 @@ def test_a_setting_is_read_from_its_variable(monkeypatch: pytest.MonkeyPatch) ->
         ("PARETOUR_QUEUE", "-1"),
         ("PARETOUR_STORE_SECONDS", "0"),
         ("PARETOUR_MAX_CITIES", "many"),
+        ("PARETOUR_ROOT_PATH", "tours"),
+        ("PARETOUR_ROOT_PATH", "//other.example"),
         ("PARETOUR_ROUTER_URL", "valhalla:8002"),
         ("PARETOUR_ROUTER_URL", "http://"),
         ("PARETOUR_ROUTER_URL", "http://valhalla:none"),

@@ -7,7 +7,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.responses import problem_response
+from service.api.responses import problem_response, root_path_of
 from service.errors import Refusal
 from service.requests.validation import refusal_of, shorten
 
@@ -17,7 +17,8 @@ HANDLED = (Refusal, HTTPException, RequestValidationError)
 async def answer_refusal(request: Request, error: Exception) -> Response:
     """Return the response to an exception of one of the kinds HANDLED."""
     refusal = _refusal(request, error)
-    response = problem_response(refusal, request.scope["request_id"])
+    scope = request.scope
+    response = problem_response(refusal, scope["request_id"], root_path_of(scope))
     if isinstance(error, HTTPException):
         response.headers.update(error.headers or {})
         if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:

@@ -27,6 +27,8 @@ from service.api.responses import (
     json_response,
     problem_bytes,
     problem_responses,
+    problem_under,
+    root_path_of,
 )
 from service.api.stored_fronts import find_record
 from service.api.task_parser import TaskParser
@@ -196,7 +198,7 @@ class PlanRoutes:
         self._answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
             first = await self._submit(request, record, task, allowance)
-            return _accepted_response(self._engine.state(first).record, geometry)
+            return _accepted_response(request, self._engine.state(first).record, geometry)
         if record.key is None:
             record = await self._run(request, record, task, body.deadline)
         else:
@@ -205,7 +207,9 @@ class PlanRoutes:
         if record.problem is None:
             return await self._answers.front(request, record, geometry, body.deadline.left())
         # The problem may be that of an earlier request that this one repeats.
-        return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
+        scope = request.scope
+        document = problem_under(root_path_of(scope), record.problem)
+        return problem_bytes({**document, "request_id": scope["request_id"]})
 
     async def _submit(
         self, request: Request, record: Record, task: Task, allowance: BodyAllowance
@@ -256,10 +260,10 @@ class PlanRoutes:
             disconnect.cancel()
 
 
-def _accepted_response(record: Record, geometry: Geometry) -> Response:
+def _accepted_response(request: Request, record: Record, geometry: Geometry) -> Response:
     response = json_response({"id": record.id, "status": record.status}, 202)
     query = "" if geometry == "straight" else f"?geometry={geometry}"
-    response.headers["Location"] = f"/front/{record.id}{query}"
+    response.headers["Location"] = f"{root_path_of(request.scope)}/front/{record.id}{query}"
     response.headers["Preference-Applied"] = "respond-async"
     return response
 

@@ -7,6 +7,7 @@ it.
 import asyncio
 import gzip
 from collections.abc import Mapping
+from dataclasses import replace
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -15,12 +16,13 @@ from pydantic.json_schema import SkipJsonSchema
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.types import Scope
 
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
 from service.files.reading import Kind
 from service.front import Termination
-from service.jobs.record import Status
+from service.jobs.record import Record, Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.stop_fields import NamedStop
 from service.requests.task import KindName
@@ -333,9 +335,29 @@ async def compressed(request: Request, response: Response) -> Response:
     return response
 
 
-def problem_response(refusal: Refusal, request_id: str) -> Response:
+def root_path_of(scope: Scope) -> str:
+    """Return the path under which the client sees the service, such as /tours; mostly empty."""
+    return str(scope.get("root_path", ""))
+
+
+def problem_under(root_path: str, document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a problem document whose `type` is a path as the client sees it."""
+    # Those that earlier releases stored have about:blank.
+    prefix = root_path if document["type"].startswith("/") else ""
+    return {**document, "type": prefix + document["type"]}
+
+
+def record_under(root_path: str, record: Record) -> Record:
+    """Return a record whose problem document, if it has one, is as the client sees it."""
+    if record.problem is None:
+        return record
+    return replace(record, problem=problem_under(root_path, record.problem))
+
+
+def problem_response(refusal: Refusal, request_id: str, root_path: str) -> Response:
     """Return the problem document of a refusal as a response."""
-    return problem_bytes(refusal.document(request_id), refusal.headers)
+    document = problem_under(root_path, refusal.document(request_id))
+    return problem_bytes(document, refusal.headers)
 
 
 def problem_bytes(

@@ -23,6 +23,8 @@ from service.api.responses import (
     json_bytes,
     json_response,
     problem_responses,
+    record_under,
+    root_path_of,
 )
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
@@ -101,7 +103,7 @@ class StoredFrontRoutes:
         present = [await self._present(caller, each) for each in page]
         response = json_response({"fronts": [each.document() for each in present]})
         if len(found) > limit:
-            address = f"/front?limit={limit}&after={page[-1].number}"
+            address = f"{root_path_of(request.scope)}/front?limit={limit}&after={page[-1].number}"
             response.headers["Link"] = f'<{address}>; rel="next"'
         return response
 
@@ -122,7 +124,8 @@ class StoredFrontRoutes:
         if record.finished:
             await self._store.delete(record)
             return Response(status_code=204)
-        return json_bytes((await self._engine.cancel(record)).json())
+        cancelled = await self._engine.cancel(record)
+        return json_bytes(record_under(root_path_of(request.scope), cancelled).json())
 
     async def follow_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Send the progress of a front as events, until it is finished."""

@@ -1,24 +1,29 @@
 """nginx as service/deploy configures it, run before a service: what it bounds and passes on."""
 
 import asyncio
+import re
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
+from urllib.parse import urljoin
 
 import httpx
 import pytest
+from paretour import Client
 
 from service.api.app import Edge
 from service.api.auth import Access, Rates
 from service.settings import Settings
 from tests.api.transport.test_connections import connected, received
 from tests.api.transport.test_protocol import GONE, Waiting, serving_asgi
+from tests.guide.pages import GUIDE, blocks
 from tests.helpers.nginx import CONFIGURATION, nginx_before
 from tests.helpers.ports import free_port
 from tests.helpers.serving import app_of, problem, serving
 
+_LINK = re.compile(r'(?:href|src)="([^"]+)"')
 HEAD = b"POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
 CITIES = {"coordinates": [[0, 0, 0, 0], [1, 0, 0, 1], [0, 1, 1, 1]]}
 
@@ -143,6 +148,39 @@ def test_where_the_service_is_away_or_the_rate_is_exceeded_it_says_so_itself(
     assert refusal_of(away, 503, "shutting-down")["request_id"]
     assert refusal_of(too_often, 429, "rate-limited")["request_id"]
     assert away.headers["retry-after"] == too_often.headers["retry-after"] == "1"
+
+
+def test_a_client_cannot_say_that_the_service_is_elsewhere(url: str) -> None:
+    problem(httpx.get(f"{url}/none", headers={"X-Forwarded-Prefix": "/a"}), 404, "no-such-path")
+
+
+def test_under_a_sub_path_everything_is_found_there(tmp_path: Path) -> None:
+    [block] = [each for each in blocks(GUIDE / "run-it-in-production.md") if "/tours" in each.text]
+    lines = (
+        "location / {",
+        "proxy_pass http://paretour;",
+        'proxy_set_header X-Forwarded-Prefix "";',
+    )
+    changed = dict(zip(lines, map(str.strip, block.text.splitlines()), strict=True))
+    with (
+        serving(app_of()) as service,
+        nginx_before(service, tmp_path, changed) as site,
+        httpx.Client(base_url=site, follow_redirects=True, timeout=60) as client,
+    ):
+        for path in ("", "docs", "guide", "guide/errors"):
+            page = client.get(f"/tours/{path}")
+            targets = {urljoin(str(page.url), link) for link in _LINK.findall(page.text)}
+            inside = {target for target in targets if target.startswith(site)}
+            assert inside
+            for target in inside:
+                assert target.startswith(f"{site}/tours/")
+                assert client.get(target).status_code == 200, target
+        refused = problem(client.get("/tours/none"), 404, "no-such-path", "/tours")
+        assert client.get(refused["type"]).status_code == 200
+        accepted = client.post("/tours/front", json=CITIES, headers={"Prefer": "respond-async"})
+        assert client.get(accepted.headers["location"]).status_code == 200
+        with Client(f"{site}/tours") as planner:
+            assert [each.id for each in planner.fronts()] == [accepted.json()["id"]]
 
 
 def test_its_limits_are_those_of_the_settings() -> None:

@@ -5,7 +5,7 @@ import shutil
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -29,13 +29,18 @@ http {{
 
 
 @contextmanager
-def nginx_before(service: str, folder: Path) -> Iterator[str]:
+def nginx_before(
+    service: str, folder: Path, changed: Mapping[str, str] | None = None
+) -> Iterator[str]:
     """Run nginx before the service at a URL until the block ends, and yield its own.
 
-    The configuration is the one that is shipped, but for both ports.
+    The configuration is the one that is shipped, but for both ports and the lines that are changed.
     """
     port = free_port()
     text = CONFIGURATION.read_text()
+    for line, other in (changed or {}).items():
+        assert text.count(line) == 1, line
+        text = text.replace(line, other)
     text, listens = re.subn(r"listen 80;", f"listen 127.0.0.1:{port};", text)
     text, servers = re.subn(r"server 127.0.0.1:8000;", f"server {urlsplit(service).netloc};", text)
     assert (listens, servers) == (1, 1)

@@ -109,6 +109,7 @@ def serving(
     drain: int = 5,
     warm: bool = True,
     connections: ConnectionLimits = ConnectionLimits(),  # noqa: B008  # it is frozen
+    root_path: str = "",
 ) -> Iterator[str]:
     """Serve an application in a thread until the block ends, and yield its address.
 
@@ -117,9 +118,10 @@ def serving(
         drain: seconds that open requests have when it is told to stop.
         warm: whether to wait until its workers are warm.
         connections: the limits of its connections.
+        root_path: the path under which a proxy serves it.
     """
     [listening] = bound_sockets("127.0.0.1", 0)
-    server = make_server(app, Connections(connections), drain)
+    server = make_server(app, Connections(connections), drain, root_path)
     thread = threading.Thread(target=server.run, args=[[listening]])
     thread.start()
     url = f"http://127.0.0.1:{listening.getsockname()[1]}"
@@ -143,14 +145,16 @@ def serving_released() -> Iterator[str]:
         yield address
 
 
-def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
+def problem(
+    response: httpx.Response, status: int, code: str, root_path: str = ""
+) -> dict[str, Any]:
     """Return the problem document of a response, after a check of the members that all have."""
     assert response.status_code == status, response.text
     assert response.headers["content-type"] == "application/problem+json"
     document = response.json()
     assert document["status"] == status
     assert document["code"] == code
-    assert document["type"] == f"/guide/errors#{code}"
+    assert document["type"] == f"{root_path}/guide/errors#{code}"
     assert document["title"]
     assert document["detail"]
     assert document["request_id"] == response.headers["x-request-id"]

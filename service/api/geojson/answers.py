@@ -19,7 +19,7 @@ from service.api.body_budget import BodyBudget
 from service.api.disconnect import unless_disconnected
 from service.api.geojson.features import Drawing, Line
 from service.api.request_headers import GEOJSON, accepts_geojson
-from service.api.responses import compressed, json_bytes
+from service.api.responses import compressed, json_bytes, record_under, root_path_of
 from service.errors import Fault, Refusal
 from service.jobs.record import Record
 from service.kinds.table import KINDS
@@ -110,6 +110,7 @@ class FrontAnswers:
                 answers are being sent.
         """
         self.check(request, record.front.stops, geometry)
+        record = record_under(root_path_of(request.scope), record)
         if plan is not None:
             _check_plan(request, record, plan)
         items = record.front.tours if plan is None else record.front.tour(plan)

@@ -1,1 +1,1 @@
-"""HTTP/1.1 on sockets: connections, their bounds and deadlines, and the strict parser."""
+"""HTTP/1.1 on sockets: connections, bounds, deadlines, trusted proxies, the strict parser."""

@@ -192,7 +192,7 @@ class Connection(H11Protocol):
 
     def _send_problem(self, refusal: Refusal) -> None:
         request_id = uuid.uuid4().hex
-        response = problem_response(refusal, request_id)
+        response = problem_response(refusal, request_id, self.root_path)
         headers = [*self.server_state.default_headers, *response.raw_headers]
         headers += [(b"connection", b"close"), (b"x-request-id", request_id.encode())]
         body = b"" if self.conn.method == b"HEAD" else bytes(response.body)

@@ -1,0 +1,126 @@
+"""Under a path of another site: what a proxy has taken away from it comes back in every answer."""
+
+import json
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from service.api.responses import problem_under
+from service.api.transport.connections import ConnectionLimits
+from tests.api.transport.test_connections import connected, received
+from tests.helpers.actors import Broken
+from tests.helpers.processes import serve_process
+from tests.helpers.serving import app_of, problem, serving
+
+BODY = {"coordinates": [[0, 0, 0, 0], [1, 0, 0, 1], [0, 1, 1, 1]], "time_limit": 0, "repairs": 0}
+ASYNC = {"Prefer": "respond-async"}
+TOURS = {"X-Forwarded-Prefix": "/tours"}
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    """A service whose setting says /set, before which no proxy has to stand."""
+    with serving(app_of(), root_path="/set") as address:
+        yield address
+
+
+@pytest.mark.parametrize(
+    ("headers", "root_path"),
+    [
+        ({}, "/set"),
+        (TOURS, "/tours"),
+        ({"X-Forwarded-Prefix": "/plan/tours/"}, "/plan/tours"),
+        ({"X-Forwarded-Prefix": "/"}, ""),
+    ],
+)
+def test_what_an_answer_leads_to_begins_with_the_path_that_the_proxy_took_away(
+    url: str, headers: dict[str, str], root_path: str
+) -> None:
+    with httpx.Client(base_url=url, headers=headers, timeout=60) as client:
+        location = ""
+        for _ in range(2):
+            accepted = client.post("/front", json=BODY, headers=ASYNC)
+            location = accepted.headers["location"]
+            assert location == f"{root_path}/front/{accepted.json()['id']}"
+        assert client.get(location.removeprefix(root_path)).status_code == 200
+        link = client.get("/front?limit=1").links["next"]["url"]
+        assert link.startswith(f"{root_path}/front?limit=1&after=")
+        assert client.get(link.removeprefix(root_path)).status_code == 200
+        problem(client.get("/front/none"), 404, "unknown-front", root_path)
+        problem(client.get("/none"), 404, "no-such-path", root_path)
+        problem(client.get("/page/main.js", headers={"Range": "x"}), 400, "refused", root_path)
+
+
+def test_the_document_names_the_path_as_its_server(url: str) -> None:
+    for headers, root_path in (TOURS, "/tours"), ({}, "/set"):
+        document = httpx.get(f"{url}/openapi.json", headers=headers).json()
+        assert document["servers"] == [{"url": root_path}]
+    with serving(app_of(), warm=False) as other:
+        assert "servers" not in httpx.get(f"{other}/openapi.json").json()
+
+
+def test_the_command_serves_under_the_path_of_its_setting() -> None:
+    settings = {"PARETOUR_ROOT_PATH": "/set", "PARETOUR_WORKERS": "1"}
+    with serve_process(settings) as service:
+        problem(httpx.get(f"{service.url}/none"), 404, "no-such-path", "/set")
+
+
+def test_a_problem_that_an_earlier_release_stored_stays_as_it_was() -> None:
+    stored = {"type": "about:blank", "code": "overdue"}
+    assert problem_under("/tours", stored) == stored
+
+
+def test_a_job_that_failed_says_why_at_the_path_of_who_asks() -> None:
+    with (
+        serving(app_of(Broken())) as address,
+        httpx.Client(base_url=address, timeout=60) as client,
+    ):
+        planned = client.post("/front", json=BODY, headers={**TOURS, "Idempotency-Key": "a"})
+        problem(planned, 500, "internal-error", "/tours")
+        [listed] = client.get("/front").json()["fronts"]
+        for headers, root_path in (TOURS, "/tours"), ({}, ""):
+            found = client.get(f"/front/{listed['id']}", headers=headers).json()
+            assert found["problem"]["type"] == f"{root_path}/guide/errors#internal-error"
+
+
+def test_a_connection_that_is_refused_knows_the_setting(url: str) -> None:
+    with connected(url) as connection:
+        connection.sendall(b"nonsense\r\n\r\n")
+        status, _, body = received(connection)
+    assert (status, json.loads(body)["type"]) == (400, "/set/guide/errors#malformed-http")
+
+
+def test_a_client_that_is_not_a_trusted_proxy_is_not_believed() -> None:
+    limits = ConnectionLimits(proxies="192.0.2.1")
+    with serving(app_of(), warm=False, connections=limits) as address:
+        problem(httpx.get(f"{address}/none", headers=TOURS), 404, "no-such-path")
+
+
+@pytest.mark.parametrize(
+    "prefix",
+    [
+        "tours",
+        "//other.example",
+        "https://other.example",
+        "/tours//",
+        "/../tours",
+        "/a b",
+        "/%2e%2e",
+        "/a?b",
+        "/a#b",
+        "/t\u00f6urs".encode(),
+        "/a, /b",
+        "/" + "a" * 200,
+    ],
+)
+def test_what_is_not_a_plain_path_is_ignored(url: str, prefix: str | bytes) -> None:
+    answer = httpx.get(f"{url}/none", headers=[("X-Forwarded-Prefix", prefix)])
+    problem(answer, 404, "no-such-path", "/set")
+
+
+def test_two_prefixes_are_ignored(url: str) -> None:
+    answer = httpx.get(
+        f"{url}/none", headers=[("X-Forwarded-Prefix", each) for each in ("/a", "/b")]
+    )
+    problem(answer, 404, "no-such-path", "/set")
