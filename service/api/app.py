@@ -119,7 +119,7 @@ def create_app(
     app = _DocumentedApp(
         request_schemas(limits, actors),
         title="Paretour",
-        summary="Pareto fronts of tours under two objectives",
+        summary="Pareto fronts of tours under two to four objectives",
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,

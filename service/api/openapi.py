@@ -17,6 +17,16 @@ from service.api.responses import PROBLEM_JSON, Problem
 from service.errors import PROBLEMS, Refusal
 
 _EXAMPLES = Path(__file__).parents[1] / "reference" / "examples.json"
+_DESCRIPTION = """\
+Plan tours under two to four objectives at once. The answer is a Pareto front: the tours that no
+other tour beats in every objective.
+
+- [The guide](guide/) explains everything by question; `/llms.txt` lists its pages for programs.
+- Every error is `application/problem+json`. Its `code` is stable, and its `type` leads to where
+  [the guide explains it](guide/errors).
+- If the operator has set keys, send one as `Authorization: Bearer KEY`. `RateLimit` says how many
+  more requests you may make.
+"""
 _REQUEST_ID = "2348e4bd4d8a4a028a885757e2b342af"
 
 
@@ -27,6 +37,7 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
         document: The document.
         schemas: The schemas that request bodies refer to, by name.
     """
+    document["info"]["description"] = _DESCRIPTION
     components = document["components"]
     components["schemas"].update(schemas)
     components["schemas"]["Problem"] = _problem_schema()

@@ -1,4 +1,4 @@
-"""The guide at `/guide/`: its pages of Markdown, rendered when they are first asked for."""
+"""Serve the guide at `/guide/`, rendered at its first request, and its outline `/llms.txt`."""
 
 import re
 from functools import cache, cached_property
@@ -8,9 +8,16 @@ from string import Template
 
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
+from starlette.responses import (
+    HTMLResponse,
+    JSONResponse,
+    PlainTextResponse,
+    RedirectResponse,
+    Response,
+)
 from starlette.routing import BaseRoute, Route
 
+from service.api.responses import root_path_of
 from service.api.site.markdown import Page, render
 from service.api.site.static import REVALIDATE, files
 
@@ -21,7 +28,7 @@ _PAGE_LINK = re.compile(r"([a-z-]+)\.md(#.*)?")
 _SERVED = re.compile(
     r"(pictures/[a-z-]+\.png)|\.\./(?:(deploy/[a-z-]+\.yaml)|(examples/[a-z-]+\.json))"
 )
-_GROUP = re.compile(r"^\*\*(.+)\*\*$|^- \[(.+?)\]\(([a-z-]+)\.md\)", re.MULTILINE)
+_GROUP = re.compile(r"^\*\*(.+)\*\*$|^- \[(.+?)\]\(([a-z-]+)\.md\) (.+)$", re.MULTILINE)
 
 
 def guide_routes() -> list[BaseRoute]:
@@ -34,6 +41,7 @@ def guide_routes() -> list[BaseRoute]:
         Route("/guide/pictures/{path}", files(_GUIDE / "pictures")),
         Route("/guide/deploy/{path}.yaml", files(_SERVICE / "deploy", ".yaml")),
         Route("/guide/{name}", _page),
+        Route("/llms.txt", _outline),
     ]
 
 
@@ -68,6 +76,24 @@ class Guide:
             for section in page.sections
         ]
 
+    def outline(self, root_path: str) -> str:
+        """Return the list of all pages for language models, in the format of llmstxt.org.
+
+        Args:
+            root_path: The path under which the client sees the service.
+        """
+        summary = self.pages[_INDEX].sections[0].text.partition(". ")[0]
+        lines = [
+            *("# Paretour", "", f"> {summary}.", ""),
+            f"All operations are described in [openapi.json]({root_path}/openapi.json).",
+        ]
+        for group, question, name, sentence in self._entries:
+            if group:
+                lines += ["", f"## {group}", ""]
+            else:
+                lines.append(f"- [{question}]({root_path}/guide/{name}): {sentence}")
+        return "\n".join([*lines, ""])
+
     def _render(self, name: str, names: set[str]) -> Page:
         text = (self._folder / f"{name}.md").read_text()
         return render(text, lambda target: _resolved(target, names))
@@ -75,7 +101,7 @@ class Guide:
     def _navigation(self, current: str) -> str:
         """Return the list of pages as HTML, in the index's groups."""
         lines = []
-        for group, question, name in self._entries:
+        for group, question, name, _ in self._entries:
             if group:
                 lines.append(f"<h2>{escape(group)}</h2>")
             else:
@@ -115,6 +141,10 @@ def _page(request: Request) -> Response:
     if name not in _guide().pages:
         raise HTTPException(404)
     return HTMLResponse(_guide().document(name), headers=REVALIDATE)
+
+
+def _outline(request: Request) -> Response:
+    return PlainTextResponse(_guide().outline(root_path_of(request.scope)), headers=REVALIDATE)
 
 
 def _search(_: Request) -> Response:

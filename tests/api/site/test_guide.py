@@ -8,6 +8,8 @@ from urllib.parse import urljoin
 import httpx
 import pytest
 
+from service.api.app import Edge
+from service.api.auth import Access, KeyHash
 from service.api.openapi import example_refusal
 from service.errors import PROBLEMS
 from tests.guide.pages import GUIDE, anchors
@@ -69,6 +71,35 @@ def test_every_page_lists_all_others(client: httpx.Client) -> None:
         navigation = client.get(f"/guide/{name}").text.partition("<main")[0]
         listed = re.findall(r'^<a href="([a-z-]+)"', navigation, re.MULTILINE)
         assert sorted(listed) == [page for page in PAGES if page != "index"]
+
+
+def test_an_outline_lists_every_page_with_a_sentence_for_programs(client: httpx.Client) -> None:
+    answer = client.get("/llms.txt")
+    assert answer.headers["content-type"] == "text/plain; charset=utf-8"
+    assert answer.headers["cache-control"] == client.get("/guide/").headers["cache-control"]
+    title, summary, operations, *lists = answer.text.strip().split("\n\n")
+    assert title == "# Paretour"
+    assert re.fullmatch(r"> Paretour plans [^\n]+\.", summary)
+    assert client.get(re.findall(r"\((.+)\)", operations)[0]).json()["openapi"]
+    groups, pages = lists[::2], "\n".join(lists[1::2]).splitlines()
+    assert all(re.fullmatch(r"## \w[^\n]+", group) for group in groups)
+    listed = [re.fullmatch(r"- \[.+\?\]\(/guide/([a-z-]+)\): .+\.", line) for line in pages]
+    assert sorted(each[1] for each in listed if each) == [name for name in PAGES if name != "index"]
+    assert len(listed) == len(PAGES) - 1
+
+
+def test_the_outline_is_open_without_a_key_and_knows_its_path() -> None:
+    edge = Edge(access=Access([KeyHash(caller="robot", digest="0" * 64)]))
+    with serving(app_of(edge=edge), warm=False, root_path="/tours") as address:
+        problem(httpx.get(f"{address}/actors"), 401, "unauthorized", "/tours")
+        assert "(/tours/guide/plan-a-front): " in httpx.get(f"{address}/llms.txt").text
+
+
+def test_the_reference_begins_with_what_links_lead_to(client: httpx.Client) -> None:
+    description = client.get("/openapi.json").json()["info"]["description"]
+    links = re.findall(r"\]\(([^)]+)\)", description)
+    assert links
+    assert all(client.get(urljoin("/docs", link)).status_code == 200 for link in links)
 
 
 def test_a_search_finds_sections_by_an_address_that_leads_to_them(client: httpx.Client) -> None:
