@@ -1,7 +1,9 @@
 """Both clients, synchronous and asynchronous, against a service."""
 
+import asyncio
 from inspect import signature
 from io import BytesIO
+from typing import Any
 
 import httpx
 import numpy as np
@@ -9,7 +11,7 @@ import pytest
 from paretour import AsyncClient, Client, Refused
 from PIL import Image
 
-from tests.helpers.answers import Connect
+from tests.helpers.answers import FRONT, Connect
 
 CITIES = np.random.default_rng(3).random((12, 4))
 MANY = np.random.default_rng(4).random((300, 4))
@@ -158,6 +160,38 @@ def test_the_rest_of_a_front_is_replanned_at_once_and_as_a_job(url: str, connect
         rest.lengths.tolist()
     )
     assert (front.kept, driven.kept) == (None, None)
+
+
+def test_a_thousand_calls_gathered_wait_for_their_turns_and_all_are_answered(url: str) -> None:
+    async def plan_all() -> list[int]:
+        # Patience for no more than one refusal: waiting for a turn uses none of it.
+        async with AsyncClient(url, patience=1, timeout=5) as client:
+            calls = [
+                client.front(coordinates=CITIES[: 3 + n % 9], time_limit=0, preferences=1)
+                for n in range(1000)
+            ]
+            return [front.tours.shape[1] for front in await asyncio.gather(*calls)]
+
+    assert asyncio.run(plan_all()) == [3 + n % 9 for n in range(1000)]
+
+
+def test_a_question_about_a_job_does_not_wait_for_calls_that_plan() -> None:
+    async def ask() -> list[Any]:
+        answered = asyncio.Event()
+
+        async def service(request: httpx.Request) -> httpx.Response:
+            if request.method == "POST":
+                await answered.wait()
+            return httpx.Response(200, json=FRONT)
+
+        async with AsyncClient("service", transport=httpx.MockTransport(service)) as client:
+            planned = [asyncio.create_task(client.front(coordinates=CITIES)) for _ in range(20)]
+            await asyncio.sleep(0)  # they take their turns
+            found = await client.job("f").front()
+            answered.set()
+            return [found, *await asyncio.gather(*planned)]
+
+    assert [front.id for front in asyncio.run(ask())] == 21 * ["f"]
 
 
 def test_both_clients_have_the_same_methods_with_the_same_parameters_and_help() -> None:

@@ -10,6 +10,7 @@ from paretour.calls import (
     AnyFront,
     Call,
     Calls,
+    HttpRequest,
     Parse,
     Submitted,
     address_of,
@@ -23,6 +24,10 @@ from paretour.values import Front, Progress, parse_front
 
 P = ParamSpec("P")
 T = TypeVar("T")
+
+_AT_ONCE = 8  # the places for one caller of a service with the default queue and one worker
+# Calls take turns, so the pool need not: a job that is followed must not hold up a call about it.
+_UNLIMITED = httpx.Limits(max_connections=None, max_keepalive_connections=20)
 
 
 def _result(
@@ -57,6 +62,9 @@ class AsyncClient:
 
     Arguments are those of Client; `transport` is an asynchronous one.
 
+    Any number of calls may be gathered: those beyond the first eight wait for their turn, which
+    counts neither as timeout nor as patience.
+
     Raises:
         Refused: Any call may raise it: the service answered with an error.
         UnexpectedAnswer: Any call may raise it: the answer is not one of this service.
@@ -73,8 +81,12 @@ class AsyncClient:
         most_bytes: int = MOST_BYTES,
         transport: httpx.AsyncBaseTransport | None = None,
     ) -> None:
-        headers = client_headers(api_key)
-        http = httpx.AsyncClient(base_url=address_of(url), headers=headers, transport=transport)
+        http = httpx.AsyncClient(
+            base_url=address_of(url),
+            headers=client_headers(api_key),
+            limits=_UNLIMITED,
+            transport=transport,
+        )
         self._connection = _Connection(http, most_bytes)
         self._calls = Calls(timeout=timeout, patience=patience)
 
@@ -176,10 +188,19 @@ class _Connection:
     def __init__(self, http: httpx.AsyncClient, most_bytes: int) -> None:
         self._http = http
         self._most_bytes = most_bytes
+        self._to_plan, self._to_ask = asyncio.Semaphore(_AT_ONCE), asyncio.Semaphore(_AT_ONCE)
         self.close = http.aclose
 
     async def run(self, call: Call[T]) -> T:
+        """Run a call when it is its turn, which it keeps while the service has it wait.
+
+        What asks about a job, or cancels it, does not wait for searches to end.
+        """
         request = next(call)
+        async with self._to_plan if request.method == "POST" else self._to_ask:
+            return await self._run(call, request)
+
+    async def _run(self, call: Call[T], request: HttpRequest) -> T:
         while True:
             await asyncio.sleep(request.delay)
             async with self._http.stream(**request.arguments) as streamed:
