@@ -27,6 +27,7 @@ from paretour.members import (
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
+    explaining,
 )
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.requests import (
@@ -88,10 +89,12 @@ class Calls:
     timeout: float
     patience: float
 
+    @explaining(FrontRequest)
     def front(self, **request: Unpack[FrontRequest]) -> Call[Front]:
         """Plan a front and wait for it, until its time limit or until nothing more is found."""
         return self.plan(front_plan(request))
 
+    @explaining(CoverageRequest)
     def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Call[Front]:
         """Plan a front over a map and wait for it.
 
@@ -102,6 +105,7 @@ class Calls:
         """
         return self.plan(coverage_plan(request, png))
 
+    @explaining(ReplanRequest)
     def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Call[Front]:
         """Plan the rest of a tour that is being driven, given what has changed, and wait for it.
 
@@ -111,6 +115,7 @@ class Calls:
         """
         return self.plan(replan_plan(front, request))
 
+    @explaining(ReplanFleetRequest)
     def replan_fleet(
         self, front: FleetFront | str, **request: Unpack[ReplanFleetRequest]
     ) -> Call[FleetFront]:
@@ -122,10 +127,12 @@ class Calls:
         """
         return self.plan_fleet(replan_plan(front, request))
 
+    @explaining(FleetRequest)
     def fleet(self, **request: Unpack[FleetRequest]) -> Call[FleetFront]:
         """Plan a front of plans for a fleet and wait for it."""
         return self.plan_fleet(fleet_plan(request))
 
+    @explaining(RobotsRequest)
     def robots(
         self, png: bytes | None = None, **request: Unpack[RobotsRequest]
     ) -> Call[RobotFront]:
@@ -148,32 +155,38 @@ class Calls:
         """Send a plan for robots that was built before, and wait for the front of its plans."""
         return self._plan(plan, parse_robots)
 
+    @explaining(FrontRequest)
     def submit(self, **request: Unpack[FrontRequest]) -> Call[Submitted[Front]]:
         """Submit a job that plans a front."""
         return self.post(front_plan(request))
 
+    @explaining(CoverageRequest)
     def submit_coverage(
         self, png: bytes | None = None, **request: Unpack[CoverageRequest]
     ) -> Call[Submitted[Front]]:
         """Submit a job that plans a front over a map; arguments as of `coverage`."""
         return self.post(coverage_plan(request, png))
 
+    @explaining(ReplanRequest)
     def submit_replan(
         self, front: Front | str, **request: Unpack[ReplanRequest]
     ) -> Call[Submitted[Front]]:
         """Submit a job that plans the rest of a tour; arguments as of `replan`."""
         return self.post(replan_plan(front, request))
 
+    @explaining(ReplanFleetRequest)
     def submit_replan_fleet(
         self, front: FleetFront | str, **request: Unpack[ReplanFleetRequest]
     ) -> Call[Submitted[FleetFront]]:
         """Submit a job that plans the rest of a fleet's day; arguments as of `replan_fleet`."""
         return self._submit(replan_plan(front, request), parse_fleet)
 
+    @explaining(FleetRequest)
     def submit_fleet(self, **request: Unpack[FleetRequest]) -> Call[Submitted[FleetFront]]:
         """Submit a job that plans a front of plans for a fleet."""
         return self._submit(fleet_plan(request), parse_fleet)
 
+    @explaining(RobotsRequest)
     def submit_robots(
         self, png: bytes | None = None, **request: Unpack[RobotsRequest]
     ) -> Call[Submitted[RobotFront]]:

@@ -17,6 +17,7 @@ from paretour.members import (
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
+    explaining,
 )
 from paretour.plans import FleetFront, RobotFront
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
@@ -25,6 +26,7 @@ from paretour.values import Front
 _planned: WeakKeyDictionary[FrontOfAnyKind, Any] = WeakKeyDictionary()  # what `replan` starts from
 
 
+@explaining(FrontRequest)
 def plan(*, progress: bool = False, **request: Unpack[FrontRequest]) -> Front:
     """Plan a front in this process, as `Client.front` has a service do. Ctrl-C ends it early.
 
@@ -42,6 +44,7 @@ def plan(*, progress: bool = False, **request: Unpack[FrontRequest]) -> Front:
     return cast(Front, _run(front_plan(request), progress))
 
 
+@explaining(CoverageRequest)
 def plan_coverage(
     png: bytes | None = None, *, progress: bool = False, **request: Unpack[CoverageRequest]
 ) -> Front:
@@ -49,11 +52,13 @@ def plan_coverage(
     return cast(Front, _run(coverage_plan(request, png), progress))
 
 
+@explaining(FleetRequest)
 def plan_fleet(*, progress: bool = False, **request: Unpack[FleetRequest]) -> FleetFront:
     """Plan a front of plans for a fleet in this process, as `Client.fleet` and `plan` do."""
     return cast(FleetFront, _run(fleet_plan(request), progress))
 
 
+@explaining(RobotsRequest)
 def plan_robots(
     png: bytes | None = None, *, progress: bool = False, **request: Unpack[RobotsRequest]
 ) -> RobotFront:
@@ -67,6 +72,7 @@ def replan(front: Front, *, progress: bool = False, **request: Unpack[ReplanRequ
 def replan(
     front: FleetFront, *, progress: bool = False, **request: Unpack[ReplanFleetRequest]
 ) -> FleetFront: ...
+@explaining(ReplanRequest, ReplanFleetRequest)
 def replan(front: Front | FleetFront, *, progress: bool = False, **request: Any) -> Any:
     """Plan the rest of a front that was planned in this process, as `Client.replan` does.
 

@@ -1,12 +1,20 @@
 """The members of requests, as types of dictionaries."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal, Protocol, Required, TypedDict
+import json
+from collections.abc import Callable, Mapping, Sequence
+from inspect import cleandoc
+from pkgutil import get_data
+from typing import Any, Literal, Protocol, Required, TypedDict, TypeVar
 
 from numpy.typing import ArrayLike
 
 # A row for each city, with its costs to all cities; None or infinity if there is no way.
 Costs = ArrayLike | Sequence[Sequence[float | None]]
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+# The lines of the help on each type below, from the service: `python -m tests.guide` writes them.
+_HELP = json.loads(get_data("paretour", "members.json") or b"")
 
 
 class Frame(Protocol):
@@ -99,6 +107,7 @@ class FrontRequest(PlanRequest, total=False):
     departure: float | Mapping[str, float]
     clock: str
     augment: int
+    geometry: Literal["straight", "roads"]
 
 
 class FleetStopRequest(StopRequest, total=False):
@@ -273,3 +282,17 @@ class ReplanRequest(PlanOptions, total=False):
     cost_layer: ArrayLike
     cost_layers: Sequence[LayerRequest]
     paths: bool
+
+
+def explaining(*requests: type) -> Callable[[Function], Function]:
+    """Return a decorator that adds what the members of these requests are to a function's help."""
+
+    def decorate(function: Function) -> Function:
+        sections = [cleandoc(function.__doc__ or "")]
+        for request in requests:
+            title = f"Members of the request ({request.__name__}):"
+            sections.append("\n    ".join((title, *_HELP[request.__name__])))
+        function.__doc__ = "\n\n".join(sections)
+        return function
+
+    return decorate
