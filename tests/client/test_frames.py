@@ -6,11 +6,17 @@ from decimal import Decimal
 from io import BytesIO
 from typing import Any
 
+import geopandas as gpd
 import numpy as np
 import pandas as pd
 import pytest
 from paretour import fleet_plan, front_plan
+from shapely import Point
 
+FLOOR = (
+    'ENGCRS["floor plan",EDATUM["the corner of a hall"],CS[Cartesian,2],'
+    'AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+)
 COSTS = pd.DataFrame([[0.0, 2.0], [3.0, 0.0]], index=["a", "b"], columns=["a", "b"])
 STOPS = pd.DataFrame(
     {
@@ -232,3 +238,58 @@ def test_a_list_in_a_cell_of_polars_is_a_list() -> None:
 def test_numbers_of_any_type_are_sent_as_numbers(frame: pd.DataFrame) -> None:
     body = json.loads(front_plan({"coordinates": frame}).json)
     assert body["coordinates"] == frame.astype(float).to_numpy().tolist()
+
+
+def points(crs: Any, *places: tuple[float, float]) -> Any:
+    ids = [f"p{number}" for number in range(len(places))]
+    geometry = gpd.points_from_xy(*zip(*places, strict=True))
+    return gpd.GeoDataFrame({"id": ids, "demand": 3}, geometry=geometry, crs=crs)
+
+
+def test_points_in_degrees_are_the_locations_of_stops() -> None:
+    frame = points("EPSG:4326", (24.94, 60.17), (24.92, 60.19))
+    stops = json.loads(fleet_plan({"stops": frame, "vehicles": [], "objectives": []}).json)["stops"]
+    assert stops == [
+        {"id": "p0", "location": [24.94, 60.17], "demand": [3]},
+        {"id": "p1", "location": [24.92, 60.19], "demand": [3]},
+    ]
+
+
+def test_points_in_metres_become_longitude_and_latitude() -> None:
+    frame = points("EPSG:3857", (0, 0), (20037508.342789244, 20037508.342789244))
+    stops = json.loads(front_plan({"stops": frame}).json)["stops"]
+    assert [stop["location"] for stop in stops] == [
+        [0, 0],
+        pytest.approx([180, 85.05112877980659]),
+    ]
+
+
+def test_points_named_otherwise_are_found_by_being_the_geometry() -> None:
+    frame = points("EPSG:4326", (24.94, 60.17)).rename_geometry("place")
+    assert json.loads(front_plan({"stops": frame}).json)["stops"][0]["location"] == [24.94, 60.17]
+
+
+@pytest.mark.parametrize(
+    ("frame", "sentence"),
+    [
+        (points(None, (24.9, 60.2)), "must have a coordinate reference system, got none; for"),
+        (
+            gpd.GeoDataFrame({"id": ["a"]}),
+            "must have a column of points as their geometry, got none",
+        ),
+        (
+            points(4326, (24.9, 60.2)).set_geometry([Point(1, 1).buffer(1)], crs=4326),
+            "row 0, column 'geometry' must be a point, got <POLYGON",
+        ),
+        (
+            points(4326, (24.9, 60.2)).set_geometry([None], crs=4326),
+            "row 0, column 'geometry' must be a point, got None",
+        ),
+        (points(4326, (24.9, 60.2)).set_geometry([Point()], crs=4326), "got <POINT EMPTY>"),
+        (points(FLOOR, (1, 2)), "can become EPSG:4326, got floor plan"),
+        (points(3067, (1e30, 2)), "must be a number, got inf"),
+    ],
+)
+def test_stops_whose_places_are_not_known_are_refused(frame: Any, sentence: str) -> None:
+    with pytest.raises(ValueError, match=f"^stops.*{re.escape(sentence)}"):
+        front_plan({"stops": frame})

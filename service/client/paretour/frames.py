@@ -16,6 +16,7 @@ _LONGITUDES = ("lon", "lng", "longitude")
 _LATITUDES = ("lat", "latitude")
 _NUMBERS = ("service", "prize", "due", "release")
 _OF_FLEETS = ("demand", *_NUMBERS, "window", "windows", "skills")
+_DEGREES = 4326  # the EPSG code of WGS84: longitude and latitude
 _ENDS = 2  # of a window
 _SEPARATOR = re.compile(r"[;|,]")  # between skills in one text
 _MOST_SHOWN = 80  # characters of a wrong value in a sentence
@@ -25,12 +26,14 @@ _Cells = list[tuple[str, Any]]  # the cells of a column: the position and the va
 def without_frames(value: Any, name: str = "") -> Any:
     """Return the members of a request with arrays or stops in place of DataFrames.
 
-    A DataFrame of `stops` has columns id, lon and lat, and for fleets those of their stops:
-    `windows` are lists, and `skills` lists or a text with semicolons, commas or bars. Any other
-    DataFrame is a table of numbers. Costs may be infinite, and empty on the diagonal.
+    A DataFrame of `stops` has columns id, lon and lat, or a GeoDataFrame points in place of the
+    last two. For fleets it has those of their stops: `windows` are lists, and `skills` lists or a
+    text with semicolons, commas or bars. Any other DataFrame is a table of numbers. Costs may be
+    infinite, and empty on the diagonal.
 
     Raises:
-        ValueError: A column is missing, or a cell does not fit its column; the message names it.
+        ValueError: A column is missing, or a cell does not fit its column; the message names it. Or
+            points have no coordinate reference system, or none that is one of the earth.
     """
     if isinstance(value, Mapping):
         return {key: without_frames(each, key) for key, each in value.items()}
@@ -66,13 +69,9 @@ def _as_floats(cells: NDArray[Any]) -> NDArray[np.float64]:
 
 def _stops(frame: Any) -> list[dict[str, Any]]:
     ids = _ids(_column(frame, _IDS))
-    longitudes, latitudes = (
-        [_number(cell, where) for where, cell in _column(frame, names)]
-        for names in (_LONGITUDES, _LATITUDES)
-    )
+    locations = _points(frame) if hasattr(frame, "to_crs") else _places(frame)
     stops: list[dict[str, Any]] = [
-        {"id": id_, "location": [longitude, latitude]}
-        for id_, longitude, latitude in zip(ids, longitudes, latitudes, strict=True)
+        {"id": id_, "location": location} for id_, location in zip(ids, locations, strict=True)
     ]
     for name in _OF_FLEETS:
         for stop, (where, cell) in zip(stops, _column(frame, (name,), needed=False), strict=False):
@@ -80,6 +79,39 @@ def _stops(frame: Any) -> list[dict[str, Any]]:
                 stop[name] = _of_fleet(name, cell, where)
     _add_vehicles(stops, _column(frame, ("vehicle",), needed=False))
     return stops
+
+
+def _places(frame: Any) -> list[list[float]]:
+    """Return longitude and latitude from the columns that hold them."""
+    longitudes, latitudes = (
+        [_number(cell, where) for where, cell in _column(frame, names)]
+        for names in (_LONGITUDES, _LATITUDES)
+    )
+    return [list(place) for place in zip(longitudes, latitudes, strict=True)]
+
+
+def _points(frame: Any) -> list[list[float]]:
+    """Return longitude and latitude of the points of a GeoDataFrame."""
+    geometry = getattr(frame, "geometry", None)
+    if geometry is None:
+        raise ValueError("stops must have a column of points as their geometry, got none")
+    if geometry.crs is None:
+        raise ValueError(
+            "stops must have a coordinate reference system, got none; for degrees: set_crs(4326)"
+        )
+    rows = [f"stops: row {row!r}, column {geometry.name!r}" for row in _labels(frame)]
+    for where, point in zip(rows, geometry, strict=True):
+        if getattr(point, "geom_type", None) != "Point" or point.is_empty:
+            raise _wrong(where, "a point", point)
+    try:
+        in_degrees = geometry.to_crs(_DEGREES)
+    except RuntimeError as error:  # of pyproj
+        demand = f"in a coordinate reference system that can become EPSG:{_DEGREES}"
+        raise ValueError(f"stops must be {demand}, got {geometry.crs.name}: {error}") from None
+    return [
+        [_number(point.x, where), _number(point.y, where)]
+        for where, point in zip(rows, in_degrees, strict=True)
+    ]
 
 
 def _add_vehicles(stops: list[dict[str, Any]], cells: _Cells) -> None:
