@@ -25,7 +25,7 @@ from pydantic import (
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.actor_info import RELEASED
-from service.api.auth import KeyHash
+from service.api.keys import KeyHash
 from service.api.site.tiles import checked_template
 from service.api.transport.proxies import MOST_LETTERS, ROOT_PATH
 from service.jobs.store import STORE_BYTES

@@ -1,21 +1,16 @@
 """Authentication by API keys, and a rate limit for each caller.
 
-A key is 256 random bits. The settings hold only its SHA-256, which needs no salt because 256 random
-bits cannot be guessed. Without keys everybody may call, and all are one caller: whoever knows the
-id of a front can read it. Each address then has its own rate and its own latest front.
+Without keys everybody may call, and all are one caller: whoever knows the id of a front can read
+it. Each address then has its own rate and its own latest front.
 """
 
-import hashlib
 import logging
 import math
-import re
-import secrets
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from hmac import compare_digest
 from importlib.util import find_spec
-from typing import Self
 
 from fastapi import Depends, Security
 from fastapi.params import Depends as Dependency
@@ -26,44 +21,15 @@ from limits.aio.strategies import MovingWindowRateLimiter, SlidingWindowCounterR
 from limits.errors import StorageError
 from starlette.requests import Request
 
+from service.api.keys import KeyHash, digest_of
 from service.api.middleware import ANONYMOUS, ANSWER_HEADERS, RawHeaders
 from service.api.transport.connections import network_of
 from service.errors import Refusal
 
 _REDIS_SECONDS = 0.5  # the longest that a request waits for Redis
 _POLICY = "default"  # the name of the one policy that there is
-_NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _LOG = logging.getLogger("paretour")
 _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
-
-
-@dataclass(frozen=True, kw_only=True)
-class KeyHash:
-    """The name of a caller and the SHA-256 of one of its keys, in hexadecimal.
-
-    Errors do not show the values: one may be a key, written in the wrong place.
-    """
-
-    caller: str
-    digest: str
-
-    def __post_init__(self) -> None:
-        if not _NAME.fullmatch(self.caller):
-            raise ValueError("a caller must be named by 1 to 64 letters, digits, dots, dashes")
-        if len(self.digest) != 64 or not set(self.digest) <= set("0123456789abcdef"):
-            raise ValueError("the hash after CALLER: must be 64 hexadecimal digits")
-
-    @classmethod
-    def read(cls, text: str) -> Self:
-        """Return the hash written as CALLER:DIGEST."""
-        caller, _, digest = text.partition(":")
-        return cls(caller=caller, digest=digest)
-
-
-def new_key() -> tuple[str, str]:
-    """Return a new key, which the caller gets, and its hash, which the settings get."""
-    key = secrets.token_urlsafe(32)
-    return key, _digest(key)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,7 +156,7 @@ class Access:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")
         if scheme.lower() != "bearer":
             raise _unauthorized("an API key is needed, as Authorization: Bearer KEY, and none came")
-        digest = _digest(key.strip())
+        digest = digest_of(key.strip())
         # All hashes are compared, so that the time taken does not tell how near a guess was.
         matches = [hash_.caller for hash_ in self._keys if compare_digest(hash_.digest, digest)]
         if not matches:
@@ -210,10 +176,6 @@ def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:
         socket_connect_timeout=_REDIS_SECONDS,
         socket_timeout=_REDIS_SECONDS,
     )
-
-
-def _digest(key: str) -> str:
-    return hashlib.sha256(key.encode()).hexdigest()
 
 
 def _unauthorized(reason: str) -> Refusal:

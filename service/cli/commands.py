@@ -266,7 +266,7 @@ def key(
     caller: Annotated[str, Argument(help="The name of the caller who will use the key.")],
 ) -> None:
     """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
-    from service.api.auth import KeyHash, new_key
+    from service.api.keys import KeyHash, new_key
     from service.cli.errors import UsageError, exit_on_error
 
     made, digest = new_key()

@@ -8,7 +8,8 @@ import httpx
 import pytest
 
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, Rates, new_key
+from service.api.auth import Access, Rates
+from service.api.keys import KeyHash, new_key
 from tests.helpers.command import paretour
 from tests.helpers.processes import serve_process
 from tests.helpers.redis_server import redis_server

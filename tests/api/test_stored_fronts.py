@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.api.auth import Access
+from service.api.keys import KeyHash, new_key
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.serving import app_of, problem, serving
 

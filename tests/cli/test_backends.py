@@ -20,7 +20,8 @@ from rich.console import Console
 
 from service.actor import load_actors
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.api.auth import Access
+from service.api.keys import KeyHash, new_key
 from service.cli.backends import LocalBackend, RemoteBackend
 from service.cli.errors import UsageError
 from service.cli.progress import LOADING

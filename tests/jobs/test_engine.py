@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.api.auth import Access
+from service.api.keys import KeyHash, new_key
 from tests.helpers.actors import Broken, Shuffler
 from tests.helpers.engines import Clustered, Embedded, engine_of
 from tests.helpers.fleet_requests import fleet_request

@@ -17,7 +17,8 @@ from mcp.client.streamable_http import streamable_http_client
 from mcp.shared._httpx_utils import create_mcp_http_client
 
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.api.auth import Access
+from service.api.keys import KeyHash, new_key
 from service.requests.limits import Limits
 from tests.helpers.command import ROOT, paretour
 from tests.helpers.serving import app_of, problem, serving

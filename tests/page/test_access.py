@@ -5,7 +5,8 @@ from pathlib import Path
 from playwright.sync_api import Browser, expect
 
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.api.auth import Access
+from service.api.keys import KeyHash, new_key
 from service.settings import Settings
 from tests.helpers.browsing import needs_chromium, open_page, wait_until_planned
 from tests.helpers.serving import app_of, runner_of, serving, workers_of

@@ -8,7 +8,8 @@ import pytest
 from playwright.sync_api import Browser, Page, Route, expect
 
 from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.api.auth import Access
+from service.api.keys import KeyHash, new_key
 from service.settings import Settings
 from tests.helpers.browsing import (
     Held,
