@@ -4,11 +4,10 @@ import json
 import logging
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 
 import httpx
 import pytest
@@ -16,6 +15,7 @@ from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
 from service.telemetry import PlainFormatter, logging_every, trace
+from tests.helpers.http_handler import serving_handler
 from tests.helpers.processes import serve_process
 
 
@@ -66,14 +66,8 @@ def collector() -> Iterator[tuple[str, list[ExportTraceServiceRequest]]]:
         def log_message(self, *_: object) -> None:
             """Not to standard error."""
 
-    with ThreadingHTTPServer(("127.0.0.1", 0), Collect) as server:
-        thread = threading.Thread(target=server.serve_forever)
-        thread.start()
-        try:
-            yield f"http://127.0.0.1:{server.server_port}", received
-        finally:
-            server.shutdown()
-            thread.join()
+    with serving_handler(Collect) as url:
+        yield url, received
 
 
 def test_each_request_is_a_span_at_the_collector() -> None:

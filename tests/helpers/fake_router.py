@@ -6,12 +6,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tests.helpers.http_handler import serving_handler
 
 Array = NDArray[np.float64]
 Location = tuple[float, float]
@@ -146,17 +148,8 @@ def fake_osrm(
 ) -> Iterator[FakeOsrm]:
     """Serve on a port of its own until the block ends."""
     fake = FakeOsrm(misbehave=misbehave, most_pairs=most_pairs)
-    server = ThreadingHTTPServer(("127.0.0.1", 0), _handler_of(fake))
-    server.daemon_threads = True
-    fake.url = f"http://127.0.0.1:{server.server_port}"
-    thread = threading.Thread(target=server.serve_forever, args=[0.02])
-    thread.start()
-    try:
+    with serving_handler(_handler_of(fake)) as fake.url:
         yield fake
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
 
 
 def _handler_of(fake: FakeOsrm) -> type[BaseHTTPRequestHandler]:

@@ -1,16 +1,16 @@
 """A small server that answers as a Valhalla with historical traffic, on the fake OSRM's island."""
 
 import json
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from typing import Any
 
 import numpy as np
 
 from tests.helpers.fake_router import Array, road_costs, snapped
+from tests.helpers.http_handler import serving_handler
 
 RUSH = range(7, 9)  # hours of the day
 SLOWER = 1.8  # in these hours
@@ -70,14 +70,5 @@ def fake_traffic() -> Iterator[FakeTraffic]:
         def log_message(self, *_: object) -> None:
             pass
 
-    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    server.daemon_threads = True
-    fake.url = f"http://127.0.0.1:{server.server_port}"
-    thread = threading.Thread(target=server.serve_forever, args=[0.02])
-    thread.start()
-    try:
+    with serving_handler(Handler) as fake.url:
         yield fake
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
