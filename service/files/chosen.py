@@ -1,6 +1,6 @@
 """Take columns of tables for what a person has chosen, in place of what their names say."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Annotated
 
@@ -8,7 +8,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from service.errors import Refusal
 from service.errors.printable import printable
-from service.files.reading import NamedFile, Source, quoted
+from service.files.reading import LONGEST_NAME, NamedFile, Source, quoted
 from service.files.tables import Table
 from service.requests.fields import StrictModel, Text
 
@@ -20,7 +20,7 @@ class ChosenColumn(StrictModel):
     """A column of a file, and the field that it is taken for, or `ignored`."""
 
     file: Text
-    name: Annotated[str, Field(max_length=200)]
+    name: Annotated[str, Field(max_length=LONGEST_NAME)]
     taken_for: Text
 
 
@@ -64,16 +64,18 @@ def without_ignored(source: Source, table: Table, fields: Collection[str]) -> Ta
     heading = table.heading or []
     if heading:
         source.choices.extend([*fields, IGNORED])
+    known = [each[:LONGEST_NAME] for each in heading]
     for name, field in source.file.chosen.items():
-        if name[:200] not in [each[:200] for each in heading]:
+        if name not in known:
             raise source.refusal("has no column of the name that was chosen", name)
         if field not in (*fields, IGNORED):
             demand = f"column {quoted(name)} must be taken for {', '.join(fields)} or {IGNORED}"
             raise source.refusal(demand, field)
-    ignored = {at: name for at, name in enumerate(heading) if _is(source.file, name, IGNORED)}
+    chosen = chosen_fields(source.file, heading)
+    ignored = {at: heading[at] for at, each in enumerate(chosen) if each == IGNORED}
     if not ignored:
         return table
-    kept = [at for at in range(len(heading)) if at not in ignored]
+    kept = [at for at, each in enumerate(chosen) if each != IGNORED]
     if not kept:
         raise source.refusal("must have a column that is not ignored")
     return Table(
@@ -83,11 +85,6 @@ def without_ignored(source: Source, table: Table, fields: Collection[str]) -> Ta
     )
 
 
-def _is(file: NamedFile, name: str, field: str) -> bool:
-    return file.chosen.get(name[:200]) == field
-
-
 def chosen_fields(file: NamedFile, heading: Sequence[str]) -> list[str | None]:
     """Return the field that each column of a heading was chosen for, or None."""
-    chosen: Mapping[str, str] = file.chosen
-    return [chosen.get(name[:200]) for name in heading]
+    return [file.chosen.get(name[:LONGEST_NAME]) for name in heading]

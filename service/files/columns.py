@@ -10,7 +10,7 @@ from service.files.column_names import (
     best_fields,
     fields_of,
 )
-from service.files.reading import Column, Source, UnreadableFile, quoted
+from service.files.reading import LONGEST_NAME, Column, Source, UnreadableFile, quoted
 from service.files.tables import Table, number_in, plain_numbers
 
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
@@ -38,7 +38,7 @@ class Columns:
 
     def is_chosen(self, column: int) -> bool:
         """Return whether a person has chosen the field of a column."""
-        return self.names[column][:200] in self.source.file.chosen
+        return self.names[column][:LONGEST_NAME] in self.source.file.chosen
 
     def text(self, row: int, column: int) -> str:
         """Return a field."""
@@ -101,26 +101,24 @@ class Columns:
         """Return whether all fields of a column are numbers."""
         return all(number_in(row[column]) is not None for _, row in self.table.rows)
 
-    def _pairs(self) -> list[tuple[str, str | None]]:
-        """Return the names of all columns in the file, with the field of each."""
-        pairs = list(zip(self.names, self.fields, strict=True))
-        for at, name in sorted(self.table.ignored.items()):
-            pairs.insert(at, (name, None))
-        return pairs
-
     def listed(self) -> list[Column]:
-        """Return what each column is taken for; none without a heading."""
-        pairs = [] if self.table.heading is None else self._pairs()
-        return [Column(self.source.name, name[:200], each or IGNORED) for name, each in pairs]
+        """Return what each column in the file is taken for; none without a heading."""
+        if self.table.heading is None:
+            return []
+        pairs = [(n, field or IGNORED) for n, field in zip(self.names, self.fields, strict=True)]
+        for at, name in sorted(self.table.ignored.items()):
+            pairs.insert(at, (name, IGNORED))
+        return [Column(self.source.name, name[:LONGEST_NAME], field) for name, field in pairs]
 
     def report(self) -> None:
         """If there is a heading, note what each column is taken for."""
         if self.table.heading is None:
             return
-        pairs = self._pairs()
-        self.source.columns.extend(self.listed())
-        used = [f"{quoted(name)} ({each})" for name, each in pairs if each is not None]
-        unused = [quoted(name) for name, each in pairs if each is None]
+        listed = self.listed()
+        self.source.columns.extend(listed)
+        pairs = [(each.name, each.taken_for) for each in listed]
+        used = [f"{quoted(name)} ({field})" for name, field in pairs if field != IGNORED]
+        unused = [quoted(name) for name, field in pairs if field == IGNORED]
         not_used = f" Not used: {', '.join(unused)}." if unused else ""
         self.source.note("columns", f"Columns were taken for: {', '.join(used)}.{not_used}"[:1000])
 

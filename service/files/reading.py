@@ -11,6 +11,7 @@ Kind = Literal["front", "fleet", "coverage"]
 Request = dict[str, Any]
 _PICTURES = (b"\x89PNG", b"P5", b"P2")
 _PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
+LONGEST_NAME = 200  # characters of the name of a column by which it is known
 _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
 
 

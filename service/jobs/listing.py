@@ -39,7 +39,7 @@ class ListedFront:
         id: str,  # noqa: A002
         status: Status,
     ) -> Self:
-        """Return what a list says of a front that was stored so many seconds after 1970."""
+        """Return what a list says of a front that was stored at a time, in seconds since 1970."""
         return cls(
             number=number,
             stored_at=datetime.fromtimestamp(stored_at, UTC),

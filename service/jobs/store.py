@@ -62,7 +62,7 @@ class Store(Protocol):
             caller: The name of the API key.
             client: The caller or, without keys, an address.
             below: Only those with a number below this.
-            most: At most so many.
+            most: The most records to return.
         """
 
     async def delete(self, record: Record) -> None:

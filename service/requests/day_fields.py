@@ -57,6 +57,32 @@ class TrafficItem(StrictModel):
         " times that the engine knows for it",
     )
 
+    def source(self, part: str, n: int) -> Traffic:
+        """Return the source of the costs between n stops.
+
+        Raises:
+            Refusal: The date is none, or the times are out of order, no minutes, or too many.
+        """
+        _check_times(f"{part}/at", [f"{k}" for k in range(len(self.begins))], self.begins)
+        for k, seconds in enumerate(self.begins):
+            if seconds % 60:
+                raise invalid(f"{part}/at/{k}", f"must be a whole minute, got {seconds:g}")
+        most = max(1, _MOST_TIMES // n**2)
+        if len(self.begins) > most:
+            demand = f"must have at most {most} times for {n} stops"
+            raise invalid(f"{part}/at", f"{demand}, got {len(self.begins)}")
+        return Traffic(self._date(f"{part}/date"), tuple(self.begins))
+
+    def _date(self, part: str) -> str:
+        try:
+            found = date.fromisoformat(self.day)
+        except ValueError:
+            demand = f"must be a date, as 2026-11-27, got {show(self.day)}"
+            raise invalid(part, demand) from None
+        if not _YEARS[0] <= found.year <= _YEARS[1]:
+            raise invalid(part, f"must be of the years {_YEARS[0]} to {_YEARS[1]}, got {found}")
+        return found.isoformat()
+
 
 class DepartureRange(StrictModel):
     """When a tour may begin."""
@@ -121,37 +147,13 @@ class DayObjectiveItem(ObjectiveItem):
         if self.sources == ["slices"]:
             return self._slices(part, len(stops))
         base = self.fixed_source(part, stops)
-        if self.traffic is not None and isinstance(base, Measured):
-            return self._traffic(part, len(stops))
-        return self.over(part, base)
-
-    def _traffic(self, part: str, n: int) -> Traffic:
-        assert self.traffic is not None
-        part, begins = f"{part}/traffic", self.traffic.begins
-        if self.measure != "road_time":
-            raise invalid(part, f"needs from road_time, got {self.measure}")
+        if self.traffic is None or not isinstance(base, Measured):
+            return self.over(part, base)
+        if base.measure != "road_time":
+            raise invalid(f"{part}/traffic", f"needs from road_time, got {base.measure}")
         if self.over_the_day:
-            raise invalid(part, "must not be given together with over_the_day")
-        _check_times(f"{part}/at", [f"{k}" for k in range(len(begins))], begins)
-        for k, seconds in enumerate(begins):
-            if seconds % 60:
-                raise invalid(f"{part}/at/{k}", f"must be a whole minute, got {seconds:g}")
-        most = max(1, _MOST_TIMES // n**2)
-        if len(begins) > most:
-            demand = f"must have at most {most} times for {n} stops"
-            raise invalid(f"{part}/at", f"{demand}, got {len(begins)}")
-        return Traffic(self._date(f"{part}/date"), tuple(begins))
-
-    def _date(self, part: str) -> str:
-        assert self.traffic is not None
-        try:
-            found = date.fromisoformat(self.traffic.day)
-        except ValueError:
-            demand = f"must be a date, as 2026-11-27, got {show(self.traffic.day)}"
-            raise invalid(part, demand) from None
-        if not _YEARS[0] <= found.year <= _YEARS[1]:
-            raise invalid(part, f"must be of the years {_YEARS[0]} to {_YEARS[1]}, got {found}")
-        return found.isoformat()
+            raise invalid(f"{part}/traffic", "must not be given together with over_the_day")
+        return self.traffic.source(f"{part}/traffic", len(stops))
 
     def over(self, part: str, base: FixedSource) -> Source:
         """Return a source with the factors of the day, if there are any."""

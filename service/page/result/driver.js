@@ -5,8 +5,10 @@ import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { clockOf } from "../fleet/times.js";
 import { clockUnit } from "../fleet/units.js";
+import { quoted } from "./exports.js";
+import { hoursOf } from "./hours.js";
 
-const TITLES = { vehicle: "vehicle", position: "position", stop: "stop", latitude: "latitude", longitude: "longitude", arrives: "arrives", load: "load" };
+const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", "arrives", "load"];
 
 /**
  * The routes of the selected tour or plan, each with a `name`, "" for that of a tour, and its `visits`: `stop`,
@@ -21,8 +23,8 @@ export function routesOf({ item, round, movers }, answer, asked) {
   const places = new Map(answer.stops?.map(({ id, location }) => [String(id), location]));
   const visit = (stop, arrives, load) => ({ stop: String(stop), place: places.get(String(stop)) ?? null, arrives, load });
   if (!movers) {
-    const said = timesOf([item.times ?? []], "s");
-    return [{ name: "", visits: round.map((stop, at) => visit(stop, said(item.times?.[at]), "")) }];
+    const hours = hoursOf(item);
+    return [{ name: "", visits: round.map((stop, at) => visit(stop, hours[at] ?? "", "")) }];
   }
   const names = namesOf(item.routes, movers, asked ?? {});
   const said = timesOf(item.routes.map(({ arrivals }) => arrivals ?? []), clockUnit(asked ?? {}));
@@ -41,20 +43,18 @@ function timesOf(rows, unit) {
   return (time) => (time === undefined ? "" : clock.said(time));
 }
 
-/** A row for each visit, with the columns of which something is known. */
+/** A row for each visit; columns that are empty in all rows are left out. */
 export function csvOfVisits(routes) {
   const rows = routes.flatMap(({ name, visits }) =>
     visits.map(({ stop, place, arrives, load }, at) => ({
       vehicle: name, position: at + 1, stop, latitude: place?.[1] ?? "", longitude: place?.[0] ?? "", arrives, load,
     })),
   );
-  const columns = Object.keys(TITLES).filter((column) => rows.some((row) => row[column] !== ""));
-  return [columns.map((column) => TITLES[column]), ...rows.map((row) => columns.map((column) => row[column]))]
-    .map((row) => `${row.map((field) => quoted(`${field}`)).join(",")}\n`)
+  const columns = COLUMNS.filter((column) => rows.some((row) => row[column] !== ""));
+  return [columns, ...rows.map((row) => columns.map((column) => row[column]))]
+    .map((row) => `${row.map((field) => quoted(`${field}`, /[,"\r\n]/)).join(",")}\n`)
     .join("");
 }
-
-const quoted = (text) => (/[,"\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
 /** Whether each stop has a place on the earth. */
 export const areLocated = (routes) => routes.every(({ visits }) => visits.every(({ place }) => place));

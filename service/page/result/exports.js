@@ -41,7 +41,7 @@ function csvOfPlans(plans, titles, { one, stops, by, through }) {
 const line = (row) => `${row.map((field) => quoted(`${field}`, /[,"]/)).join(",")}\n`;
 
 /** The text in quotation marks, if it has a character that would end it. */
-const quoted = (text, ending) => (ending.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+export const quoted = (text, ending) => (ending.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
 /** Lets the browser save a text, or a blob, as a file. */
 export function download(name, type, content) {
