@@ -1,4 +1,4 @@
-"""Plan in several processes: a crew of them, each of which plans one request after another.
+"""Plan in several processes: a crew of them. Each plans one request after another.
 
 `python -m service.library.crew LOCK` is such a process. It reads requests from its standard input
 and writes answers to its standard output, both pickled, and ends when its input does. Processes

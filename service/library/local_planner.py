@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from paretour import FrontOfAnyKind, Plan, Progress, Refused
+from paretour.bars import Display
 from paretour.kinds import parse_any
 
 from service.errors import Cancelled, Refusal
@@ -24,16 +24,6 @@ from service.settings import Settings
 
 if TYPE_CHECKING:
     from service.jobs.task_runner import TaskRunner
-
-
-class Display(Protocol):
-    """Shows how far a plan is."""
-
-    def loading(self) -> AbstractContextManager[Callable[[str], None]]:
-        """Say that the search is loaded; yields a function that says how far that is."""
-
-    def planning(self, seconds: float) -> AbstractContextManager[Callable[[Progress], None]]:
-        """Say that a front is planned; yields a function that shows progress."""
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,16 @@ from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
 from paretour.fronts import Objective
 from paretour.kinds import FrontOfAnyKind
-from paretour.library import plan, plan_coverage, plan_fleet, plan_robots, replan
+from paretour.library import (
+    InstanceFailed,
+    plan,
+    plan_coverage,
+    plan_fleet,
+    plan_many,
+    plan_robots,
+    replan,
+)
 from paretour.listing import ListedFront
-from paretour.many import InstanceFailed, plan_many
 from paretour.members import (
     CoverageRequest,
     FleetRequest,

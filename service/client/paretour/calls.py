@@ -266,7 +266,7 @@ class Calls:
         return answer.document
 
     def fronts(self, most: int = PAGE) -> Call[tuple[ListedFront, ...]]:
-        """Return what the service lists of your newest fronts, at most so many, the newest first.
+        """Return what the service lists of your `most` newest fronts, the newest first.
 
         They are those of your API key or, where the service has no keys, of your address.
         """

@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 from paretour.expect import count, each, members, number, text, unexpected
 from paretour.fronts import Objective
+from paretour.values import parse_objective
 
 PAGE = 100  # the most fronts that the service lists at once
 
@@ -47,7 +48,7 @@ def parse_listed(value: Any, where: str) -> ListedFront:
         cities=item.read("cities", count),
         points=item.read("points", count),
         hypervolume=item.read("hypervolume", number),
-        objectives=item.maybe("objectives", each(_objective)),
+        objectives=item.maybe("objectives", each(parse_objective)),
     )
 
 
@@ -72,8 +73,3 @@ def _time(value: Any, where: str) -> datetime:
         return datetime.fromisoformat(text(value, where))
     except ValueError:
         raise unexpected(where, "a time of RFC 3339", value) from None
-
-
-def _objective(value: Any, where: str) -> Objective:
-    objective = members(value, where)
-    return Objective(objective.read("name", text), objective.maybe("unit", text))

@@ -324,10 +324,11 @@ def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
 
 def objectives_of(answer: Members) -> tuple[Objective, ...] | None:
     """Return the objectives of an answer, where the request named them."""
-    return answer.maybe("objectives", each(_parse_objective))
+    return answer.maybe("objectives", each(parse_objective))
 
 
-def _parse_objective(value: Any, where: str) -> Objective:
+def parse_objective(value: Any, where: str) -> Objective:
+    """Read the name and the unit of an objective."""
     objective = members(value, where)
     return Objective(objective.read("name", text), objective.maybe("unit", text))
 
