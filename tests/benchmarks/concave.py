@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.optimize import NonlinearConstraint, minimize
 
-from tests.benchmarks.provenance import RESULTS, provenance, store
+from tests.benchmarks.provenance import RESULTS, picture, provenance, store
 
 Array = NDArray[np.float64]
 
@@ -124,4 +124,4 @@ def draw(found: Array, sums: Array) -> None:
     panel.plot(*sums.T, "s", color="#009e73", ms=9, label=f"{len(sums)} weighted sums")
     panel.set(xlabel="$f_1$", ylabel="$f_2$", xlim=(-0.03, 1.03), ylim=(-0.03, 1.03))
     panel.legend(loc="lower left")
-    figure.savefig(RESULTS / "concave.png", dpi=110)
+    figure.savefig(picture(RESULTS / "concave.png"), dpi=110)

@@ -11,7 +11,7 @@ from models.data.generators import drawn_map
 from service.coverage.grid import covering_places, free_cells, largest_region
 from service.coverage.survey import Coverage, Survey, survey
 from service.search.improve import improve
-from tests.benchmarks.provenance import PICTURES
+from tests.benchmarks.provenance import PICTURES, picture
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def draw() -> None:
         length, cost = front.points[index]
         panel.set_title(f"{name}: {length:.0f} m, risk {cost:.0f}")
     _draw_front(panels[2], front.points, marked)
-    figure.savefig(PICTURES / "coverage.png", dpi=130)
+    figure.savefig(picture(PICTURES / "coverage.png"), dpi=130)
 
 
 def _coverage(free: NDArray[np.bool_], risk: Array) -> Coverage:

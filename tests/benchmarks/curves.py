@@ -24,8 +24,9 @@ from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.pareto_local_search import bisection_order
 from service.search.warm_up import warm_up
+from tests.benchmarks import provenance as of_run
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points
-from tests.benchmarks.provenance import PICTURES, load, provenance, store
+from tests.benchmarks.provenance import PICTURES, load, picture, provenance, store
 from tests.benchmarks.rivals import fast_tsp_weights, ortools_routing
 from tests.benchmarks.rivals.construction import distances, spread_weights
 from tests.benchmarks.rivals.evolutionary import Snapshots, moead, nsga2
@@ -57,7 +58,6 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--cities", type=int, nargs="+", choices=SIZES, default=SIZES)
     parser.add_argument("--count", type=int, default=5, help="instances of each size")
     parser.add_argument("--methods", nargs="+", choices=STYLES, default=list(STYLES))
-    parser.add_argument("--fresh", action="store_true", help="measure these methods again")
     options = parser.parse_args(arguments)
     results = load("curves")
     methods = _methods()
@@ -65,8 +65,6 @@ def main(arguments: list[str]) -> None:
     for n in options.cities:
         instances = [Instance(coordinates=x) for x in paper_instances(n, options.count)]
         for name in options.methods:
-            if options.fresh:
-                results.pop(f"{n} {name}", None)
             _resume(results, f"{n} {name}", instances, methods[name])
     _print_table(results)
     draw(results)
@@ -121,7 +119,9 @@ def weighted_sums(instance: Instance, solve: Callable[[Array], NDArray[np.int64]
 
 
 def _resume(results: dict[str, Any], key: str, instances: list[Instance], method: Method) -> None:
-    """Measures the instances that have no result yet, storing after each."""
+    """Measures the instances that have no result yet, or all with `--again`, storing after each."""
+    if of_run.RUN.again:
+        results.pop(key, None)
     entry = results.setdefault(key, {**provenance(1), "instances": []})
     done = len(entry["instances"])
     for instance in tqdm(instances[done:], desc=key, leave=False):
@@ -174,7 +174,7 @@ def draw(results: dict[str, Any]) -> None:
         _draw_panel(panel, n, _of_size(results, n))
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
-    figure.savefig(PICTURES / "curves.png", dpi=130)
+    figure.savefig(picture(PICTURES / "curves.png"), dpi=130)
 
 
 def _draw_panel(panel: Axes, n: int, methods: dict[str, list[dict[str, Any]]]) -> None:

@@ -18,7 +18,7 @@ from service.search.best_subset import best_subset
 from service.search.improve import improve
 from tests.benchmarks.instances import paper_instances
 from tests.benchmarks.methods import methods
-from tests.benchmarks.provenance import RESULTS, load
+from tests.benchmarks.provenance import RESULTS, load, picture
 from tests.benchmarks.rows import TOURS, Method, Points, resume
 
 SIZES = (40, 500)
@@ -72,7 +72,7 @@ def draw(stored: dict[str, Any]) -> None:
         _draw_panel(panel, n, stored)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
-    figure.savefig(RESULTS / "fronts.png", dpi=110)
+    figure.savefig(picture(RESULTS / "fronts.png"), dpi=110)
 
 
 def _draw_panel(panel: Axes, n: int, stored: dict[str, Any]) -> None:

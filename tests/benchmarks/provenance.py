@@ -2,6 +2,7 @@
 
 import json
 import platform
+import shutil
 import subprocess
 from collections.abc import Iterator
 from datetime import UTC, datetime
@@ -11,9 +12,11 @@ from typing import Any, NamedTuple
 RESULTS = Path(__file__).parent / "results"
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "service/guide/pictures"
+ANEW = ROOT / "runs/benchmarks"  # where a run writes that does not store: git ignores it
 
 _EXTENTS = ("instances", "minutes", "visitors", "frames", "rounds")  # of how much was measured
 _OCCURRED = ("statuses", "answers", "tracebacks", "long_bodies")  # counts of what came up
+_NOTES = ("measured_at",)  # on a commit
 _MADE = (
     ":!tests/benchmarks/results",
     ":!tests/benchmarks/RESULTS.md",
@@ -28,6 +31,19 @@ class Unstored(NamedTuple):
     reason: str
 
 
+class Run(NamedTuple):
+    """Whether a run measures rows that are stored, and whether it writes tracked files."""
+
+    again: bool = False
+    stores: bool = True
+
+    @property
+    def folder(self) -> Path:
+        """Where results are read and written."""
+        return RESULTS if self.stores else ANEW
+
+
+RUN = Run()  # of this process; the command sets it
 UNSTORED: dict[str, Unstored] = {}  # by benchmark, of this process
 
 
@@ -48,10 +64,26 @@ def changed_files() -> list[str]:
 
 
 def load(name: str) -> dict[str, Any]:
-    """Return the stored results of a benchmark: an empty dictionary if it has not run."""
-    path = RESULTS / f"{name}.json"
+    """Return the results of a benchmark in the run's folder, an empty dictionary without any."""
+    path = RUN.folder / f"{name}.json"
     stored: dict[str, Any] = json.loads(path.read_text()) if path.exists() else {}
     return stored
+
+
+def begin(run: Run) -> None:
+    """Begin a run; results that an earlier run left in `ANEW` are removed."""
+    global RUN
+    RUN = run
+    if not run.stores:
+        shutil.rmtree(ANEW, ignore_errors=True)
+
+
+def picture(path: Path) -> Path:
+    """Return where a run draws a picture whose tracked file has this path."""
+    if RUN.stores:
+        return path
+    ANEW.mkdir(parents=True, exist_ok=True)
+    return ANEW / path.name
 
 
 def store(name: str, results: dict[str, Any], partial: str = "") -> None:
@@ -59,6 +91,7 @@ def store(name: str, results: dict[str, Any], partial: str = "") -> None:
 
     They are not written where the code was not that of a commit, nor where they lack something
     that is stored: a row, an instance, a minute. Then the rows that differ go into `UNSTORED`.
+    A run that does not store writes all of them, into `ANEW`.
 
     Args:
         name: The benchmark.
@@ -67,6 +100,7 @@ def store(name: str, results: dict[str, Any], partial: str = "") -> None:
     """
     stored = load(name)
     if results == stored:
+        UNSTORED.pop(name, None)
         return
     reason = _reason(stored, results, partial)
     if reason:
@@ -74,12 +108,14 @@ def store(name: str, results: dict[str, Any], partial: str = "") -> None:
         UNSTORED[name] = Unstored(rows, reason)
         return
     UNSTORED.pop(name, None)
-    RESULTS.mkdir(exist_ok=True)
-    (RESULTS / f"{name}.json").write_text(json.dumps(results, indent=2) + "\n")
+    RUN.folder.mkdir(parents=True, exist_ok=True)
+    (RUN.folder / f"{name}.json").write_text(json.dumps(results, indent=2) + "\n")
 
 
 def _reason(stored: dict[str, Any], results: dict[str, Any], partial: str) -> str:
     """Return why results are not stored, an empty string where they are."""
+    if not RUN.stores:
+        return ""
     if changed := changed_files():
         return f"the code is not that of a commit: {', '.join(changed[:3])} changed"
     if stored and partial:
@@ -94,7 +130,7 @@ def _lacking(stored: Any, new: Any, place: str = "") -> Iterator[str]:
     if isinstance(stored, dict) and isinstance(new, dict):
         for key, value in stored.items():
             inner = f"{place}/{key}"
-            if key in _OCCURRED:
+            if key in (*_OCCURRED, *_NOTES):
                 continue
             if key not in new:
                 yield inner

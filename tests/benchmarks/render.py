@@ -34,7 +34,8 @@ Printed seconds: {printed.HARDWARE}.
 Ours are of the processor, on one thread of the machines named below the table; a star marks those
 taken while other programs wanted the same processor, which makes them too long.
 
-`python -m tests.benchmarks tables` measures what is missing and writes this page.
+`python -m tests.benchmarks NAME` prints the stored rows, and `NAME --again` measures them anew.
+`python -m tests.benchmarks tables --store` measures what is missing and writes this page.
 """
 
 

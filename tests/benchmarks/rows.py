@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from service.instance import Instance
 from service.pareto import hypervolume
+from tests.benchmarks import provenance as of_run
 from tests.benchmarks.instances import reference_points
 from tests.benchmarks.provenance import load, provenance, store
 
@@ -47,12 +48,12 @@ def resume(
 ) -> None:
     """Measures the instances that have no result yet, storing after each.
 
-    Results of another network, known by its digest, are measured anew, and take the place of the
-    stored ones once they are as many. Beside the results it
+    With `--again`, and where they are of another network, known by its digest, all are measured,
+    and take the place of the stored ones once they are as many. Beside the results it
     stores where they come from, and how many programs wanted the processor when they began.
     """
     results = load(benchmark)
-    if results.get(key, {}).get("digest") != digest:
+    if of_run.RUN.again or results.get(key, {}).get("digest") != digest:
         busy = round(os.getloadavg()[0] / (os.cpu_count() or 1), 1)
         results[key] = {**provenance(1), "digest": digest, "busy": busy, "instances": []}
     entries = results[key]["instances"]

@@ -19,6 +19,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.warm_up import warm_up
+from tests.benchmarks import provenance as of_run
 from tests.benchmarks.instances import COUNT, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store
 from tests.benchmarks.rivals.construction import distances, spread_weights
@@ -40,14 +41,11 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--cities", type=int, nargs="+", choices=MARKS, default=list(MARKS))
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     parser.add_argument("--rivals", type=int, nargs="*", choices=MARKS, default=[40, 200])
-    parser.add_argument("--fresh", action="store_true", help="measure Paretour again")
     options = parser.parse_args(arguments)
     results = load("search")
     warm_up()
     for n in options.cities:
         instances = paper_instances(n, options.count)
-        if options.fresh:
-            results.pop(f"{n} Paretour", None)
         _resume(results, f"{n} Paretour", instances, paretour)
         if n in options.rivals:
             for name, limit in SOLUTION_LIMITS.items():
@@ -98,7 +96,9 @@ def _row(instance: Instance, tours: NDArray[np.integer], seconds: float) -> dict
 def _resume(
     results: dict[str, Any], key: str, instances: list[NDArray[np.float64]], measure: Any
 ) -> None:
-    """Measures the instances that have no result yet, storing after each."""
+    """Measures the instances that have no result yet, or all with `--again`, storing after each."""
+    if of_run.RUN.again:
+        results.pop(key, None)
     entry = results.setdefault(key, {**provenance(1), "instances": []})
     done = len(entry["instances"])
     for cities in tqdm(instances[done:], desc=key, leave=False):

@@ -1,8 +1,8 @@
-"""`python -m tests.benchmarks tables`: measure the rows that RESULTS.md is missing.
+"""`python -m tests.benchmarks tables --store`: measure the rows that RESULTS.md is missing.
 
-The page, RESULTS.md, is written anew after every benchmark; `--render` does nothing else. Every
-part stores what it measures and goes on where it stopped. The long rows of the main table take
-days over all instances: `--count` says how many instances a row gets at most.
+The page, RESULTS.md, is written after every benchmark that stores; `--store --render` does nothing
+else. Every part stores what it measures and goes on where it stopped. The long rows of the main
+table take days over all instances: `--count` says how many instances a row gets at most.
 """
 
 import argparse

@@ -31,7 +31,7 @@ def test_the_command_writes_the_page_of_other_results(
     where = {"cpu": "abacus", "date": "today", "commit": "none", "busy": 2.0}
     entry = {**where, "instances": [{"seconds": 1.5, "hypervolume": share}]}
     provenance.store("networks", {"40 PA-AT": entry})
-    monkeypatch.setattr(sys, "argv", ["benchmarks", "tables", "--render"])
+    monkeypatch.setattr(sys, "argv", ["benchmarks", "tables", "--store", "--render"])
     __main__.main()
     page = (tmp_path / "RESULTS.md").read_text()
     assert "| PA-AT | 74.18 | 70.00 | 60.00 | 2.6 | 1.5\\* | 1 |" in page

@@ -24,6 +24,7 @@ def results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of results."""
     monkeypatch.setattr(provenance, "RESULTS", tmp_path / "results")
     monkeypatch.setattr(provenance, "changed_files", list)
+    monkeypatch.setattr(provenance, "UNSTORED", {})
     return tmp_path / "results"
 
 
@@ -55,6 +56,17 @@ def test_results_of_another_network_are_measured_anew() -> None:
         resume("row", "5 cities", digest, INSTANCES, counted)
         assert counted.asked == asked
     assert provenance.load("row")["5 cities"]["digest"] == "other"
+
+
+def test_stored_results_are_measured_again_where_that_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    resume("row", "5 cities", "", INSTANCES, Counted())
+    monkeypatch.setattr(provenance, "RUN", provenance.Run(again=True))
+    again = Counted()
+    resume("row", "5 cities", "", INSTANCES, again)
+    assert again.asked == 4
+    assert not provenance.UNSTORED
 
 
 def small(name: str, preference_layers: int) -> TrainingConfig:
