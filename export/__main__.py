@@ -1,6 +1,7 @@
 """`python -m export CHECKPOINT`: write a trained actor as one ONNX file, with its card.
 
-The file is kept only if its greedy tours are those of the actor in torch.
+The file is written only if its greedy tours are those of the actor in torch. The command prints
+each step when it begins, with the seconds since the start.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from onnx import ModelProto, helper
 from export import pa_one, stepwise
 from export.card import card
 from export.check import compare, onnx_tours, session
+from export.progress import Progress
 from models.checkpoint import Trained, load_weights
 from models.config import as_plain
 from models.networks.actor import Actor
@@ -52,19 +54,27 @@ def main(arguments: list[str] | None = None) -> None:
         "--replace", action="store_true", help="write over a file, or take a released actor's name"
     )
     options = parser.parse_args(arguments)
+    progress = Progress()
+    progress.begin(f"reading {options.checkpoint}")
     trained = load_weights(options.checkpoint)
     name = options.name or trained.config.network.label
     out = options.out or OWN_ACTORS / f"{name}.onnx"
     if refusal := _refusal(name, out, options.replace):
         parser.error(refusal)
+    progress.begin(f"tracing a {trained.config.network.label} network of {trained.step} steps")
     model = to_onnx(trained.actor)
-    compare(trained.actor, model)
+    progress.begin("comparing the graph's tours with PyTorch's")
+    comparison = compare(trained.actor, model, report=progress.detail)
+    progress.begin(f"{comparison}; measuring the hypervolume on validation instances")
     describe(model, trained, name)
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_bytes(model.SerializeToString())
+    content = model.SerializeToString()
+    kilobytes = len(content) / 1000
+    progress.begin(f"writing {out}, {kilobytes:.0f} kB, and {out.with_suffix('.md').name}")
+    out.write_bytes(content)
     metadata = {entry.key: entry.value for entry in model.metadata_props}
     out.with_suffix(".md").write_text(card(name, str(options.checkpoint), trained, metadata))
-    print(f"{out}: tours equal torch's; hypervolume {metadata['figures']}")
+    progress.begin(f"done: hypervolume {metadata['figures']} by number of cities")
 
 
 def _refusal(name: str, out: Path, replace: bool) -> str | None:

@@ -8,7 +8,7 @@ import pytest
 from onnx import ModelProto, numpy_helper
 
 from export.__main__ import to_onnx
-from export.check import TourMismatch, compare
+from export.check import Comparison, TourMismatch, compare
 from models.checkpoint import load_weights
 from models.config import NAMES, NetworkConfig
 from models.networks.actor import Actor
@@ -35,7 +35,16 @@ def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
 
 def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
     # 130: more than two blocks
-    compare(*exported, sizes=(3, 130), counts=(1, 6), repairs=(0, 5))
+    actor, model = exported
+    compared = compare(actor, model, sizes=(3, 130), counts=(1, 6), repairs=(0, 5))
+    assert compared.tours >= 2 * (1 + 6) * (2 if actor.repairs_tours else 1)
+
+
+def test_a_comparison_says_how_many_tours_part_after_a_tie() -> None:
+    assert str(Comparison(4) + Comparison(3)) == "all 7 tours are the same"
+    assert str(Comparison(4, 1, 0.01) + Comparison(3, 1, 0.002)) == (
+        "5 of 7 tours are the same, and 2 part after a tie: their lengths differ by at most 1 %"
+    )
 
 
 @pytest.mark.parametrize("path", sorted(ACTORS.glob("*.onnx")), ids=lambda path: path.stem)

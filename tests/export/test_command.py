@@ -1,5 +1,6 @@
 """`python -m export`: an actor of one's own, and no released one lost."""
 
+import re
 from pathlib import Path
 
 import onnx
@@ -7,6 +8,7 @@ import pytest
 import torch
 
 import export.__main__ as command
+from export.check import Comparison
 from models.checkpoint import new_run, save_weights
 from models.config import NetworkConfig, TrainingConfig
 from service.actor import load_actors
@@ -19,12 +21,29 @@ def weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The weights of a run that was never trained, in a folder of its own, which is current."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "to_onnx", lambda _: onnx.load(command.RELEASED / "pa-one.onnx"))
-    monkeypatch.setattr(command, "compare", lambda *_: None)
+    monkeypatch.setattr(command, "compare", lambda *_, **__: Comparison(tours=3))
     monkeypatch.setattr(command, "_hypervolumes", lambda *_: {"40": 0.5})
     monkeypatch.setattr(command, "_commit", lambda: "none")
     path = tmp_path / "weights.pt"
     save_weights(new_run(TrainingConfig(network=SMALL), torch.device("cpu")), path)
     return path
+
+
+def test_each_step_is_printed_as_it_begins(
+    weights: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command.main([str(weights), "--name", "my-one"])
+    lines = capsys.readouterr().out.splitlines()
+    size = Path("runs/actors/my-one.onnx").stat().st_size
+    steps = [
+        f"reading {weights}",
+        "tracing a pa-one network of 0 steps",
+        "comparing the graph's tours with PyTorch's",
+        "all 3 tours are the same; measuring the hypervolume on validation instances",
+        f"writing runs/actors/my-one.onnx, {size / 1000:.0f} kB, and my-one.md",
+        'done: hypervolume {"40": 0.5} by number of cities',
+    ]
+    assert [re.sub(r"^ +\d+\.\d s  ", "", line) for line in lines] == steps
 
 
 def test_an_actor_of_ones_own_is_served_beside_those_released(weights: Path) -> None:
