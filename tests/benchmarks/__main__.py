@@ -96,7 +96,7 @@ def _run(name: str, arguments: list[str]) -> None:
         package = str(error.name).partition(".")[0]
         if package in _OURS:
             raise
-        sys.exit(f"{name} needs {package}: pip install -e '.[bench,train]'")
+        sys.exit(f"{name} needs {package}: pip install -e '.[bench,test]'")
     finally:
         for unstored_name, unstored in provenance.UNSTORED.items():
             print(json.dumps(unstored.rows, indent=2))

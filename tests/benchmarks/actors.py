@@ -1,4 +1,6 @@
-"""`python -m tests.benchmarks actors [NAME ...]`: the released actors on the paper's instances.
+"""`python -m tests.benchmarks actors [NAME ...]`: actors on the paper's instances.
+
+By default the released ones; with `--own FOLDER` actors of that folder may be named as well.
 
 For each: one inference call with 100 preferences an instance, the network alone and greedy; and
 where it can, the best 100 of the tours of a call with as many repairs as the service makes by
@@ -7,6 +9,7 @@ stores `results/actors.json`.
 """
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
 from functools import partial
@@ -32,6 +35,8 @@ from tests.benchmarks.rivals.construction import greedy_edge, nearest_neighbour,
 ACTORS = Path("service/actors")
 PREFERENCES = 100
 
+HEURISTICS = {"nearest neighbour": nearest_neighbour, "greedy edge": greedy_edge}
+
 Build = Callable[[Instance], NDArray[np.integer]]
 
 
@@ -39,20 +44,36 @@ def main(arguments: list[str]) -> None:
     """The command line."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks actors", description=__doc__)
     parser.add_argument("names", nargs="*", help="default: every released actor")
+    parser.add_argument("--own", type=Path, help="folder with further ONNX files")
+    parser.add_argument(
+        "--cities", dest="sizes", type=int, nargs="+", choices=SIZES, default=list(SIZES)
+    )
     parser.add_argument("--threads", type=int, default=2, help="of the inference session")
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
     warm_up()
     names = options.names or sorted(path.stem for path in ACTORS.glob("*.onnx"))
     rows: dict[str, dict[str, Any]] = {}
+    row_of = partial(_row, sizes=options.sizes, count=options.count)
     for name in names:
-        rows |= _actor_rows(name, options.threads, options.count)
-    rows |= {
-        "nearest neighbour": _heuristic_row(nearest_neighbour, options.count),
-        "greedy edge": _heuristic_row(greedy_edge, options.count),
-    }
+        actor = OnnxActor(_file_of(name, options.own), options.threads)
+        rows |= {
+            row: {"digest": actor.info.digest, **row_of(build)}
+            for row, build in _builders(actor).items()
+        }
+    for name, construct in HEURISTICS.items():
+        rows[name] = row_of(partial(construct, weights=spread_weights(PREFERENCES)))
     store("actors", {**provenance(options.threads), "preferences": PREFERENCES, "rows": rows})
-    _print_table(rows)
+    _print_table(rows, options.sizes)
+
+
+def _file_of(name: str, own: Path | None) -> Path:
+    """Return the file of an actor, a released one or one of the folder."""
+    files = [folder / f"{name}.onnx" for folder in (ACTORS, own) if folder is not None]
+    found = [path for path in files if path.exists()]
+    if not found:
+        sys.exit(f"there must be a file of {name}: {' or '.join(map(str, files))}")
+    return found[0]
 
 
 def measure(build: Build, n: int, count: int) -> dict[str, Any]:
@@ -76,19 +97,14 @@ def measure(build: Build, n: int, count: int) -> dict[str, Any]:
     }
 
 
-def _actor_rows(name: str, threads: int, count: int) -> dict[str, dict[str, Any]]:
-    actor = OnnxActor(ACTORS / f"{name}.onnx", threads)
+def _builders(actor: OnnxActor) -> dict[str, Build]:
+    """Return the rows of an actor: alone, and where it can repair, with its default repairs."""
     preferences = from_angles(fan(PREFERENCES))
+    name = actor.info.name
     builders: dict[str, Build] = {name: lambda instance: actor.tours(instance, preferences)}
     if actor.info.repairs:
         builders[f"{name}, repaired"] = partial(_repaired, actor)
-    return {
-        row: {
-            "digest": actor.info.digest,
-            **{str(n): measure(build, n, count) for n in SIZES},
-        }
-        for row, build in builders.items()
-    }
+    return builders
 
 
 def _repaired(actor: OnnxActor, instance: Instance) -> NDArray[np.integer]:
@@ -101,17 +117,16 @@ def _repaired(actor: OnnxActor, instance: Instance) -> NDArray[np.integer]:
     ).tours
 
 
-def _heuristic_row(construct: Callable[..., NDArray[np.int64]], count: int) -> dict[str, Any]:
-    weights = spread_weights(PREFERENCES)
-    return {str(n): measure(lambda instance: construct(instance, weights), n, count) for n in SIZES}
+def _row(build: Build, sizes: list[int], count: int) -> dict[str, Any]:
+    return {str(n): measure(build, n, count) for n in sizes}
 
 
 def _summary(values: list[float]) -> dict[str, float]:
     return {"mean": round(float(np.mean(values)), 4), "deviation": round(float(np.std(values)), 4)}
 
 
-def _print_table(rows: dict[str, dict[str, Any]]) -> None:
-    columns = [(n, name) for n in SIZES for name in reference_points(n)]
+def _print_table(rows: dict[str, dict[str, Any]], sizes: list[int]) -> None:
+    columns = [(n, name) for n in sizes for name in reference_points(n)]
     print("| | " + " | ".join(f"{n} cities, {name}" for n, name in columns) + " |")
     print("|---" * (len(columns) + 1) + "|")
     for row_name, row in rows.items():

@@ -100,7 +100,7 @@ def test_a_package_that_is_missing_is_named_with_what_installs_it(
     monkeypatch.setattr(sys, "argv", ["benchmarks", "soak", "--again"])
     with pytest.raises(SystemExit) as ended:
         __main__.main()
-    assert ended.value.code == "soak needs psutil: pip install -e '.[bench,train]'"
+    assert ended.value.code == "soak needs psutil: pip install -e '.[bench,test]'"
 
 
 def test_rows_that_are_not_stored_are_printed_with_the_reason(
