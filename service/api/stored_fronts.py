@@ -1,18 +1,14 @@
 """The routes that list, read, follow and forget fronts: `/front`, `/front/{id}`, `/tour`."""
 
-import asyncio
-from collections.abc import AsyncIterator, Mapping
-from dataclasses import asdict
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
-from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 from pydantic.json_schema import SkipJsonSchema
-from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
 from service.api.auth import caller_of, client_of
+from service.api.front_events import PARAMETERS, Seen, events_after
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.response_headers import LINK
@@ -27,7 +23,7 @@ from service.api.responses import (
     root_path_of,
 )
 from service.errors import Expired, NotFound, Refusal
-from service.jobs.engine import Engine, JobState
+from service.jobs.engine import Engine
 from service.jobs.listing import ListedFront
 from service.jobs.record import UNFINISHED, Record
 from service.jobs.store import Store
@@ -43,7 +39,6 @@ _MOST_LISTED = 100
 _LIMIT = "the most fronts of the answer"
 _AFTER = "where the page begins, as the `Link` of the page before says; by default at the newest"
 _LARGEST = 2**53  # above the numbers of all records, and exact in JSON
-_HEARTBEAT = 15.0  # seconds without an event, after which a comment shows that the stream is alive
 
 
 class StoredFrontRoutes:
@@ -77,7 +72,8 @@ class StoredFrontRoutes:
         router.get(
             "/front/{id}/events",
             response_class=StreamingResponse,
-            responses={200: stream, **missing},
+            responses={200: stream, 204: {"description": "Ended, as you know"}, **missing},
+            openapi_extra={"parameters": list(PARAMETERS)},
         )(self.follow_front)
         router.get(
             "/tour",
@@ -128,10 +124,18 @@ class StoredFrontRoutes:
         return json_bytes(record_under(root_path_of(request.scope), cancelled).json())
 
     async def follow_front(self, request: Request, id: str) -> Response:  # noqa: A002
-        """Send the progress of a front as events, until it is finished."""
-        states = self._engine.watch(await self._record(request, id))
+        """Send the progress of a front as events, until it is finished.
+
+        With `Last-Event-ID` the events go on after that one. Once a client knows that the front is
+        finished, the answer is 204, at which browsers connect no more.
+        """
+        record = await self._record(request, id)
+        seen = Seen.read(request.headers.get("last-event-id"))
+        if seen.has_end(record):
+            return Response(status_code=204)
+        events = events_after(self._engine.watch(record), seen)
         headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-        return StreamingResponse(_events(states), media_type="text/event-stream", headers=headers)
+        return StreamingResponse(events, media_type="text/event-stream", headers=headers)
 
     async def get_tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
         """Return one tour of a front: at an angle or balance, by weights or budgets, or a knee."""
@@ -187,34 +191,3 @@ async def find_record(store: Store, request: Request, id: str | None) -> Record:
     except Expired:
         name = "the latest" if id is None else repr(id[:80])
         raise Refusal("front-expired", front=name) from None
-
-
-async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
-    """Yield the states of a job as server-sent events, until it is finished."""
-    status, progress, compiling = None, None, None
-    coming = asyncio.ensure_future(anext(states, None))
-    try:
-        while True:
-            done, _ = await asyncio.wait([coming], timeout=_HEARTBEAT)
-            if not done:
-                yield KEEPALIVE_COMMENT
-                continue
-            if (state := coming.result()) is None:
-                return
-            coming = asyncio.ensure_future(anext(states, None))
-            # Progress first: the status may end the stream.
-            if state.progress is not None and state.progress is not progress:
-                progress = state.progress
-                yield _event("progress", asdict(progress))
-            if state.compiling is not None and state.compiling is not compiling:
-                compiling = state.compiling
-                yield _event("compiling", asdict(compiling))
-            if state.record.status != status:
-                status = state.record.status
-                yield _event("status", {"id": state.record.id, "status": status})
-    finally:
-        coming.cancel()
-
-
-def _event(name: str, data: Mapping[str, object]) -> bytes:
-    return format_sse_event(event=name, data_str=to_json(data).decode())

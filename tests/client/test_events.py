@@ -18,6 +18,22 @@ def test_progress_outlives_connections_that_break(connect: Connect) -> None:
     assert [item.hypervolume for item in job.progress()] == [0.3, 0.4]
 
 
+@pytest.mark.parametrize(
+    ("name", "sent"),
+    [("running.0a.", "running.0a."), ("é", None), ("\x01", None), ("x" * 999, None)],
+)
+def test_a_stream_that_broke_goes_on_after_its_last_event(
+    connect: Connect, name: str, sent: str | None
+) -> None:
+    text = f'id: {name}\nevent: status\ndata: {{"status": "running"}}\n\n'
+    broken = httpx.Response(200, text=text, headers={"Content-Type": "text/event-stream"})
+    service = Answers(broken, events(status("done")))
+    assert list(connect(transport=service).job("f").progress()) == []
+    first, second = (request.headers for request in service.requests)
+    assert "last-event-id" not in first
+    assert second.get("last-event-id") == sent
+
+
 def test_progress_of_what_is_gone_for_good_is_refused(connect: Connect) -> None:
     with pytest.raises(Refused):
         list(connect(transport=Answers(problem(404, "unknown-front"))).job("f").progress())

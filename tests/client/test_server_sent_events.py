@@ -14,7 +14,7 @@ CASES = [
     ("and one alone", b"data:  test\n\n", [("message", " test")]),
     ("colons in a value", b"data: a: b\n\n", [("message", "a: b")]),
     ("comments", b": heartbeat\n\n:\ndata: x\n: y\n\n", [("message", "x")]),
-    ("fields that are skipped", b"id: 7\nretry: 9\nfoo: y\nfoo\ndata: x\n\n", [("message", "x")]),
+    ("fields that are skipped", b"retry: 9\nfoo: y\nfoo\ndata: x\n\n", [("message", "x")]),
     ("names have a case", b"DATA: y\ndata: x\n\n", [("message", "x")]),
     ("without data, no event", b"event: a\n\ndata: x\n\n", [("message", "x")]),
     ("several blank lines", b"data: x\n\n\n\ndata: y\n\n", [("message", "x"), ("message", "y")]),
@@ -42,6 +42,14 @@ def test_a_stream_is_read_alike_however_it_is_split(
     chunks = [stream[at : at + size] for at in range(0, len(stream), size)]
     events = [event for chunk in chunks for event in parser.feed(chunk)]
     assert events == [ServerSentEvent(*pair) for pair in expected]
+
+
+def test_an_event_has_the_last_id_of_its_stream() -> None:
+    stream = b"id: 7\ndata: a\n\ndata: b\n\nid: 8\0\ndata: c\n\nid: 9\n\ndata: d\n\nid\ndata: e\n\n"
+    events = EventParser().feed(stream)
+    assert [(event.data, event.id) for event in events] == [
+        *(("a", "7"), ("b", "7"), ("c", "7"), ("d", "9"), ("e", "")),
+    ]
 
 
 def test_an_event_is_given_as_soon_as_its_line_ends() -> None:

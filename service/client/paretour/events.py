@@ -11,6 +11,7 @@ from paretour.server_sent_events import EventParser, ServerSentEvent
 from paretour.values import FINAL_STATUSES, Progress
 
 HEARTBEAT_SECONDS = 15.0  # between two signs of life from the service
+_LONGEST_ID = 200  # characters of an event's id that is sent back
 _RECONNECT_SECONDS = 1.0  # before connecting again after a connection broke
 
 
@@ -41,9 +42,17 @@ class JobEvents:
                 "Accept": "text/event-stream",
                 "Accept-Encoding": "identity",
                 "Cache-Control": "no-store",
+                **self._resuming,
             },
             "timeout": httpx.Timeout(self.timeout, read=self.timeout + HEARTBEAT_SECONDS),
         }
+
+    @property
+    def _resuming(self) -> dict[str, str]:
+        """The header with which the events go on after the last, if it has an id to send."""
+        id_ = "" if self._last is None else self._last.id
+        sent = 0 < len(id_) <= _LONGEST_ID and id_.isascii() and id_.isprintable()
+        return {"Last-Event-ID": id_} if sent else {}
 
     def begin(self, response: httpx.Response) -> None:
         """Begin to read a successful response.
@@ -71,7 +80,7 @@ class JobEvents:
         return [progress for event in events if (progress := self._read(event)) is not None]
 
     def _read(self, event: ServerSentEvent) -> Progress | None:
-        if event != self._last:  # a stream may always repeat the last event and end
+        if event != self._last:  # a service that knows no ids repeats the last event
             self._waited, self._last = 0.0, event
         if event.type == "status":
             self.ended = parse_json(event.data, "status").read("status", text) in FINAL_STATUSES

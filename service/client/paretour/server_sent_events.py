@@ -1,6 +1,6 @@
 """Parse server-sent events, by the grammar in section 9.2 of the WHATWG's HTML standard.
 
-Event ids and reconnection times are skipped: the service resumes a stream without them.
+Reconnection times are skipped: the client has its own.
 """
 
 import codecs
@@ -15,10 +15,14 @@ _LINE_END = re.compile("\r\n|\r|\n")
 
 @dataclass(frozen=True)
 class ServerSentEvent:
-    """An event: its type and its data. Lines of data are separated by line feeds."""
+    """An event: its type, its data, and the id that the stream had by then.
+
+    Lines of data are separated by line feeds.
+    """
 
     type: str
     data: str
+    id: str = ""
 
 
 class EventParser:
@@ -30,6 +34,7 @@ class EventParser:
         self._after_return = False  # whether a line feed now belongs to the last line end
         self._line = ""
         self._type = ""
+        self._id = ""
         self._data: list[str] = []
         self._length = 0  # characters of the data so far
 
@@ -62,10 +67,12 @@ class EventParser:
         elif field == "data":
             self._data.append(value)
             self._length += len(value) + 1
+        elif field == "id" and "\0" not in value:
+            self._id = value
         return None
 
     def _dispatch(self) -> ServerSentEvent | None:
-        event = ServerSentEvent(self._type or "message", "\n".join(self._data))
+        event = ServerSentEvent(self._type or "message", "\n".join(self._data), self._id)
         ended = bool(self._data)
         self._type, self._data, self._length = "", [], 0
         return event if ended else None
