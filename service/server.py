@@ -42,6 +42,7 @@ from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
+from service.webhooks.sender import Webhooks
 
 _ACCEPTED_AT_ONCE = 32  # in a turn of the event loop: more would delay all other connections
 _IN_KERNEL = 1024  # connections that wait until they are accepted
@@ -98,12 +99,19 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
             streets=roads,
             tiles=Tiles(settings.tiles, settings.tiles_credit),
             agents=settings.mcp,
+            webhooks=_webhooks(settings, metrics),
         ),
     )
     if settings.traces:
         trace(app)
     log_loading(app, engine.check_ready, lambda: engine.compiling)
     return app
+
+
+def _webhooks(settings: Settings, metrics: Metrics) -> Webhooks | None:
+    if (targets := settings.webhooks) is None:
+        return None
+    return Webhooks(targets=targets, secrets=settings.webhook_secrets, observe=metrics.posted)
 
 
 def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:

@@ -31,6 +31,8 @@ from service.api.transport.proxies import MOST_LETTERS, ROOT_PATH
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
 from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
+from service.webhooks.signature import Secret
+from service.webhooks.targets import Target, Targets
 
 _WEEK = 7 * 86_400  # seconds; timers that count milliseconds in 32 bits end after 24 days
 _YEAR = 366 * 86_400  # seconds
@@ -74,6 +76,14 @@ def _checked_redis_url(value: str) -> str:
 
 def _key_hash(value: object) -> object:
     return KeyHash.read(value) if isinstance(value, str) else value
+
+
+def _target(value: object) -> object:
+    return Target.read(value) if isinstance(value, str) else value
+
+
+def _secret(value: object) -> object:
+    return Secret.read(value) if isinstance(value, str) else value
 
 
 def _checked_rate(value: str) -> str:
@@ -124,6 +134,12 @@ KeptSeconds = Annotated[float, _number(_LEAST, 10 * _YEAR)]
 Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 KeyHashes = Annotated[
     tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
+]
+WebhookTargets = Annotated[
+    tuple[Annotated[Target, BeforeValidator(_target)], ...], NoDecode, BeforeValidator(_split)
+]
+WebhookSecrets = Annotated[
+    tuple[Annotated[Secret, BeforeValidator(_secret)], ...], NoDecode, BeforeValidator(_split)
 ]
 RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
@@ -260,6 +276,11 @@ class Settings(BaseSettings):
     mcp: bool = False
     """whether agents may call, by the Model Context Protocol at `/mcp`: 1 or 0"""
 
+    webhook_targets: WebhookTargets = ()
+    """where webhooks may go: ORIGIN or ORIGIN=NETWORK, separated by commas; without it nowhere"""
+    webhook_secrets: WebhookSecrets = ()
+    """what webhooks are signed with: whsec_ and base64; two while one is replaced, with a comma"""
+
     # Observation.
     traces: str | None = Field(None, validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT")
     """where OpenTelemetry traces go, over HTTP"""
@@ -277,6 +298,15 @@ class Settings(BaseSettings):
         # Less than the request's, so that the error names the slow engine as the cause.
         named["seconds"] = min(self.router_seconds, _ROUTER_SHARE * self.request_seconds)
         return RouterSettings(router=self.router, **named)
+
+    @property
+    def webhooks(self) -> Targets | None:
+        """Where webhooks may go; None where they may go nowhere."""
+        if not self.webhook_targets:
+            return None
+        if not self.webhook_secrets:
+            raise ValueError("PARETOUR_WEBHOOK_TARGETS needs PARETOUR_WEBHOOK_SECRETS")
+        return Targets(self.webhook_targets)
 
     @property
     def limits(self) -> Limits:

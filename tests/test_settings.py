@@ -1,5 +1,6 @@
 """Settings come from the environment, and wrong ones stop the server from starting."""
 
+import base64
 import re
 
 import pytest
@@ -49,6 +50,29 @@ def test_a_wrong_setting_is_refused(
     monkeypatch.setenv(variable, value)
     with pytest.raises(ValidationError):
         Settings()
+
+
+def test_webhooks_need_targets_and_secrets(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Settings().webhooks is None
+    monkeypatch.setenv("PARETOUR_WEBHOOK_TARGETS", "https://a.example, http://b.example=10.0.0.0/8")
+    with pytest.raises(ValueError, match="TARGETS needs PARETOUR_WEBHOOK_SECRETS"):
+        _ = Settings().webhooks
+    one, two = (f"whsec_{base64.b64encode(bytes(32 + i)).decode()}" for i in range(2))
+    monkeypatch.setenv("PARETOUR_WEBHOOK_SECRETS", f"{one},{two}")
+    settings = Settings()
+    assert settings.webhooks is not None
+    settings.webhooks.check("http://b.example/x")
+    assert [len(secret.key) for secret in settings.webhook_secrets] == [32, 33]
+    assert one not in repr(settings)
+
+
+@pytest.mark.parametrize("value", ["secret-of-ours", "whsec_c2VjcmV0"])
+def test_a_wrong_secret_of_webhooks_is_not_shown(
+    monkeypatch: pytest.MonkeyPatch, value: str
+) -> None:
+    sentence = refusal(monkeypatch, "PARETOUR_WEBHOOK_SECRETS", value)
+    demand = "a secret must be whsec_ and 24 to 64 bytes in base64"
+    assert sentence == f"PARETOUR_WEBHOOK_SECRETS, entry 1: {demand}"
 
 
 @pytest.mark.parametrize(("router", "profile"), [("valhalla", "auto"), ("osrm", "driving")])

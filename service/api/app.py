@@ -27,6 +27,7 @@ from service.api.middleware import (
 from service.api.openapi import complete
 from service.api.plan import PlanRoutes
 from service.api.request_bodies import request_schemas
+from service.api.request_headers import ALLOWED
 from service.api.response_headers import EXPOSED
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
 from service.api.site.guide import guide_routes
@@ -34,9 +35,12 @@ from service.api.site.static import static_routes
 from service.api.site.tiles import Tiles
 from service.api.stored_fronts import StoredFrontRoutes
 from service.api.task_parser import ParserBounds, TaskParser
+from service.api.webhook_event import add_webhooks
 from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.requests.limits import Limits
+from service.webhooks.sender import Webhooks
+from service.webhooks.targets import Targets
 
 if TYPE_CHECKING:
     from service.api.mcp import AgentRoute
@@ -58,6 +62,7 @@ class Edge:
         streets: The streets that lines of GeoJSON may follow; by default there are none.
         tiles: The map tiles that the page draws under stops; by default there are none.
         agents: Whether agents may call, by the Model Context Protocol at `/mcp`.
+        webhooks: How the ends of jobs are posted to webhooks; by default they are refused.
     """
 
     access: Access = field(default_factory=Access)
@@ -71,6 +76,7 @@ class Edge:
     streets: Streets | None = None
     tiles: Tiles = field(default_factory=Tiles)
     agents: bool = False
+    webhooks: Webhooks | None = None
 
     @property
     def middleware(self) -> list[Middleware]:
@@ -79,7 +85,7 @@ class Edge:
             CORSMiddleware,
             allow_origins=self.origins,
             allow_methods=["GET", "POST", "DELETE"],
-            allow_headers=["Authorization", "Content-Type", "Idempotency-Key", "Prefer"],
+            allow_headers=ALLOWED,
             expose_headers=EXPOSED,
         )
         return [
@@ -106,11 +112,16 @@ def create_app(
     answers_budget = BodyBudget(edge.bodies_bytes, edge.share, answers=True)
     answers = FrontAnswers(edge.streets, answers_budget)
     most_bytes, seconds = limits.body_bytes, edge.request_seconds
+    webhooks = edge.webhooks
+    targets = Targets() if webhooks is None else webhooks.targets
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         await engine.start()
-        async with nullcontext() if agents is None else agents.running():
+        async with (
+            nullcontext() if agents is None else agents.running(),
+            nullcontext() if webhooks is None else webhooks.running(store),
+        ):
             yield
         await engine.close()
         await store.close()
@@ -129,10 +140,11 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
+    add_webhooks(app.webhooks)
     agents = _agent_route(app, budget, most_bytes, version) if edge.agents else None
     refusals = problem_responses(401, 429)
     for guarded in (
-        PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers).router(),
+        PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers, targets).router(),
         file_router(parser, budget, most_bytes, answers_budget),
         StoredFrontRoutes(store, engine, answers).router(),
         _actor_router(actors),

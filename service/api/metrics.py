@@ -79,6 +79,9 @@ class Metrics(Collector):
         self._router_seconds = histogram(
             "paretour_router_seconds", "one question to the routing engine"
         )
+        self._webhooks = counter(
+            "paretour_webhooks", "attempts to post to a webhook, by their outcome", ["outcome"]
+        )
         self._engine: Engine | None = None
         self._stats: EngineStats | None = None  # at the last scrape
         registry.register(self)
@@ -125,6 +128,10 @@ class Metrics(Collector):
         """Count a question to the routing engine: answered, unavailable or unusable."""
         self._router_requests.labels(outcome).inc()
         self._router_seconds.observe(seconds)
+
+    def posted(self, outcome: str) -> None:
+        """Count an attempt to post to a webhook: delivered, failed or given-up."""
+        self._webhooks.labels(outcome).inc()
 
     def planned(self, front: FrontDocument) -> None:
         """Count a planned front, its phases, and the hypervolume that the search gained."""

@@ -78,8 +78,8 @@ def _remove_default_refusals(document: dict[str, Any]) -> None:
 
 
 def _operations(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the name of each operation, such as "POST /front", and its entry."""
-    for path, methods in document["paths"].items():
+    """Yield the name of each operation and webhook, such as "POST /front", and its entry."""
+    for path, methods in (document["paths"] | document["webhooks"]).items():
         for method, operation in methods.items():
             yield f"{method.upper()} {path}", operation
 

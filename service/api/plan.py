@@ -18,7 +18,12 @@ from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.middleware import ANSWER_HEADERS
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
-from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
+from service.api.request_headers import (
+    PARAMETERS,
+    idempotency_key,
+    prefers_async,
+    webhook_url,
+)
 from service.api.response_headers import REPLAYED
 from service.api.responses import (
     AcceptedAnswer,
@@ -36,12 +41,14 @@ from service.jobs.deadline import Deadline
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.record import Record
 from service.jobs.store import Store
+from service.jobs.webhook import Webhook
 from service.kinds.table import empty_document
 from service.requests.fields import Geometry
 from service.requests.replan.parser import ReplanSource
 from service.requests.replan.way import StoredFront, not_replannable
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import stored
+from service.webhooks.targets import Targets
 
 _QUICK = 8  # times as fast as a request stored tours are read
 _LONG = 2**20  # bytes of a body; the task of a longer one takes a while to write
@@ -75,6 +82,7 @@ class PlanRoutes:
         store: Store,
         seconds: float,
         answers: FrontAnswers,
+        targets: Targets,
     ) -> None:
         self._parser = parser
         self._budget = budget
@@ -83,6 +91,7 @@ class PlanRoutes:
         self._store = store
         self._seconds = seconds
         self._answers = answers
+        self._targets = targets
         self._held: set[asyncio.Task[None]] = set()
 
     def router(self) -> APIRouter:
@@ -161,6 +170,7 @@ class PlanRoutes:
 
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
+        webhook_url(request, self._targets)  # it may be refused before the body is received
         # Counted until there is an answer: a task that waits or is being planned holds its body.
         with self._budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._most_bytes, allowance)
@@ -237,9 +247,11 @@ class PlanRoutes:
 
     async def _new_record(self, request: Request, task: Task, body: _Body) -> Record:
         key = idempotency_key(request)
+        url = webhook_url(request, self._targets)
         long = body.source.length > _LONG
+        id_ = uuid.uuid4().hex
         return Record(
-            id=uuid.uuid4().hex,
+            id=id_,
             caller=caller_of(request),
             request_id=request.scope["request_id"],
             status="queued",
@@ -248,6 +260,7 @@ class PlanRoutes:
             key=key,
             digest=await asyncio.to_thread(_digest, body) if key else "",
             client=client_of(request),
+            webhook=Webhook(url, _location(request, id_, task.geometry)) if url else None,
         )
 
     async def _run(
@@ -262,10 +275,14 @@ class PlanRoutes:
 
 def _accepted_response(request: Request, record: Record, geometry: Geometry) -> Response:
     response = json_response({"id": record.id, "status": record.status}, 202)
-    query = "" if geometry == "straight" else f"?geometry={geometry}"
-    response.headers["Location"] = f"{root_path_of(request.scope)}/front/{record.id}{query}"
+    response.headers["Location"] = _location(request, record.id, geometry)
     response.headers["Preference-Applied"] = "respond-async"
     return response
+
+
+def _location(request: Request, id: str, geometry: Geometry) -> str:  # noqa: A002
+    query = "" if geometry == "straight" else f"?geometry={geometry}"
+    return f"{root_path_of(request.scope)}/front/{id}{query}"
 
 
 def _digest(body: _Body) -> str:

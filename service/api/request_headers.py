@@ -6,8 +6,14 @@ from typing import Any
 from starlette.requests import Request
 
 from service.errors import Fault, Refusal
+from service.webhooks.targets import MOST_LETTERS, Targets
 
 GEOJSON = "application/geo+json"
+# Which headers a page of another origin may send (CORS).
+ALLOWED = (
+    *("Authorization", "Content-Type", "Idempotency-Key", "Last-Event-ID", "Prefer"),
+    "Webhook-Url",
+)
 _LONGEST_KEY = 255
 _KEY = rf"^[!-~]([ -~]{{0,{_LONGEST_KEY - 2}}}[!-~])?$"
 # For the OpenAPI document.
@@ -28,6 +34,13 @@ PARAMETERS: tuple[dict[str, Any], ...] = (
             "maxLength": _LONGEST_KEY,
             "pattern": _KEY,
         },
+    },
+    {
+        "name": "Webhook-Url",
+        "in": "header",
+        "description": "where to post that the job has ended, signed as Standard Webhooks says;"
+        " only with `respond-async`, and only to hosts that the operator allows",
+        "schema": {"type": "string", "format": "uri", "maxLength": MOST_LETTERS},
     },
 )
 
@@ -53,6 +66,22 @@ def idempotency_key(request: Request) -> str | None:
         )
         raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)])
     return key
+
+
+def webhook_url(request: Request, targets: Targets) -> str | None:
+    """Return where the end of the job is to be posted; None where the request does not say.
+
+    Raises:
+        Refusal: It is not an address, the operator does not allow it, or there will be no job.
+    """
+    url = request.headers.get("webhook-url")
+    if url is None:
+        return None
+    if not prefers_async(request):
+        sentence = "Webhook-Url must come with Prefer: respond-async, and does not"
+        raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)])
+    targets.check(url)
+    return url
 
 
 def accepts_geojson(request: Request) -> bool:

@@ -14,7 +14,7 @@ T = TypeVar("T")
 _PASSWORD = re.compile(
     r"(//)[^/]*@|((?:password|[?&][^=&\s']*)=)[^&\s']+", re.IGNORECASE
 )  # of a URL
-_SECRET = "api_keys"  # the setting whose value is never shown
+_SECRETS = ("api_keys", "webhook_secrets")  # settings whose values are never shown
 
 
 def load_settings(**options: Any) -> Settings:
@@ -47,7 +47,7 @@ def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
     """Return what is wrong, naming options and variables as the operator wrote them."""
     return "; ".join(
         f"{_written(fault['loc'], options)}: {fault['msg'].removeprefix('Value error, ')}"
-        + ("" if fault["loc"][0] == _SECRET else f", got {_masked(repr(fault['input']))}")
+        + ("" if fault["loc"][0] in _SECRETS else f", got {_masked(repr(fault['input']))}")
         for fault in error.errors()
     )
 

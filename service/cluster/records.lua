@@ -120,6 +120,25 @@ function verbs.unfinished(_)
   return found
 end
 
+-- Some deliveries that are due: id, webhook, status, end and attempts of each.
+function verbs.due_deliveries(now)
+  local most, seconds = tonumber(ARGV[3]), tonumber(ARGV[4])
+  local found = {}
+  for _, id in ipairs(redis.call('ZRANGEBYSCORE', DELIVERIES, '-inf', now, 'LIMIT', 0, most)) do
+    redis.call('ZADD', DELIVERIES, now + seconds, id)
+    redis.call('HINCRBY', delivery_of(id), 'attempts', 1)
+    local fields = redis.call('HMGET', delivery_of(id), 'webhook', 'status', 'ended', 'attempts')
+    found[#found + 1] = {id, unpack(fields)}
+  end
+  return found
+end
+
+function verbs.postpone(now)
+  redis.call('ZADD', DELIVERIES, 'XX', now + tonumber(ARGV[4]), ARGV[3])
+end
+
+function verbs.remove_delivery(_) remove_delivery(ARGV[3]) end
+
 -- The other verbs are for records that are being planned.
 
 local function tell(id)

@@ -15,6 +15,7 @@ from service.errors import Cancelled, DeadlineExceeded
 from service.front import Progress
 from service.jobs.engine import JobState
 from service.jobs.listing import ListedFront
+from service.jobs.outbox import Delivery
 from service.jobs.record import Record, Status, StopReason
 from service.jobs.store import (
     SOURCE_COLUMNS,
@@ -35,13 +36,14 @@ PROCESS = "process"  # the id of the process that plans, on the machine of the w
 GAINED = "gained"
 PROGRESS = "progress"
 CLIENT = "client"
+WEBHOOK = "webhook"
 
 STOP_REASONS: Mapping[StopReason, bytes] = {Cancelled: b"Stopped", DeadlineExceeded: b"Overdue"}
 REASON_OF = {name: reason for reason, name in STOP_REASONS.items()}
 TAKEN_OVER = b"taken"
 
 Argument = str | bytes | float  # of the script
-_TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind", CLIENT)
+_TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind", CLIENT, WEBHOOK)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -64,6 +66,8 @@ def record_arguments(record: Record) -> list[Argument]:
         columns[GAINED] = record.front.gained
     if record.client:
         columns[CLIENT] = record.client
+    if record.webhook is not None:
+        columns[WEBHOOK] = record.webhook.json()
     fields = _names_and_values(columns)
     return [len(fields), *fields, *_names_and_values(source)]
 
@@ -111,9 +115,21 @@ def stored_source(source: Iterable[bytes]) -> TaskSource | None:
         return None
 
 
+def delivery_from(parts: Iterable[bytes]) -> Delivery:
+    """Return the delivery in its id, webhook, status, time of its end and number of attempts.
+
+    Raises:
+        UnreadableRecord: They are damaged.
+    """
+    try:
+        return Delivery.read(*(each.decode() for each in parts))
+    except (AttributeError, TypeError, ValueError) as error:
+        raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
+
+
 def _decode(*hashes: Iterable[bytes]) -> StoredRecord:
     fields = {name: value for each in hashes for name, value in _fields(each).items()}
-    record = replace(record_from(fields), client=fields.get(CLIENT, ""))
+    record = replace(record_from(fields, fields.get(WEBHOOK)), client=fields.get(CLIENT, ""))
     if GAINED in fields:
         front = replace(record.front, gained=float(fields[GAINED]))
         record = replace(record, front=front)

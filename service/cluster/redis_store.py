@@ -10,6 +10,7 @@ from redis.asyncio import Redis
 from service.cluster.records import (
     Argument,
     StoredRecord,
+    delivery_from,
     listed_front,
     record_arguments,
     stored_source,
@@ -24,6 +25,7 @@ from service.errors import (
     ShareFull,
 )
 from service.jobs.listing import ListedFront
+from service.jobs.outbox import Delivery
 from service.jobs.record import Record
 from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
 from service.requests.task import TaskSource
@@ -105,6 +107,25 @@ class RedisStore(RecordScript):
         """Raise StoreUnavailable if Redis accepts no more data, NoWorker if no worker runs."""
         if await self.call("write") == 0:
             raise NoWorker(NOBODY)
+
+    async def due_deliveries(self, most: int, seconds: float) -> list[Delivery]:
+        """Take deliveries that are due; after some seconds they are due again."""
+        found = []
+        for parts in await self.call("due_deliveries", most, seconds):
+            try:
+                found.append(delivery_from(parts))
+            except UnreadableRecord as error:
+                log_dropped(parts[0].decode(errors="replace")[:80], error)
+                await self.call("remove_delivery", parts[0])
+        return found
+
+    async def postpone(self, id: str, seconds: float) -> None:  # noqa: A002
+        """Have the delivery of a job tried again after some seconds."""
+        await self.call("postpone", id, seconds)
+
+    async def remove_delivery(self, id: str) -> None:  # noqa: A002
+        """Remove the delivery of a job."""
+        await self.call("remove_delivery", id)
 
     async def find(self, verb: str, *arguments: str) -> StoredRecord:
         """Return the record that the verb `get` or `latest` finds.

@@ -18,6 +18,8 @@ local NUMBER, LOST = P .. 'number', P .. 'lost'
 local UNFINISHED, FINISHED, GONE = P .. 'unfinished', P .. 'finished', P .. 'gone'
 -- The number of each client's latest turn; and the number of the latest turn of all.
 local TURNS, TURN = P .. 'turns', P .. 'turn'
+-- When the delivery of each ended job to its webhook is due.
+local DELIVERIES = P .. 'deliveries'
 local WORKERS, TOLD = P .. 'workers', P .. 'told'
 -- Of finished records: how many each client has and of how many bytes, the bytes of all, and
 -- whether this was counted lately. A client is a caller, or an address where there are no keys.
@@ -31,6 +33,8 @@ local function all_of(caller) return P .. 'caller:' .. caller end
 local function owned_by(client) return P .. 'client:' .. client end
 local function gone_of(caller) return P .. 'gone:' .. caller end
 local function key_of(caller, key) return P .. 'key:' .. caller .. ':' .. key end
+
+local function delivery_of(id) return P .. 'delivery:' .. id end
 
 local function is_finished(status) return status ~= 'queued' and status ~= 'running' end
 
@@ -80,6 +84,21 @@ local function keep_work(id, fields)
   if #fields > 0 then redis.call('HSET', work_of(id), unpack(fields)) end
 end
 
+local function remove_delivery(id)
+  redis.call('ZREM', DELIVERIES, id)
+  redis.call('DEL', delivery_of(id))
+end
+
+-- Have the end of a record delivered to its webhook, once.
+local function add_delivery(now, id, status)
+  local webhook = redis.call('HGET', front_of(id), 'webhook')
+  if not webhook then return end
+  redis.call('HDEL', front_of(id), 'webhook')
+  redis.call('HSET', delivery_of(id), 'webhook', webhook, 'status', status, 'ended', now)
+  redis.call('ZADD', DELIVERIES, now, id)
+  for _, last in ipairs(redis.call('ZRANGE', DELIVERIES, 10000, -1)) do remove_delivery(last) end
+end
+
 -- The source comes as the fields `work`.
 local function put(now, id, fields, work)
   local number = redis.call('INCR', NUMBER)
@@ -94,6 +113,7 @@ local function put(now, id, fields, work)
     redis.call('HSET', front_of(id), 'size', size)
     redis.call('ZADD', owned_by(client_of(id)), number, id)
     count(client_of(id), 1, size)
+    add_delivery(now, id, status)
   else
     redis.call('ZADD', UNFINISHED, number, id)
   end

@@ -129,6 +129,9 @@ PROBLEMS: Mapping[str, Problem] = {
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
     ),
     "unknown-actor": Problem(422, "actor must be {among}, got {came}", _PLANS),
+    "webhook-not-allowed": Problem(
+        422, "Webhook-Url must lead where the operator allows webhooks, got {came}", _PLANS
+    ),
     "preflight-refused": Problem(
         400, "a page may call from an allowed origin, with its method and headers: {reason}", _NONE
     ),

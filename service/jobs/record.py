@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from service.errors import Cancelled, DeadlineExceeded, Refusal
+from service.jobs.webhook import Webhook
 from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskSource
 
@@ -30,6 +31,7 @@ class Record:
         problem: The problem document of a job that failed.
         client: The client whose share of the places it takes: the caller, or an address where
             there are no keys. It is not stored.
+        webhook: What is told when the job has ended. Stores keep it until then.
     """
 
     id: str
@@ -42,6 +44,7 @@ class Record:
     digest: str = ""
     problem: dict[str, Any] | None = None
     client: str = ""
+    webhook: Webhook | None = None
 
     @property
     def finished(self) -> bool:

@@ -44,6 +44,12 @@ STEPS = (
     ALTER TABLE gone ADD COLUMN client;
     UPDATE gone SET client = caller;
     """,
+    # An unfinished record has its webhook; once it is finished, there is a delivery instead.
+    """
+    ALTER TABLE front ADD COLUMN webhook;
+    CREATE TABLE delivery (id PRIMARY KEY, webhook, status, ended REAL, attempts INTEGER, due REAL);
+    CREATE INDEX delivery_by_due ON delivery (due);
+    """,
 )
 
 

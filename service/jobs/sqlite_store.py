@@ -13,7 +13,9 @@ from typing import TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.listing import ListedFront
+from service.jobs.outbox import Delivery
 from service.jobs.record import Record
+from service.jobs.sqlite_outbox import SqliteOutbox
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
     COLUMNS,
@@ -98,6 +100,7 @@ class SqliteStore:
         self._puts = self._bytes_put = 0  # since records were last evicted
         try:
             self._database = open_file(path)
+            self._outbox = SqliteOutbox(self._database)
         except (OSError, ValueError, sqlite3.Error) as error:
             raise ValueError(
                 f"the store must be a file of its own, {path} is not: {error}"
@@ -152,6 +155,18 @@ class SqliteStore:
         """Return all unfinished records with their sources, the oldest first."""
         return await self._in_thread(self._select, f"{UNFINISHED} ORDER BY number")
 
+    async def due_deliveries(self, most: int, seconds: float) -> list[Delivery]:
+        """Take deliveries that are due; after some seconds they are due again."""
+        return await self._in_thread(self._outbox.take, most, self._clock(), seconds)
+
+    async def postpone(self, id: str, seconds: float) -> None:  # noqa: A002
+        """Have the delivery of a job tried again after some seconds."""
+        await self._in_thread(self._outbox.postpone, id, self._clock() + seconds)
+
+    async def remove_delivery(self, id: str) -> None:  # noqa: A002
+        """Remove the delivery of a job."""
+        await self._in_thread(self._outbox.remove, id)
+
     async def close(self) -> None:
         """Close the file."""
         loop = asyncio.get_running_loop()
@@ -204,9 +219,16 @@ class SqliteStore:
         source_size = record_size({name: columns[name] for name in SOURCE_COLUMNS})
         if record.finished and source_size > self._max_bytes // SOURCE_SHARE:
             columns |= dict.fromkeys(SOURCE_COLUMNS)
-        places = ", ".join("?" * (len(columns) + 3))
-        insert = f"INSERT INTO front (kept, size, client, {_COLUMNS}) VALUES ({places})"
-        beside = (kept, record_size(columns), record.client or record.caller)
+        webhook = record.webhook
+        if record.finished and webhook is not None:
+            self._outbox.add(record.id, webhook, record.status, kept)
+            webhook = None
+        places = ", ".join("?" * (len(columns) + 4))
+        insert = f"INSERT INTO front (kept, size, client, webhook, {_COLUMNS}) VALUES ({places})"
+        beside = (
+            *(kept, record_size(columns), record.client or record.caller),
+            webhook and webhook.json(),
+        )
         self._database.execute(insert, (*beside, *columns.values()))
         self._puts += 1
         self._bytes_put += beside[1]
@@ -262,17 +284,19 @@ class SqliteStore:
 
     def _select(self, where: str, *values: str) -> list[Record]:
         """Return the records that can be read; the others are dropped."""
-        query = f"SELECT number, client, {_READ} FROM front WHERE {where}"
+        query = f"SELECT number, client, webhook, {_READ} FROM front WHERE {where}"
         rows = self._database.execute(query, values).fetchall()
         found = (
-            self._read(number, client, dict(zip(COLUMNS, row, strict=True)))
-            for number, client, *row in rows
+            self._read(number, client, webhook, dict(zip(COLUMNS, row, strict=True)))
+            for number, client, webhook, *row in rows
         )
         return [record for record in found if record is not None]
 
-    def _read(self, number: int, client: str, columns: dict[str, object]) -> Record | None:
+    def _read(
+        self, number: int, client: str, webhook: str | None, columns: dict[str, object]
+    ) -> Record | None:
         try:
-            record = replace(record_from(columns), client=client)
+            record = replace(record_from(columns, webhook), client=client)
             if not record.finished and record.source is None:
                 raise UnreadableRecord("it is unfinished, and what to plan is missing")
         except UnreadableRecord as error:

@@ -7,13 +7,16 @@ import json
 import logging
 import zlib
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Protocol, get_args
 
 import numpy as np
 from pydantic_core import to_json
 
 from service.jobs.listing import ListedFront
+from service.jobs.outbox import Outbox
 from service.jobs.record import Record, Status
+from service.jobs.webhook import Webhook
 from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskKind, TaskSource
 
@@ -22,7 +25,7 @@ class UnreadableRecord(Exception):
     """A stored record that cannot be decoded."""
 
 
-class Store(Protocol):
+class Store(Outbox, Protocol):
     """Keeps records. Unfinished ones are never dropped, unless they cannot be decoded.
 
     Finished ones are returned without their source, which only `source` reads.
@@ -122,14 +125,19 @@ def record_size(columns: Mapping[str, Any]) -> int:
     )
 
 
-def record_from(columns: Mapping[str, Any]) -> Record:
+def record_from(columns: Mapping[str, Any], webhook: str | None = None) -> Record:
     """Return the record in these columns. Columns that would be None may be missing.
+
+    Args:
+        columns: The columns.
+        webhook: The JSON of its webhook, if it has one.
 
     Raises:
         UnreadableRecord: They are damaged, or of another program.
     """
     try:
-        return _decode(columns)
+        record = _decode(columns)
+        return replace(record, webhook=Webhook.read(webhook)) if webhook else record
     # All that parsers may raise for damaged bytes.
     except Exception as error:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error

@@ -29,8 +29,9 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
     reference point is beyond some tour; what has changed is about the stops of a front; a tour is
     chosen in one way; a fleet can keep its rules; robots have ids of their own; an idempotency key
-    belongs to one body.
+    belongs to one body; webhooks go where the operator allows, and here nowhere.
     """
+    (case.headers or {}).pop("Webhook-Url", None)
     if case.path == "/tour" and case.meta.generation.mode.is_positive:
         _choose_in_one_way(case)
     if (case.query or {}).get("geometry") == "roads":  # there is no routing engine

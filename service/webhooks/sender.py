@@ -1,0 +1,160 @@
+"""Deliver the ends of jobs to their webhooks, and try again with growing pauses.
+
+Deliveries wait in the store. A service takes one for longer than an attempt may last, so replicas
+do not deliver it twice; and if the service ends meanwhile, it is delivered later. It may arrive
+twice where the answer is lost: its `webhook-id` is the same then.
+"""
+
+import asyncio
+import logging
+import random
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from http import HTTPStatus
+from time import time
+from typing import Literal
+
+from pydantic_core import to_json
+
+from service.errors import StoreUnavailable
+from service.jobs.outbox import Delivery, Outbox
+from service.jobs.record import Status
+from service.webhooks.signature import Secret, signed_headers
+from service.webhooks.targets import Targets
+from service.webhooks.transport import Undeliverable, WebhookTransport
+
+Outcome = Literal["delivered", "failed", "given-up"]
+PAUSES = (5.0, 60.0, 300.0, 1800.0, 7200.0)  # seconds before the second attempt, the third, ...
+_JITTER = 0.2  # the share by which a pause may be longer, so that failures do not come together
+_SECONDS = 15.0  # of one attempt
+_LEASE = 60.0  # seconds for which a delivery is taken
+_AT_ONCE = 16
+_POLL = 0.5  # seconds between two looks for deliveries
+_TYPES: Mapping[Status, str] = {
+    "done": "front.completed",
+    "cancelled": "front.cancelled",
+    "failed": "front.failed",
+}
+_LOG = logging.getLogger("paretour")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Webhooks:
+    """Where webhooks may go, and how they are sent.
+
+    Args:
+        targets: The origins that are allowed.
+        secrets: What to sign with.
+        observe: Called with the outcome of every attempt.
+        pauses: Seconds before each further attempt.
+    """
+
+    targets: Targets
+    secrets: Sequence[Secret]
+    observe: Callable[[Outcome], None] = lambda _: None
+    pauses: Sequence[float] = PAUSES
+
+    @asynccontextmanager
+    async def running(self, outbox: Outbox) -> AsyncIterator[None]:
+        """Deliver what is in an outbox until the block ends, which breaks off attempts."""
+        sender = _Sender(self, outbox)
+        running = asyncio.create_task(sender.run())
+        try:
+            yield
+        finally:
+            running.cancel()
+            await asyncio.wait([running])
+            await sender.close()
+
+
+class _Sender:
+    """Delivers what is in an outbox, a number at a time."""
+
+    def __init__(self, webhooks: Webhooks, outbox: Outbox) -> None:
+        self._webhooks = webhooks
+        self._outbox = outbox
+        self._transport = WebhookTransport()
+        self._attempts: set[asyncio.Task[None]] = set()
+
+    async def run(self) -> None:
+        """Deliver for ever."""
+        while True:
+            try:
+                await self._begin()
+            except StoreUnavailable:
+                pass
+            except Exception:
+                # Otherwise nothing would ever be delivered again.
+                _LOG.exception("deliveries to webhooks could not be begun")
+            await asyncio.sleep(_POLL)
+
+    async def close(self) -> None:
+        """Break off the attempts in progress; they are made again later."""
+        for attempt in self._attempts:
+            attempt.cancel()
+        await asyncio.gather(*self._attempts, return_exceptions=True)
+        self._transport.close()
+
+    async def _begin(self) -> None:
+        free = _AT_ONCE - len(self._attempts)
+        for delivery in await self._outbox.due_deliveries(free, _LEASE) if free else ():
+            attempt = asyncio.create_task(self._deliver(delivery))
+            self._attempts.add(attempt)
+            attempt.add_done_callback(self._attempts.discard)
+
+    async def _deliver(self, delivery: Delivery) -> None:
+        """Make one attempt, and remove the delivery or say when to try again."""
+        failure, final = await self._attempt(delivery)
+        pauses = self._webhooks.pauses
+        outcome: Outcome = "failed"
+        with suppress(StoreUnavailable):  # then it is due again when the lease ends
+            if not failure:
+                outcome = "delivered"
+                await self._outbox.remove_delivery(delivery.id)
+            elif final or delivery.attempts > len(pauses):
+                outcome = "given-up"
+                await self._outbox.remove_delivery(delivery.id)
+            else:
+                pause = pauses[delivery.attempts - 1] * random.uniform(1, 1 + _JITTER)
+                await self._outbox.postpone(delivery.id, pause)
+        self._webhooks.observe(outcome)
+        said = f"webhook of front {delivery.id}, attempt {delivery.attempts}: {outcome}"
+        _LOG.log(logging.WARNING if failure else logging.INFO, f"{said} {failure}".strip())
+
+    async def _attempt(self, delivery: Delivery) -> tuple[str, bool]:
+        """Post a delivery; return why it failed, if it did, and whether it will always fail."""
+        try:
+            destination = self._webhooks.targets.find(delivery.webhook.url)
+        except ValueError:
+            destination = None
+        if destination is None:
+            return "the settings no longer allow its target", True
+        body = _body(delivery)
+        message = f"msg_{delivery.id}"
+        headers = signed_headers(message, int(time()), body, self._webhooks.secrets)
+        try:
+            async with asyncio.timeout(_SECONDS):
+                status = await self._transport.post(destination, headers, body)
+        except TimeoutError:
+            return f"it does not answer within {_SECONDS:g} s", False
+        except Undeliverable as error:
+            return str(error), False
+        failed = not HTTPStatus(200) <= status < HTTPStatus(300)
+        return f"its answer is {status}" if failed else "", status == HTTPStatus.GONE
+
+
+def _body(delivery: Delivery) -> bytes:
+    """Return the event as JSON: the same for every attempt."""
+    ended = datetime.fromtimestamp(delivery.ended_at, UTC)
+    event = {
+        "type": _TYPES[delivery.status],
+        "timestamp": ended.isoformat(timespec="milliseconds").replace("+00:00", "Z"),
+        "data": {
+            "id": delivery.id,
+            "status": delivery.status,
+            "url": delivery.webhook.location,
+        },
+    }
+    return to_json(event)

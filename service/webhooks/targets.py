@@ -1,0 +1,159 @@
+"""Say where webhooks may go: origins that the operator names, and none of their addresses inside.
+
+A caller chooses the URL, so it could choose one that only the service can reach: of a database, of
+the loopback, or of a cloud's metadata. Therefore scheme, host and port must be those of a target.
+The addresses of the host must be public, or in the network that the operator names with it.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from ipaddress import (
+    IPv4Address,
+    IPv4Network,
+    IPv6Address,
+    IPv6Network,
+    ip_address,
+    ip_network,
+)
+from typing import Self
+
+import httpx
+
+from service.errors import Fault, Refusal
+
+MOST_LETTERS = 2000  # of a webhook's URL
+_PORTS = {"http": 80, "https": 443}
+_EXAMPLES = "https://hooks.example.com, or http://hooks.internal:8080=10.0.0.0/8"
+# Of Oracle's and Azure's metadata, which count as public.
+_METADATA = (ip_network("192.0.0.0/24"), ip_network("168.63.129.16"))
+
+
+@dataclass(frozen=True)
+class Target:
+    """An origin to which webhooks may go, and the network in which its addresses must be.
+
+    Without a network the addresses must be public.
+    """
+
+    scheme: str
+    host: str
+    port: int
+    network: IPv4Network | IPv6Network | None = None
+
+    @classmethod
+    def read(cls, text: str) -> Self:
+        """Return the target written as ORIGIN or ORIGIN=NETWORK.
+
+        The network of an origin whose host is an address is that address. HTTP needs a network.
+
+        Raises:
+            ValueError: It has another form.
+        """
+        origin, _, named = text.partition("=")
+        try:
+            url = _parsed(origin)
+            network = ip_network(named or url.host) if named or _is_address(url.host) else None
+        except ValueError:
+            raise ValueError(f"must be like {_EXAMPLES}") from None
+        if url.raw_path != b"/" or (url.scheme == "http" and network is None):
+            raise ValueError(f"must be like {_EXAMPLES}")
+        return cls(url.scheme, url.host, _port_of(url), network)
+
+    def has(self, url: httpx.URL) -> bool:
+        """Return whether a URL is of this origin."""
+        return (url.scheme, url.host, _port_of(url)) == (self.scheme, self.host, self.port)
+
+    def allows(self, address: str) -> bool:
+        """Return whether a webhook may be sent to an address of the host."""
+        ip = ip_address(address)
+        if isinstance(ip, IPv6Address) and ip.ipv4_mapped is not None:
+            ip = ip.ipv4_mapped
+        return _is_public(ip) if self.network is None else ip in self.network
+
+
+@dataclass(frozen=True)
+class Destination:
+    """A webhook's URL, and the targets of its origin: one for each network, in most cases one."""
+
+    url: httpx.URL
+    targets: tuple[Target, ...]
+
+    @property
+    def port(self) -> int:
+        """The port, which the URL may leave out."""
+        return _port_of(self.url)
+
+    def allows(self, address: str) -> bool:
+        """Return whether the webhook may be sent to an address of the host."""
+        return any(target.allows(address) for target in self.targets)
+
+
+class Targets:
+    """All targets that the operator allows; by default none."""
+
+    def __init__(self, targets: Iterable[Target] = ()) -> None:
+        self._targets = tuple(targets)
+
+    def find(self, text: str) -> Destination | None:
+        """Return where a webhook goes; None where the operator does not allow it.
+
+        Raises:
+            ValueError: It is not such a URL.
+        """
+        url = _parsed(text)
+        of_its_origin = tuple(target for target in self._targets if target.has(url))
+        return Destination(url, of_its_origin) if of_its_origin else None
+
+    def check(self, text: str) -> None:
+        """Raise a refusal where a webhook may not be sent to a URL that a caller names."""
+        try:
+            found = self.find(text)
+        except ValueError:
+            sentence = (
+                "Webhook-Url must be an address such as https://hooks.example.com/done, of at most"
+                f" {MOST_LETTERS} characters, got another text of {len(text)}"
+            )
+            raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)]) from None
+        if found is None:
+            raise Refusal("webhook-not-allowed", came=_origin_of(httpx.URL(text)))
+
+
+def _parsed(text: str) -> httpx.URL:
+    """Return a URL of a server, without the name of a user and without a fragment.
+
+    Raises:
+        ValueError: It is not such a URL.
+    """
+    if len(text) > MOST_LETTERS or not text.isascii() or not text.isprintable() or " " in text:
+        raise ValueError
+    try:
+        url = httpx.URL(text)
+    except httpx.InvalidURL:
+        raise ValueError from None
+    if url.scheme not in _PORTS or not url.host or url.port == 0 or url.userinfo or "#" in text:
+        raise ValueError
+    return url
+
+
+def _port_of(url: httpx.URL) -> int:
+    return url.port or _PORTS[url.scheme]
+
+
+def _origin_of(url: httpx.URL) -> str:
+    return f"{url.scheme}://{url.netloc.decode()}"
+
+
+def _is_address(host: str) -> bool:
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_public(ip: IPv4Address | IPv6Address) -> bool:
+    """Return whether an address is reached over the internet, and stands for no other one."""
+    if isinstance(ip, IPv6Address) and ip.sixtofour is not None:
+        return False
+    inside = ip.is_multicast or ip.is_reserved or any(ip in network for network in _METADATA)
+    return ip.is_global and not inside
