@@ -24,6 +24,7 @@ from starlette.requests import Request
 from service.api.keys import KeyHash, digest_of
 from service.api.middleware import ANONYMOUS, ANSWER_HEADERS, RawHeaders
 from service.api.transport.connections import network_of
+from service.api.transport.proxies import HIDDEN
 from service.errors import Refusal
 
 _REDIS_SECONDS = 0.5  # the longest that a request waits for Redis
@@ -117,6 +118,19 @@ def client_of(request: Request) -> str:
     if request.scope["caller"] != ANONYMOUS:
         return caller_of(request)
     return network_of(request.client.host if request.client else "")
+
+
+def owner_of(request: Request) -> str:
+    """Return the client whose latest front, and whose list of fronts, a request may ask for.
+
+    It is that of `client_of`, unless that is the address of a proxy, which many clients share.
+
+    Raises:
+        Refusal: There is no key, and a proxy that is not trusted hides the address.
+    """
+    if request.scope["caller"] == ANONYMOUS and request.scope.get(HIDDEN):
+        raise Refusal("hidden-client")
+    return client_of(request)
 
 
 class Access:

@@ -17,8 +17,7 @@ HANDLED = (Refusal, HTTPException, RequestValidationError)
 async def answer_refusal(request: Request, error: Exception) -> Response:
     """Return the response to an exception of one of the kinds HANDLED."""
     refusal = _refusal(request, error)
-    scope = request.scope
-    response = problem_response(refusal, scope["request_id"], root_path_of(scope))
+    response = problem_response(refusal, request.scope)
     if isinstance(error, HTTPException):
         response.headers.update(error.headers or {})
         if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
@@ -34,7 +33,8 @@ def _refusal(request: Request, error: Exception) -> Refusal:
         case RequestValidationError():
             return refusal_of(error.errors(), parameters=True)
         case HTTPException(status_code=404):
-            return Refusal("no-such-path", path=path)
+            docs = f"{root_path_of(request.scope)}/docs"
+            return Refusal("no-such-path", path=path, docs=docs)
         case HTTPException(status_code=405):
             allowed, came = _allowed_methods(request, error), shorten(request.method)
             return Refusal("method-not-allowed", path=path, allowed=allowed, came=came)

@@ -13,7 +13,7 @@ from starlette.datastructures import Headers
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.api.responses import problem_response, root_path_of
+from service.api.responses import problem_response
 from service.errors import Refusal, ShuttingDown
 
 RawHeaders = list[tuple[bytes, bytes]]  # with names in lower case
@@ -144,7 +144,7 @@ class RequestMiddleware(_Middleware):
         except (Exception, asyncio.CancelledError) as error:
             refusal = _refusal_of(error, request_id)
             if status is None:
-                response = problem_response(refusal, request_id, root_path_of(scope))
+                response = problem_response(refusal, scope)
                 await response(scope, receive, send_with_id)
             elif isinstance(error, Exception):
                 raise
@@ -194,7 +194,7 @@ class ProblemMiddleware(_Middleware):
             text += message.get("body", b"")
             if not message.get("more_body", False):
                 refusal = _framework_refusal(scope["method"], start, text.decode(errors="replace"))
-                response = problem_response(refusal, scope["request_id"], root_path_of(scope))
+                response = problem_response(refusal, scope)
                 await response(scope, receive, send)
 
         await self._app(scope, receive, send_problem)

@@ -16,7 +16,6 @@ from pydantic.json_schema import SkipJsonSchema
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.types import Scope
 
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
@@ -335,7 +334,7 @@ async def compressed(request: Request, response: Response) -> Response:
     return response
 
 
-def root_path_of(scope: Scope) -> str:
+def root_path_of(scope: Mapping[str, Any]) -> str:
     """Return the path under which the client sees the service, such as /tours; mostly empty."""
     return str(scope.get("root_path", ""))
 
@@ -354,9 +353,9 @@ def record_under(root_path: str, record: Record) -> Record:
     return replace(record, problem=problem_under(root_path, record.problem))
 
 
-def problem_response(refusal: Refusal, request_id: str, root_path: str) -> Response:
-    """Return the problem document of a refusal as a response."""
-    document = problem_under(root_path, refusal.document(request_id))
+def problem_response(refusal: Refusal, scope: Mapping[str, Any]) -> Response:
+    """Return the problem document of a refusal as the response to the request with this scope."""
+    document = problem_under(root_path_of(scope), refusal.document(scope["request_id"]))
     return problem_bytes(document, refusal.headers)
 
 

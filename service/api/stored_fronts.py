@@ -7,7 +7,7 @@ from pydantic.json_schema import SkipJsonSchema
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from service.api.auth import caller_of, client_of
+from service.api.auth import caller_of, owner_of
 from service.api.front_events import PARAMETERS, Seen, events_after
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
@@ -94,7 +94,7 @@ class StoredFrontRoutes:
         more than `limit`, the header `Link` has the address of the next page.
         """
         caller = caller_of(request)
-        found = await self._store.fronts(caller, client_of(request), after, limit + 1)
+        found = await self._store.fronts(caller, owner_of(request), after, limit + 1)
         page = found[:limit]
         present = [await self._present(caller, each) for each in page]
         response = json_response({"fronts": [each.document() for each in present]})
@@ -182,7 +182,7 @@ async def find_record(store: Store, request: Request, id: str | None) -> Record:
     caller = caller_of(request)
     try:
         if id is None:
-            return await store.latest(caller, client_of(request))
+            return await store.latest(caller, owner_of(request))
         return await store.get(caller, id)
     except NotFound:
         if id is None:

@@ -41,7 +41,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "no-front": Problem(
         404, "there is no front to choose a tour from: plan one with POST /front", _TOUR
     ),
-    "no-such-path": Problem(404, "there is nothing at {path}; /docs says what is", _NONE),
+    "no-such-path": Problem(404, "there is nothing at {path}; {docs} says what is", _NONE),
     "no-such-tour": Problem(
         404,
         "no tour has a {which} length of at most {limit:.16g}: the least is {actual:.16g}",
@@ -129,6 +129,12 @@ PROBLEMS: Mapping[str, Problem] = {
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
     ),
     "unknown-actor": Problem(422, "actor must be {among}, got {came}", _PLANS),
+    "hidden-client": Problem(
+        422,
+        "your own fronts are those of your key or your address, and a proxy that"
+        " FORWARDED_ALLOW_IPS does not name hides your address: name a front by its id",
+        (_LIST, *_TOUR),
+    ),
     "webhook-not-allowed": Problem(
         422, "Webhook-Url must lead where the operator allows webhooks, got {came}", _PLANS
     ),

@@ -9,6 +9,7 @@ import pytest
 from service.api.app import Edge
 from service.api.auth import Access
 from service.api.keys import KeyHash, new_key
+from service.api.transport.connections import ConnectionLimits
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.serving import app_of, problem, serving
 
@@ -135,3 +136,53 @@ def test_a_front_is_there_for_its_caller_alone() -> None:
         for method, path in asked:
             answer = httpx.request(method, url + path, headers=own)
             assert answer.status_code in (200, 204)
+
+
+def planned_by(url: str, **headers: str) -> str:
+    answer = httpx.post(f"{url}/front", json=FRONT, headers=headers, timeout=30)
+    planned: str = answer.json()["id"]
+    return planned
+
+
+def latest_of(url: str, **headers: str) -> httpx.Response:
+    return httpx.get(f"{url}/tour?knee", headers=headers)
+
+
+def test_the_latest_front_without_keys_is_that_of_the_address_alone() -> None:
+    us, them, nobody = ({"X-Forwarded-For": f"192.0.2.{i}"} for i in range(3))
+    with serving(app_of()) as url:  # the test's own address is that of a trusted proxy
+        ours, theirs = planned_by(url, **us), planned_by(url, **them)
+        assert latest_of(url, **us).json()["front"] == ours
+        assert latest_of(url, **them).json()["front"] == theirs
+        problem(latest_of(url, **nobody), 404, "no-front")
+        problem(latest_of(url), 404, "no-front")
+        for headers, own in ((us, [ours]), (them, [theirs]), (nobody, [])):
+            listed = httpx.get(f"{url}/front", headers=headers).json()["fronts"]
+            assert [each["id"] for each in listed] == own
+
+
+@pytest.mark.parametrize("header", ["X-Forwarded-For", "Forwarded", "x-forwarded-for"])
+def test_behind_a_proxy_that_is_not_trusted_nobody_has_a_latest_front(header: str) -> None:
+    us, them = {header: "for=192.0.2.1"}, {header: "for=192.0.2.2"}
+    with serving(app_of(), connections=ConnectionLimits(proxies="192.0.2.9")) as url:
+        ours = planned_by(url, **us)
+        for path in ("/tour?knee", "/front"):
+            for headers in (us, them):
+                problem(httpx.get(url + path, headers=headers), 422, "hidden-client")
+        assert httpx.get(f"{url}/tour?knee&front={ours}", headers=them).status_code == 200
+        # Without a proxy an address is that of its client.
+        assert latest_of(url).json()["front"] == ours
+
+
+def test_with_keys_the_latest_front_is_that_of_the_key_behind_any_proxy() -> None:
+    (key, digest), (other, other_digest) = new_key(), new_key()
+    hashes = [KeyHash(caller="us", digest=digest), KeyHash(caller="them", digest=other_digest)]
+    us, them = (
+        {"Authorization": f"Bearer {each}", "X-Forwarded-For": "192.0.2.1"} for each in (key, other)
+    )
+    limits = ConnectionLimits(proxies="192.0.2.9")
+    with serving(app_of(edge=Edge(access=Access(hashes))), connections=limits) as url:
+        ours = planned_by(url, **us)
+        assert latest_of(url, **us).json()["front"] == ours
+        problem(latest_of(url, **them), 404, "no-front")
+        assert httpx.get(f"{url}/front", headers=them).json()["fronts"] == []

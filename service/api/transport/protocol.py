@@ -192,7 +192,8 @@ class Connection(H11Protocol):
 
     def _send_problem(self, refusal: Refusal) -> None:
         request_id = uuid.uuid4().hex
-        response = problem_response(refusal, request_id, self.root_path)
+        scope = {"request_id": request_id, "root_path": self.root_path}
+        response = problem_response(refusal, scope)
         headers = [*self.server_state.default_headers, *response.raw_headers]
         headers += [(b"connection", b"close"), (b"x-request-id", request_id.encode())]
         body = b"" if self.conn.method == b"HEAD" else bytes(response.body)

@@ -11,11 +11,14 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 # Segments without escapes, and not .. or empty: //other.example would be another server.
 ROOT_PATH = re.compile(r"(/[A-Za-z0-9_~-][A-Za-z0-9._~-]*)*")
 MOST_LETTERS = 200
+HIDDEN = "hidden_client"  # in a request's scope: whether a proxy that is not trusted passed it on
+_PASSED_ON = ("x-forwarded-for", "forwarded")
 
 
 class TrustedProxies(ProxyHeadersMiddleware):
     """Believes X-Forwarded-For, -Proto and -Prefix of trusted proxies alone.
 
+    A request that another proxy passed on is marked: its address is not that of the client.
     X-Forwarded-Prefix is what the proxy has taken away from the path. What is not such a path, or
     comes twice, is ignored, as it is in the other two headers.
     """
@@ -28,6 +31,9 @@ class TrustedProxies(ProxyHeadersMiddleware):
             peer = scope["client"]
             if (peer[0] if peer else None) in self.trusted_hosts:
                 _set_root_path(scope)  # type: ignore[arg-type]  # Starlette's is any mapping
+            else:
+                sent = {name.decode("latin-1") for name, _ in scope["headers"]}
+                scope[HIDDEN] = not sent.isdisjoint(_PASSED_ON)  # type: ignore[literal-required]
         await super().__call__(scope, receive, send)
 
 

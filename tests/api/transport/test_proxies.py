@@ -48,7 +48,8 @@ def test_what_an_answer_leads_to_begins_with_the_path_that_the_proxy_took_away(
         assert link.startswith(f"{root_path}/front?limit=1&after=")
         assert client.get(link.removeprefix(root_path)).status_code == 200
         problem(client.get("/front/none"), 404, "unknown-front", root_path)
-        problem(client.get("/none"), 404, "no-such-path", root_path)
+        missing = problem(client.get("/none"), 404, "no-such-path", root_path)
+        assert missing["detail"].endswith(f"{root_path}/none; {root_path}/docs says what is")
         problem(client.get("/page/main.js", headers={"Range": "x"}), 400, "refused", root_path)
 
 
