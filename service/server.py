@@ -6,7 +6,7 @@ import logging
 import multiprocessing
 import signal
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from functools import partial
@@ -49,10 +49,15 @@ _IN_KERNEL = 1024  # connections that wait until they are accepted
 
 
 class Ending:
-    """How the process of the service ends: by a signal, or because it cannot start."""
+    """How the process of the service ends: by a signal, or because it cannot start.
+
+    Attributes:
+        back_up: What another signal, SIGUSR1, has the process do: back up its store, if it has one.
+    """
 
     def __init__(self) -> None:
         self._status = 0
+        self.back_up: Callable[[], Coroutine[None, None, None]] | None = None
 
     def exit(self, _signal: int, _frame: FrameType | None) -> NoReturn:
         """Exit. This is the handler of a signal."""
@@ -116,6 +121,7 @@ def _webhooks(settings: Settings, metrics: Metrics) -> Webhooks | None:
 
 def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:
     """Serve requests until told to stop."""
+    signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # until the server can back up
     # Without a handler, uvicorn ends by the signal and the exit status says so.
     signal.signal(signal.SIGTERM, ending.exit)
     # Loaded modules stay; a collection that goes through them blocks the event loop for 40 ms.
@@ -132,6 +138,7 @@ def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:
     )
     configure_logging(plain=sys.stderr.isatty())
     server = make_server(app, connections, settings.drain_seconds, settings.root_path or "")
+    server.on_back_up = ending.back_up
     try:
         sockets = bound_sockets(settings.host, settings.port)
     except OSError as error:
@@ -143,19 +150,31 @@ def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:
         server.run(sockets)
 
 
-class _Server(uvicorn.Server):
-    """A server whose kernel holds more connections than it accepts in a turn of its event loop."""
+class Server(uvicorn.Server):
+    """A server whose kernel holds more connections than it accepts in a turn of its event loop.
+
+    Attributes:
+        on_back_up: What to do at SIGUSR1.
+    """
+
+    on_back_up: Callable[[], Coroutine[None, None, None]] | None = None
 
     async def startup(self, sockets: list[socket] | None = None) -> None:
         """Start the application, then accept the connections of these sockets."""
         await super().startup(sockets)
+        if self.on_back_up is not None:
+            loop = asyncio.get_running_loop()
+            loop.add_signal_handler(signal.SIGUSR1, self._back_up, self.on_back_up)
         for listening in sockets or []:
             listening.listen(_IN_KERNEL)
+
+    def _back_up(self, act: Callable[[], Coroutine[None, None, None]]) -> None:
+        self._backing_up = asyncio.create_task(act())  # kept, as a task that nobody has may go
 
 
 def make_server(
     app: FastAPI, connections: Connections, drain_seconds: int, root_path: str = ""
-) -> uvicorn.Server:
+) -> Server:
     """Return a server of HTTP/1.1 alone, over these connections.
 
     Args:
@@ -178,7 +197,7 @@ def make_server(
         timeout_graceful_shutdown=drain_seconds,
         backlog=_ACCEPTED_AT_ONCE,
     )
-    return _Server(config)
+    return Server(config)
 
 
 def build_worker(settings: Settings) -> Callable[[], int]:
@@ -254,6 +273,7 @@ def _local_engine(
         max_age=settings.store_seconds,
         max_bytes=settings.store_bytes,
     )
+    ending.back_up = store.back_up
     read = partial(read_task, limits=settings.limits, actors=actors)
     return store, LocalEngine(workers, store, read)
 

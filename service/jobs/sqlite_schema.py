@@ -8,6 +8,7 @@ import os
 import sqlite3
 import stat
 from collections.abc import Sequence
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -78,6 +79,26 @@ def open_file(path: str) -> sqlite3.Connection:
         database.close()
         raise
     return database
+
+
+def copy_file(database: sqlite3.Connection, path: str) -> None:
+    """Copy an open store to a file beside it, which only its owner may read.
+
+    The copy has its name, ending in `.backup`, once it is whole.
+
+    Raises:
+        OSError: The copy cannot be made.
+        sqlite3.Error: Likewise, mostly because the disk is full.
+        ValueError: The store is in memory.
+    """
+    if path == IN_MEMORY:
+        raise ValueError("it is in memory, and PARETOUR_STORE names no file")
+    unfinished = Path(f"{path}.backup.part")
+    unfinished.unlink(missing_ok=True)
+    _create(unfinished)
+    with closing(sqlite3.connect(unfinished)) as copy:
+        database.backup(copy)
+    unfinished.replace(f"{path}.backup")
 
 
 def migrate(database: sqlite3.Connection, steps: Sequence[str]) -> None:

@@ -16,7 +16,7 @@ from service.jobs.listing import ListedFront
 from service.jobs.outbox import Delivery
 from service.jobs.record import Record
 from service.jobs.sqlite_outbox import SqliteOutbox
-from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
+from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, copy_file, open_file
 from service.jobs.store import (
     COLUMNS,
     SHORT,
@@ -86,6 +86,7 @@ class SqliteStore:
         tombstones: int = 10_000,
         clock: Callable[[], float] = time,
     ) -> None:
+        self._path = path
         self._entries = entries
         self._max_age = max_age
         self._max_bytes = max_bytes
@@ -167,6 +168,14 @@ class SqliteStore:
         """Remove the delivery of a job."""
         await self._in_thread(self._outbox.remove, id)
 
+    async def back_up(self) -> None:
+        """Copy the file to one beside it, `.backup` behind its name, in place of an earlier copy.
+
+        What is asked of the store meanwhile waits. An error is logged.
+        """
+        loop = asyncio.get_running_loop()
+        await loop.run_in_executor(self._thread, self._back_up)
+
     async def close(self) -> None:
         """Close the file."""
         loop = asyncio.get_running_loop()
@@ -198,6 +207,14 @@ class SqliteStore:
         except sqlite3.Error as error:
             _LOG.error("the file of the store cannot be used: %s", error)
             raise StoreUnavailable from error
+
+    def _back_up(self) -> None:
+        try:
+            copy_file(self._database, self._path)
+        except (OSError, ValueError, sqlite3.Error) as error:
+            _LOG.error("the store cannot be backed up: %s", error)
+        else:
+            _LOG.info("the store is backed up to %s.backup", self._path)
 
     def _write_unwritten(self) -> None:
         """Write the records put before; skip one that cannot be encoded."""
