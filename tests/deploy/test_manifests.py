@@ -42,7 +42,9 @@ of_our_pods = pytest.mark.parametrize("pod", our_pods().values(), ids=our_pods()
 
 def test_no_file_is_left_out() -> None:
     tested = {each.name for each in (*MANIFESTS, *COMPOSE_FILES, AUTOSCALING, ROADS)}
-    tested.update(("constraints.txt", "hatch_build.py", "nginx.conf"))
+    tested.update(
+        ("alerts.yaml", "constraints.txt", "dashboard.json", "hatch_build.py", "nginx.conf")
+    )
     assert tested == {path.name for path in DEPLOY.iterdir() if path.is_file()}
 
 
