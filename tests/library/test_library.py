@@ -1,14 +1,19 @@
 """The package as a library: fronts planned in the caller's process, or in several of its own."""
 
+import re
 import signal
 import subprocess
 import sys
 import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import paretour
+import psutil
 import pytest
 
 from tests.helpers.command import ROOT
@@ -137,6 +142,59 @@ def test_many_are_planned_in_order_in_processes_of_a_program_without_guard(tmp_p
     assert shapes == "[5, 7, 6, 8]"
     assert failed.startswith("4 invalid-request instance 4: seed must be")
     assert "4/4" in done.stderr
+
+
+MANY = """
+import numpy as np, paretour
+many = [{"coordinates": np.random.default_rng(n).random((200, 4))} for n in range(4)]
+try:
+    paretour.plan_many(many, workers=2, time_limit=60)
+except paretour.InstanceFailed as error:
+    print("failed", error)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def _plans(process: psutil.Process) -> bool:
+    """Whether a process is one of those that plan, and has been busy for a second."""
+    with suppress(psutil.Error):  # it has just ended
+        busy = sum(process.cpu_times()[:2])
+        return "service.library.crew" in process.cmdline() and busy > 1
+    return False
+
+
+@contextmanager
+def planning_many() -> Iterator[tuple[subprocess.Popen[bytes], list[psutil.Process]]]:
+    """A program that plans many, and its processes, which have all begun."""
+    command = [sys.executable, "-c", MANY]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE) as program:
+        try:
+            begun = psutil.Process(program.pid).children
+            while len(crew := [each for each in begun() if _plans(each)]) < 2:
+                assert program.poll() is None
+                time.sleep(0.05)
+            yield program, crew
+        finally:
+            program.kill()
+
+
+def test_ctrl_c_ends_all_who_plan_many() -> None:
+    with planning_many() as (program, crew):
+        program.send_signal(signal.SIGINT)
+        printed, _ = program.communicate(timeout=20)
+        assert printed == b"interrupted\n"
+        assert not any(each.is_running() for each in crew)
+
+
+def test_a_process_that_dies_names_its_instance_and_ends_the_others() -> None:
+    with planning_many() as (program, crew):
+        crew[1].kill()
+        printed, _ = program.communicate(timeout=20)
+        assert re.fullmatch(
+            rb"failed instance [01]: its process ended with status -9\n", printed
+        ), printed
+        assert not any(each.is_running() for each in crew)
 
 
 def test_none_are_planned_in_no_process() -> None:

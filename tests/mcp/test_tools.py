@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -21,6 +22,7 @@ from service.api.auth import Access
 from service.api.keys import KeyHash, new_key
 from service.requests.limits import Limits
 from tests.helpers.command import ROOT, paretour
+from tests.helpers.engines import engine_of
 from tests.helpers.serving import app_of, problem, serving
 
 LIMITS = Limits(body_bytes=2**21, cities=2000, cells=900, preferences=20, size=100, seconds=0.2)
@@ -176,6 +178,32 @@ def test_an_error_is_a_sentence(
             return await said(client, tool, True, **arguments)
 
     assert sentence in asyncio.run(talk())
+
+
+def test_replicas_of_a_cluster_answer_an_agent_alike(
+    request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    (tmp_path / "begun").touch()  # so that the second replica leaves the first one's records
+    edge = Edge(agents=True)
+
+    async def talk(first: str, second: str) -> None:
+        async with agent(first) as client:
+            front = (await call(client, "plan_front", **FRONT))["front"]
+        async with agent(second) as client:
+            assert await call(client, "explain_front", front=front)
+            chosen = await call(client, "choose_tour", front=front, knee=True)
+            rest = await call(client, "replan", front=front, done=chosen["stops"][:3])
+            assert chosen["stops"][1] not in rest["stops"]
+            fleet = await call(client, "plan_fleet", **FLEET)
+            assert {route["vehicle"] for route in fleet["routes"]} == {"van"}
+            assert "unknown-front" in await said(client, "explain_front", True, front="x")
+
+    with (
+        engine_of("cluster", request) as cluster,
+        cluster.serve(edge=edge) as one,
+        cluster.serve(edge=edge, folder=tmp_path) as other,
+    ):
+        asyncio.run(talk(*(str(each.client.base_url).rstrip("/") for each in (one, other))))
 
 
 def test_a_key_is_required_where_keys_are_set_and_fronts_belong_to_it() -> None:
