@@ -8,6 +8,7 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from service.instance import Instance
 from service.preferences import angles
 
 Array = NDArray[np.float64]
@@ -99,6 +100,13 @@ class PlanOptions:
     repairs: int = 0
     fewer_repairs: bool = False
     choose_again: Callable[[SearchResult, Indices], Indices] | None = None
+
+
+# Improves tours of an instance until a time by time.monotonic(), with `stop` and `report` as plan.
+SearchFunction = Callable[
+    [Instance, NDArray[np.integer], PlanOptions, float, Callable[[], bool], ReportOf[SearchResult]],
+    SearchResult,
+]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

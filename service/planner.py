@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.construction.repairs import repairs_worth
 from service.errors import Cancelled, NoTour, Obstacle
-from service.front import Front, PlanOptions, Progress, ReportOf, SearchResult
+from service.front import (
+    Front,
+    PlanOptions,
+    Progress,
+    ReportOf,
+    SearchFunction,
+    SearchResult,
+)
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from service.search.best_subset import best_subset, selection_seconds
@@ -34,12 +41,35 @@ _PHASES = ("construction", "improvement", "selection", "bound")
 BOUND_SECONDS = 5.0  # for tightening a bound; it is valid at any time
 
 
+def improved(
+    instance: Instance,
+    tours: NDArray[np.integer],
+    options: PlanOptions,
+    deadline: float,
+    stop: Callable[[], bool],
+    report: ReportOf[SearchResult],
+) -> SearchResult:
+    """Return the result of a search that leaves enough time to select from it."""
+    return improve(
+        instance,
+        tours,
+        deadline=deadline,
+        reserve=partial(selection_seconds, options.size, objectives=instance.objectives),
+        seed=options.seed,
+        stop=stop,
+        report=report,
+        reference_point=options.reference_point,
+        touched=options.touched,
+    )
+
+
 def plan(
     constructor: Constructor,
     instance: Instance,
     options: PlanOptions,
     stop: Callable[[], bool] = lambda: False,
     report: ReportOf[Front] = lambda *_: None,
+    search: SearchFunction = improved,
 ) -> Front:
     """Return the best front found for an instance within the time limit.
 
@@ -50,6 +80,7 @@ def plan(
         stop: Called every millisecond or two; True ends planning with the best front so far.
         report: Called about ten times a second with the progress of the search, and with a function
             that returns the best front so far of at most n tours.
+        search: Improves the first tours, where there is time.
 
     Raises:
         Cancelled: `stop` returned True before a tour was found.
@@ -57,9 +88,8 @@ def plan(
     """
     times = [time.perf_counter()]
     deadline = time.monotonic() + options.time_limit
-    reference_point = options.reference_point
-    if reference_point is None:
-        reference_point = instance.reference_point
+    given = options.reference_point
+    reference_point = instance.reference_point if given is None else given
     options = replace(options, reference_point=reference_point)
     constructed = _constructed(constructor, instance, options)
     first = _first_tours(instance, constructed, options)
@@ -89,7 +119,8 @@ def plan(
 
         report(progress, best_front)
 
-    found = _improved(instance, first, options, deadline, stop, report_front)
+    find = search if searched else _unsearched
+    found = find(instance, first, options, deadline, stop, report_front)
     times.append(time.perf_counter())
     if not len(found.points):
         raise Cancelled if stop() else _no_tour(instance, options, found)
@@ -130,30 +161,11 @@ def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -
     return np.concatenate((constructed, plain.astype(np.int64), initial))
 
 
-def _improved(
-    instance: Instance,
-    tours: Tours,
-    options: PlanOptions,
-    deadline: float,
-    stop: Callable[[], bool],
-    report: ReportOf[SearchResult],
-) -> SearchResult:
-    """Return the result of a search that leaves enough time to select from it."""
-    if options.time_limit == 0:
-        points = tour_lengths(instance, tours)
-        front = nondominated(points)
-        return SearchResult(points[front], tours[front].__getitem__, "converged")
-    return improve(
-        instance,
-        tours,
-        deadline=deadline,
-        reserve=partial(selection_seconds, options.size, objectives=instance.objectives),
-        seed=options.seed,
-        stop=stop,
-        report=report,
-        reference_point=options.reference_point,
-        touched=options.touched,
-    )
+def _unsearched(instance: Instance, tours: NDArray[np.integer], *_: object) -> SearchResult:
+    """Return the nondominated among tours."""
+    points = tour_lengths(instance, tours)
+    front = nondominated(points)
+    return SearchResult(points[front], tours[front].__getitem__, "converged")
 
 
 def _bound(instance: Instance, reference_point: Array, stop: Callable[[], bool]) -> float:

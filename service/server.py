@@ -31,6 +31,9 @@ from service.api.transport.protocol import Connection
 from service.api.transport.proxies import TrustedProxies
 from service.cluster import check_cluster
 from service.errors import NoWorker
+from service.extensions.constructors import constructor_infos, load_constructors
+from service.extensions.names import NO_EXTENSIONS
+from service.extensions.searches import load_search
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.sqlite_store import SqliteStore
@@ -297,7 +300,12 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
 
 def _make_runner(settings: Settings) -> MakeRunner:
     make = partial(
-        make_runner, settings.actors, settings.threads, settings.limits, settings.own_actors
+        make_runner,
+        settings.actors,
+        settings.threads,
+        settings.limits,
+        settings.own_actors,
+        settings.extensions,
     )
     return partial(logged, make)
 
@@ -316,17 +324,22 @@ def _checked_actors(settings: Settings) -> Mapping[str, ActorInfo]:
     could not be forked.
 
     Raises:
-        ValueError: A file is not an actor, or ONNX Runtime cannot run its network.
+        ValueError: A file is not an actor, ONNX Runtime cannot run its network, or an extension is
+            not installed or cannot be imported.
     """
-    infos = read_actor_infos(settings.actors, settings.own_actors)
-    if any(path.parent != RELEASED for path in infos):
+    files = read_actor_infos(settings.actors, settings.own_actors)
+    infos = {info.name: info for info in files.values()}
+    constructors = constructor_infos(settings.constructors, infos)
+    if settings.extensions != NO_EXTENSIONS or any(path.parent != RELEASED for path in files):
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(1, mp_context=context) as pool:
-            pool.submit(_load_actors, settings).result()
-    return {info.name: info for info in infos.values()}
+            pool.submit(_load_own_code, settings).result()
+    return {**infos, **constructors}
 
 
-def _load_actors(settings: Settings) -> None:
+def _load_own_code(settings: Settings) -> None:
     from service.actor import load_actors
 
     load_actors(settings.actors, settings.threads, settings.own_actors)
+    load_constructors(settings.constructors)
+    load_search(settings.search)

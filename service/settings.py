@@ -28,6 +28,7 @@ from service.actor_info import RELEASED
 from service.api.keys import KeyHash
 from service.api.site.tiles import checked_template
 from service.api.transport.proxies import MOST_LETTERS, ROOT_PATH
+from service.extensions.names import Extensions
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
 from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
@@ -163,6 +164,10 @@ class Settings(BaseSettings):
     """directory of the networks, ONNX files"""
     own_actors: Path | None = None
     """directory of more networks, served in addition"""
+    constructors: Words = ()
+    """constructors of tours, separated by commas: functions of installed packages"""
+    search: Name | None = None
+    """the search in the place of Paretour's: a function of an installed package"""
     workers: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(default_factory=_cores)
     """processes that plan, one request at a time each"""
     threads: Annotated[int, _whole(1, _MOST_PROCESSES)] = 1
@@ -284,6 +289,11 @@ class Settings(BaseSettings):
     # Observation.
     traces: str | None = Field(None, validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT")
     """where OpenTelemetry traces go, over HTTP"""
+
+    @property
+    def extensions(self) -> Extensions:
+        """The names of the constructors and of the search of other packages."""
+        return Extensions(self.constructors, self.search)
 
     @property
     def roads(self) -> RouterSettings | None:

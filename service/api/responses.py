@@ -109,7 +109,7 @@ class ActorName(BaseModel):
     """The network that built a front."""
 
     name: str
-    digest: str = Field(description="SHA-256 of its file")
+    digest: str = Field(description="SHA-256 of its file, or of its package's name and version")
 
 
 class ObjectiveName(BaseModel):

@@ -1,8 +1,9 @@
 """Plan for the command: in this process, or by a service at a URL."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from http import HTTPStatus
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import httpx
 from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
@@ -12,6 +13,10 @@ from rich.console import Console
 from service.cli.errors import UsageError
 from service.cli.options import Service
 from service.cli.progress import ConsoleDisplay, progress_bar
+
+if TYPE_CHECKING:
+    from service.actor_info import ActorInfo
+    from service.settings import Settings
 
 
 class Backend(Protocol):
@@ -89,15 +94,18 @@ class LocalBackend:
             raise UsageError(error.detail) from None
 
     def actors(self) -> tuple[Actor, ...]:
-        """Return the actors in the directory that the settings name."""
+        """Return the actors and the constructors that the settings name."""
         from service.actor import load_actors
         from service.cli.configuration import load_settings, load_with
+        from service.extensions.constructors import constructor_infos
 
-        loaded = load_with(
-            lambda settings: load_actors(settings.actors, settings.threads, settings.own_actors),
-            load_settings(),
-        )
-        return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
+        def known(settings: "Settings") -> Mapping[str, "ActorInfo"]:
+            loaded = load_actors(settings.actors, settings.threads, settings.own_actors)
+            infos = {name: actor.info for name, actor in loaded.items()}
+            return {**infos, **constructor_infos(settings.constructors, infos)}
+
+        infos = load_with(known, load_settings())
+        return tuple(Actor(**asdict(infos[name])) for name in sorted(infos))
 
 
 def _result(job: Job[FrontOfAnyKind], plan: Plan, console: Console) -> FrontOfAnyKind:

@@ -145,6 +145,11 @@ PROBLEMS: Mapping[str, Problem] = {
     "rate-limited": Problem(
         429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
     ),
+    "extension-failed": Problem(
+        500,
+        "{extension}, which the operator added, {fault}: this is not a fault of the request",
+        _NONE,
+    ),
     "internal-error": Problem(500, "this is a fault of the service, not of the request", _NONE),
     "router-unusable": Problem(
         502, "the routing engine must answer as documented, and does not: {reason}", _ROADS

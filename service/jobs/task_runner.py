@@ -6,6 +6,10 @@ from pathlib import Path
 
 from service.actor import load_actors
 from service.actor_info import ActorInfo
+from service.extensions.constructors import load_constructors
+from service.extensions.names import NO_EXTENSIONS, Extensions
+from service.extensions.searches import load_search
+from service.front import SearchFunction
 from service.jobs.compiled_code import warm_up
 from service.jobs.parts import Compiling, Part
 from service.kinds.front_document import FrontDocument
@@ -22,12 +26,14 @@ from service.roads.router import RouterSettings
 class TaskRunner:
     """Plans fronts within limits, with the actors that are loaded.
 
-    With a measurer, it asks for the costs by road of tasks that come without.
+    With a measurer, it asks for the costs by road of tasks that come without. With a search, it
+    plans fronts with that in the place of Paretour's.
     """
 
     actors: Mapping[str, NamedActor]
     limits: Limits
     measurer: BlockingMeasurer | None = None
+    search: SearchFunction | None = None
 
     def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
         """Open the networks, and compile parts of the code or load them from the cache."""
@@ -44,7 +50,7 @@ class TaskRunner:
         """Return the front of a task."""
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
-        return RUNS[task.kind](task, Tools(self.actors, self.limits), stop, report)
+        return RUNS[task.kind](task, Tools(self.actors, self.limits, self.search), stop, report)
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""
@@ -58,13 +64,17 @@ def load_runner(
     limits: Limits,
     own_directory: Path | None = None,
     roads: RouterSettings | None = None,
+    extensions: Extensions = NO_EXTENSIONS,
 ) -> TaskRunner:
-    """Return a runner with the actors of a directory, and of one of the user's.
+    """Return a runner with the actors of a directory, of one of the user's, and of extensions.
 
     With a routing engine, it asks that for the costs by road of tasks that come without.
 
     Raises:
-        ValueError: As of load_actors.
+        ValueError: As of load_actors, load_constructors and load_search.
     """
     measurer = None if roads is None else BlockingMeasurer(RoadClient(roads))
-    return TaskRunner(load_actors(directory, threads, own_directory), limits, measurer)
+    actors = load_actors(directory, threads, own_directory)
+    constructors = load_constructors(extensions.constructors, actors)
+    search = load_search(extensions.search)
+    return TaskRunner({**actors, **constructors}, limits, measurer, search)

@@ -110,6 +110,8 @@ def _plan(
 
     report_encoded = reporting(report, encoded)
     planned = partial(plan, actor, instance)
+    if tools.search is not None:
+        planned = partial(plan, actor, instance, search=tools.search)
     if task.earlier is not None:
         planned = partial(replan, actor, instance, task.earlier)
     try:

@@ -130,6 +130,11 @@ def load_planner(settings: Settings) -> LocalPlanner:
     from service.jobs.task_runner import load_runner  # it loads all that plans
 
     runner = load_runner(
-        settings.actors, settings.threads, settings.limits, settings.own_actors, settings.roads
+        settings.actors,
+        settings.threads,
+        settings.limits,
+        settings.own_actors,
+        settings.roads,
+        settings.extensions,
     )
     return LocalPlanner(runner)

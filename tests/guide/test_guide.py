@@ -43,6 +43,7 @@ NOT_RUN = (
     "npm install ",
     "npx openapi-typescript ",
     "PARETOUR_OWN_ACTORS=",
+    "PARETOUR_CONSTRUCTORS=",
 )
 # One process for all, because each would import torch.
 HELP_OF_EACH = """
@@ -65,7 +66,16 @@ FROM_TYPESCRIPT = GUIDE / "call-it-from-typescript.md"
 FROM_A_SHELL = GUIDE / "call-it-from-a-shell.md"
 FIRST_TOUR = GUIDE / "first-tour-in-ten-minutes.md"
 TRAINING = (GUIDE / "train-and-add-an-actor.md", GUIDE / "train-your-own-actor.md")
-WITH_A_TEST = (COMMAND_LINE, FROM_PYTHON, FROM_TYPESCRIPT, FROM_A_SHELL, FIRST_TOUR, TRAINING[1])
+EXTENSIONS = GUIDE / "use-your-own-constructor-or-search.md"
+WITH_A_TEST = (
+    COMMAND_LINE,
+    FROM_PYTHON,
+    FROM_TYPESCRIPT,
+    FROM_A_SHELL,
+    FIRST_TOUR,
+    TRAINING[1],
+    EXTENSIONS,
+)
 OTHERS = [page for page in RUNNABLE if page not in WITH_A_TEST]
 
 

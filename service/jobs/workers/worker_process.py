@@ -19,6 +19,7 @@ from socket import socket, socketpair
 from threading import Condition, Lock, Thread
 from typing import Protocol
 
+from service.extensions.names import NO_EXTENSIONS, Extensions
 from service.front import Progress
 from service.jobs.parts import Compiling, Part
 from service.jobs.workers.messages import (
@@ -99,11 +100,12 @@ def make_runner(
     threads: int,
     limits: Limits,
     own_actors: Path | None = None,
+    extensions: Extensions = NO_EXTENSIONS,
 ) -> Runner:
     """Return a runner as `load_runner` does, which is imported only by the process that calls."""
     from service.jobs.task_runner import load_runner
 
-    return load_runner(actors, threads, limits, own_actors)
+    return load_runner(actors, threads, limits, own_actors, extensions=extensions)
 
 
 def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:

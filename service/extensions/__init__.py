@@ -1,0 +1,1 @@
+"""Constructors of tours and a search of other packages, which an operator names."""

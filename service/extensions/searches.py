@@ -1,0 +1,52 @@
+"""Improve tours with a function of another package, in the place of Paretour's search."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.extensions.checks import called, checked
+from service.extensions.entry_points import SEARCHES, described, loaded
+from service.front import PlanOptions, ReportOf, SearchFunction, SearchResult, Termination
+from service.instance import Instance, tour_lengths
+from service.pareto import nondominated
+
+_FEWEST_CITIES = 3  # to search for: of fewer, the given tours are all there are
+_SHARE = 0.95  # of the seconds that are left: the rest is for checking the tours and choosing
+
+
+def load_search(name: str | None) -> SearchFunction | None:
+    """Return the search of a name, with its results checked; None if there is no name.
+
+    Raises:
+        ValueError: It is not installed, or cannot be imported.
+    """
+    if name is None:
+        return None
+    function, at = loaded(SEARCHES, name), described(SEARCHES, name)
+
+    def search(
+        instance: Instance,
+        tours: NDArray[np.integer],
+        options: PlanOptions,  # noqa: ARG001
+        deadline: float,
+        stop: Callable[[], bool],
+        report: ReportOf[SearchResult],  # noqa: ARG001
+    ) -> SearchResult:
+        every = tours
+        if instance.n >= _FEWEST_CITIES:
+            seconds = _SHARE * (deadline - time.monotonic())
+            found = called(function, instance, tours, max(seconds, 0.0), stop)
+            every = np.concatenate((checked(found, instance, at), tours))
+        points = tour_lengths(instance, every)
+        front = nondominated(points)
+        return SearchResult(points[front], every[front].__getitem__, _termination(deadline, stop))
+
+    return search
+
+
+def _termination(deadline: float, stop: Callable[[], bool]) -> Termination:
+    if stop():
+        return "cancelled"
+    return "time_limit" if time.monotonic() >= deadline else "converged"
