@@ -72,7 +72,11 @@ class StoredFrontRoutes:
         router.get(
             "/front/{id}/events",
             response_class=StreamingResponse,
-            responses={200: stream, 204: {"description": "Ended, as you know"}, **missing},
+            responses={
+                200: stream,
+                204: {"description": "Finished, as the client knows"},
+                **missing,
+            },
             openapi_extra={"parameters": list(PARAMETERS)},
         )(self.follow_front)
         router.get(

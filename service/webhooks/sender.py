@@ -37,6 +37,7 @@ _TYPES: Mapping[Status, str] = {
     "cancelled": "front.cancelled",
     "failed": "front.failed",
 }
+_LINE = "webhook of front %s, attempt %d: %s, %s"
 _LOG = logging.getLogger("paretour")
 
 
@@ -120,8 +121,8 @@ class _Sender:
                 pause = pauses[delivery.attempts - 1] * random.uniform(1, 1 + _JITTER)
                 await self._outbox.postpone(delivery.id, pause)
         self._webhooks.observe(outcome)
-        said = f"webhook of front {delivery.id}, attempt {delivery.attempts}: {outcome}"
-        _LOG.log(logging.WARNING if failure else logging.INFO, f"{said} {failure}".strip())
+        level = logging.WARNING if failure else logging.INFO
+        _LOG.log(level, _LINE, delivery.id, delivery.attempts, outcome, failure or "it has arrived")
 
     async def _attempt(self, delivery: Delivery) -> tuple[str, bool]:
         """Post a delivery; return why it failed, if it did, and whether it will always fail."""
