@@ -30,7 +30,7 @@ PAUSES = (5.0, 60.0, 300.0, 1800.0, 7200.0)  # seconds before the second attempt
 _JITTER = 0.2  # the share by which a pause may be longer, so that failures do not come together
 _SECONDS = 15.0  # of one attempt
 _LEASE = 60.0  # seconds for which a delivery is taken
-_AT_ONCE = 16
+_AT_ONCE = 64  # so that targets that do not answer delay others little
 _POLL = 0.5  # seconds between two looks for deliveries
 _TYPES: Mapping[Status, str] = {
     "done": "front.completed",

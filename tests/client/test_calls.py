@@ -1,6 +1,7 @@
 """Calls, made by both clients against prepared answers."""
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import httpx
@@ -9,6 +10,7 @@ import pytest
 from paretour import Refused
 from paretour.calls import Calls
 
+from tests.client.test_robots import REQUEST as ROBOTS
 from tests.helpers.answers import (
     EMPTY,
     Answers,
@@ -19,6 +21,7 @@ from tests.helpers.answers import (
     progress,
     status,
 )
+from tests.helpers.fleet_requests import fleet_request
 
 CITIES = np.random.default_rng(3).random((12, 4))
 
@@ -160,3 +163,27 @@ def test_a_list_is_read_page_by_page_until_there_are_enough() -> None:
     with pytest.raises(StopIteration) as ended:
         call.send(httpx.Response(200, json={"fronts": [listed("a")]}, headers=link))
     assert [each.id for each in ended.value.value] == ["c", "b", "a"]
+
+
+def test_every_job_may_name_a_webhook(connect: Connect) -> None:
+    hook = "https://hooks.example.com/done"
+    robots: Any = {**ROBOTS}
+    grid: Any = {name: ROBOTS[name] for name in ("grid", "cell_size", "places")}
+    fleet: Any = fleet_request()
+    submits: list[Callable[[Any, str | None], Any]] = [
+        lambda client, webhook: client.submit(coordinates=CITIES, webhook=webhook),
+        lambda client, webhook: client.submit_coverage(**grid, webhook=webhook),
+        lambda client, webhook: client.submit_fleet(**fleet, webhook=webhook),
+        lambda client, webhook: client.submit_robots(**robots, webhook=webhook),
+        lambda client, webhook: client.submit_replan("f", done=[1], webhook=webhook),
+        lambda client, webhook: client.submit_replan_fleet("f", done=[["a"]], webhook=webhook),
+    ]
+    for submit in submits:
+        accepted = httpx.Response(202, json={"id": "f", "status": "queued"})
+        service = Answers(accepted, accepted)
+        client = connect(transport=service)
+        assert submit(client, hook).id == submit(client, None).id == "f"
+        named, unnamed = (request.headers for request in service.requests)
+        assert named["webhook-url"] == hook
+        assert "webhook-url" not in unnamed
+        assert named["prefer"] == unnamed["prefer"] == "respond-async"

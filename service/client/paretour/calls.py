@@ -156,42 +156,58 @@ class Calls:
         return self._plan(plan, parse_robots)
 
     @explaining(FrontRequest)
-    def submit(self, **request: Unpack[FrontRequest]) -> Call[Submitted[Front]]:
-        """Submit a job that plans a front."""
-        return self.post(front_plan(request))
+    def submit(
+        self, *, webhook: str | None = None, **request: Unpack[FrontRequest]
+    ) -> Call[Submitted[Front]]:
+        """Submit a job that plans a front, and tell the webhook, an address, when it has ended."""
+        return self._submit(front_plan(request), parse_front, webhook)
 
     @explaining(CoverageRequest)
     def submit_coverage(
-        self, png: bytes | None = None, **request: Unpack[CoverageRequest]
+        self,
+        png: bytes | None = None,
+        *,
+        webhook: str | None = None,
+        **request: Unpack[CoverageRequest],
     ) -> Call[Submitted[Front]]:
-        """Submit a job that plans a front over a map; arguments as of `coverage`."""
-        return self.post(coverage_plan(request, png))
+        """Submit a job that plans a front over a map; arguments as of `coverage` and `submit`."""
+        return self._submit(coverage_plan(request, png), parse_front, webhook)
 
     @explaining(ReplanRequest)
     def submit_replan(
-        self, front: Front | str, **request: Unpack[ReplanRequest]
+        self, front: Front | str, *, webhook: str | None = None, **request: Unpack[ReplanRequest]
     ) -> Call[Submitted[Front]]:
-        """Submit a job that plans the rest of a tour; arguments as of `replan`."""
-        return self.post(replan_plan(front, request))
+        """Submit a job that plans the rest of a tour; arguments as of `replan` and `submit`."""
+        return self._submit(replan_plan(front, request), parse_front, webhook)
 
     @explaining(ReplanFleetRequest)
     def submit_replan_fleet(
-        self, front: FleetFront | str, **request: Unpack[ReplanFleetRequest]
+        self,
+        front: FleetFront | str,
+        *,
+        webhook: str | None = None,
+        **request: Unpack[ReplanFleetRequest],
     ) -> Call[Submitted[FleetFront]]:
-        """Submit a job that plans the rest of a fleet's day; arguments as of `replan_fleet`."""
-        return self._submit(replan_plan(front, request), parse_fleet)
+        """Submit a job for the rest of a day; arguments as of `replan_fleet` and `submit`."""
+        return self._submit(replan_plan(front, request), parse_fleet, webhook)
 
     @explaining(FleetRequest)
-    def submit_fleet(self, **request: Unpack[FleetRequest]) -> Call[Submitted[FleetFront]]:
-        """Submit a job that plans a front of plans for a fleet."""
-        return self._submit(fleet_plan(request), parse_fleet)
+    def submit_fleet(
+        self, *, webhook: str | None = None, **request: Unpack[FleetRequest]
+    ) -> Call[Submitted[FleetFront]]:
+        """Submit a job that plans a front of plans for a fleet; `webhook` as of `submit`."""
+        return self._submit(fleet_plan(request), parse_fleet, webhook)
 
     @explaining(RobotsRequest)
     def submit_robots(
-        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
+        self,
+        png: bytes | None = None,
+        *,
+        webhook: str | None = None,
+        **request: Unpack[RobotsRequest],
     ) -> Call[Submitted[RobotFront]]:
-        """Submit a job that plans for several robots; arguments as of `coverage`."""
-        return self._submit(coverage_plan(request, png), parse_robots)
+        """Submit a job that plans for several robots; arguments as of `coverage` and `submit`."""
+        return self._submit(coverage_plan(request, png), parse_robots, webhook)
 
     def post(self, plan: Plan) -> Call[Submitted[Front]]:
         """Send a plan that was built before, as a job."""
@@ -294,8 +310,11 @@ class Calls:
     def _plan(self, plan: Plan, parse: Parse[AnyFront]) -> Call[AnyFront]:
         return parse(_answer((yield from self._post(plan, self.timeout + plan.seconds))).document)
 
-    def _submit(self, plan: Plan, parse: Parse[AnyFront]) -> Call[Submitted[AnyFront]]:
-        response = yield from self._post(plan, self.timeout, Prefer="respond-async")
+    def _submit(
+        self, plan: Plan, parse: Parse[AnyFront], webhook: str | None = None
+    ) -> Call[Submitted[AnyFront]]:
+        headers = {"Prefer": "respond-async", **({"Webhook-Url": webhook} if webhook else {})}
+        response = yield from self._post(plan, self.timeout, **headers)
         return _answer(response).read("id", text), parse
 
     def _send(self, request: HttpRequest) -> Call[httpx.Response]:
