@@ -8,9 +8,9 @@ from playwright.sync_api import Browser, Page, expect
 from tests.helpers.accessibility import load_axe, unfold, violations
 from tests.helpers.browsing import DESK, PHONE, needs_chromium, open_page, wait_until_planned
 
-TABLET = 768
+TABLET, WIDE = 768, 1920
 SETTLED = 500  # ms after a change of the scheme
-WIDTHS = (PHONE, TABLET, DESK)
+WIDTHS = (PHONE, TABLET, DESK, WIDE)
 SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 
 pytestmark = needs_chromium

@@ -1,9 +1,14 @@
 """The guide in a browser: its search, its list of pages, on a desk and on a phone."""
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import DESK, PHONE, needs_chromium, open_page
+from tests.guide.pages import GUIDE
+from tests.helpers.browsing import CLIPBOARD, DESK, PHONE, needs_chromium, open_page
+
+PAGES = [path.stem for path in GUIDE.glob("*.md") if path.stem != "index"]
+PROSE = 200  # pixels for a cell of many words
+WITHOUT_CLIPBOARD = "Object.defineProperty(navigator, 'clipboard', { value: undefined })"
 
 pytestmark = needs_chromium
 
@@ -38,3 +43,58 @@ def test_nothing_sticks_out(browser: Browser, released: str, width: int, name: s
         if width == PHONE:
             page.get_by_text("All pages").click()
         expect(listed.get_by_role("link").first).to_be_visible()
+
+
+def test_no_page_scrolls_sideways_on_a_phone(browser: Browser, released: str) -> None:
+    with open_page(browser, f"{released}/guide/", PHONE) as page:
+        for name in PAGES:
+            page.goto(f"{released}/guide/{name}")
+            assert page.evaluate("document.documentElement.scrollWidth") == PHONE, name
+            narrow = "cells => cells.map(each => each.clientWidth).filter(width => width < %d)"
+            assert page.locator(".prose").evaluate_all(narrow % PROSE) == [], name
+
+
+def test_a_wide_table_is_scrolled_by_keys_in_its_own_box(browser: Browser, released: str) -> None:
+    with open_page(browser, f"{released}/guide/run-it-in-production", PHONE) as page:
+        table = page.get_by_role("region", name="Table: Settings")
+        table.focus()
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function("table => table.scrollLeft > 0", arg=table.element_handle())
+        assert page.evaluate("scrollX") == 0
+
+
+@pytest.mark.parametrize("has_clipboard", [True, False])
+def test_a_button_copies_a_block_of_code_by_keys(
+    browser: Browser, released: str, has_clipboard: bool
+) -> None:
+    page = browser.new_page(
+        viewport={"width": PHONE, "height": 900}, permissions=CLIPBOARD if has_clipboard else []
+    )
+    page.goto(f"{released}/guide/train-your-own-actor")
+    if not has_clipboard:  # as where the connection is not safe
+        page.evaluate(WITHOUT_CLIPBOARD)
+    block = page.locator(".block").first
+    button = block.get_by_role("button")
+    assert not overlaps(page, ".block code", ".block button")
+    button.focus()
+    page.keyboard.press("Enter")
+    expect(button).to_have_text("Copied")
+    expect(page.locator("#copied")).to_have_text("Copied")
+    expect(button).to_be_focused()
+    expect(button).to_have_text("Copy")
+    expect(page.locator("#copied")).to_be_empty()
+    search = page.get_by_role("searchbox")
+    search.focus()
+    page.keyboard.press("Control+v")
+    expect(search).to_have_value(block.locator("code").inner_text().strip())
+    page.close()
+
+
+def overlaps(page: Page, one: str, other: str) -> bool:
+    """Return whether the first elements of two selectors cover each other."""
+    first, second = (page.locator(each).first.bounding_box() for each in (one, other))
+    assert first is not None
+    assert second is not None
+    return (
+        first["y"] < second["y"] + second["height"] and second["y"] < first["y"] + first["height"]
+    )

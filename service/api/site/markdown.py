@@ -10,6 +10,7 @@ from markdown_it.token import Token
 
 Resolve = Callable[[str], str | None]
 _RENDERER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
+_PROSE = 60  # characters of a cell, from which on it keeps room for some words on narrow screens
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ def render(text: str, resolve: Resolve) -> Page:
     """
     tokens = _RENDERER.parse(text)
     uses = Counter[str]()  # of each anchor: a repeated heading gets a number
+    _name_tables(tokens)
     for at, token in enumerate(tokens):
         if token.type == "heading_open":
             anchor = slug(_text(tokens[at + 1]))
@@ -62,6 +64,8 @@ def render(text: str, resolve: Resolve) -> Page:
         elif token.type in ("th_open", "td_open") and "style" in token.attrs:
             # The service tells browsers to ignore styles inside a document.
             token.attrs = {"class": str(token.attrs["style"]).removeprefix("text-align:")}
+        if token.type == "td_open" and len(_text(tokens[at + 1])) > _PROSE:
+            token.attrJoin("class", "prose")
     sections = tuple(_sections(tokens))
     html = _RENDERER.renderer.render(tokens, _RENDERER.options, {})
     return Page(sections[0].heading, _with_scrolling_tables(html), sections)
@@ -79,12 +83,29 @@ def slug(heading: str) -> str:
 def _with_scrolling_tables(html: str) -> str:
     """Return the HTML with each table in a block of its own, which scrolls on narrow screens.
 
-    It can be focused, like blocks of code, so that keys scroll it too. An empty heading becomes an
-    ordinary cell, since a screen reader would announce a heading without text.
+    The block has a name, and can be focused, like blocks of code, so that keys scroll it too. An
+    empty heading becomes an ordinary cell, since a screen reader would announce a heading without
+    text.
     """
     html = html.replace("<th></th>", "<td></td>")
-    html = html.replace("<table>", '<div class="wide" tabindex="0"><table>')
+    html = re.sub(
+        r"<table aria-label=(\".*?\")>",
+        r'<div class="wide" role="region" aria-label=\1 tabindex="0"><table>',
+        html,
+    )
     return html.replace("</table>", "</table></div>").replace("<pre>", '<pre tabindex="0">')
+
+
+def _name_tables(tokens: list[Token]) -> None:
+    """Name each table by the heading above it, with a number from the second one on."""
+    heading, uses = "", Counter[str]()
+    for at, token in enumerate(tokens):
+        if token.type == "heading_open":
+            heading = _text(tokens[at + 1])
+        elif token.type == "table_open":
+            uses[heading] += 1
+            number = f" {uses[heading]}" if uses[heading] > 1 else ""
+            token.attrSet("aria-label", f"Table{number}: {heading}")
 
 
 def _resolved(tokens: list[Token], resolve: Resolve) -> Iterator[Token]:

@@ -6,6 +6,7 @@ const AROUND = 60; // characters of text shown before what was found
 const input = document.querySelector("#search");
 const list = document.querySelector("#found");
 const count = document.querySelector("#count");
+const copied = document.querySelector("#copied");
 let sections = null;
 
 /** Return the sections of all pages, fetched at the first use. */
@@ -80,6 +81,19 @@ function move(event) {
   event.preventDefault();
 }
 
+/** Copy a text; where the connection is not safe, browsers have no clipboard, but this command. */
+async function copy(text) {
+  if (navigator.clipboard) return navigator.clipboard.writeText(text);
+  const field = document.createElement("textarea");
+  field.className = "unseen";
+  field.value = text;
+  document.body.append(field);
+  field.select();
+  const done = document.execCommand("copy");
+  field.remove();
+  if (!done) throw new Error("the browser does not copy");
+}
+
 /** Put a button that copies it over a block of code. */
 function addCopyButton(block) {
   const frame = document.createElement("div");
@@ -90,10 +104,14 @@ function addCopyButton(block) {
   button.textContent = "Copy";
   let timer;
   button.addEventListener("click", async () => {
-    await navigator.clipboard.writeText(block.querySelector("code").textContent);
-    button.textContent = "Copied";
+    const done = await copy(block.querySelector("code").textContent).then(() => true, () => false);
+    button.focus();
+    button.textContent = copied.textContent = done ? "Copied" : "Not copied";
     clearTimeout(timer);
-    timer = setTimeout(() => (button.textContent = "Copy"), 1500);
+    timer = setTimeout(() => {
+      button.textContent = "Copy";
+      copied.textContent = "";
+    }, 1500);
   });
   frame.append(block, button);
 }
@@ -112,4 +130,4 @@ document.addEventListener("click", (event) => {
   if (!event.target.closest("search") || event.target.closest("#found a")) close();
 });
 if (matchMedia("(max-width: 860px)").matches) document.querySelector("#pages").open = false;
-if (navigator.clipboard) document.querySelectorAll("pre").forEach(addCopyButton);
+document.querySelectorAll("pre").forEach(addCopyButton);

@@ -58,7 +58,23 @@ def test_a_table_needs_no_style_inside_the_document() -> None:
     html = rendered().html
     assert '<td class="right">2</td>' in html
     assert "style=" not in html
-    assert '<div class="wide" tabindex="0"><table>' in html
+
+
+def test_a_table_scrolls_in_a_region_that_has_a_name_of_its_own() -> None:
+    table = "\n| a |\n|---|\n| {} |\n"
+    text = f'# The *first* "part"\n{table}\n{table}\n## `Last`\n{table}'
+    html = rendered(text).html
+    for name in ("Table: The first &quot;part&quot;", "Table 2: The first &quot;part&quot;"):
+        region = f'<div class="wide" role="region" aria-label="{name}" tabindex="0"><table>'
+        assert html.count(region) == 1
+    assert 'aria-label="Table: Last"' in html
+    assert html.count("</table></div>") == 3
+
+
+def test_a_cell_of_many_words_keeps_room_for_some() -> None:
+    html = rendered(f"# Page\n\n| a | b |\n|---|--:|\n| few | {'many ' * 20} |\n").html
+    assert "<td>few</td>" in html
+    assert '<td class="right prose">many' in html
 
 
 def test_code_is_text() -> None:
