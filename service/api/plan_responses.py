@@ -3,7 +3,16 @@
 from pydantic import BaseModel, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from service.api.responses import Balance, FrontAnswer, Lengths, MapAnswer, ObjectiveName, PathItem
+from service.api.responses import (
+    OF_MORE,
+    OF_TWO,
+    Balance,
+    FrontAnswer,
+    Lengths,
+    MapAnswer,
+    ObjectiveName,
+    PathItem,
+)
 from service.fleet.rules import Measure, Over, Rule
 from service.requests.stop_fields import NamedStop
 
@@ -48,7 +57,7 @@ class LeftOutItem(BaseModel):
     )
     price: list[float] | SkipJsonSchema[None] = Field(
         default=None,
-        description="what both lengths grow by in that plan, or if the stop is inserted here",
+        description="what each length grows by in that plan, or if the stop is inserted here",
     )
     reasons: list[ReasonItem] | SkipJsonSchema[None] = Field(
         default=None, description="if no vehicle can serve it: for each type the rule that forbids"
@@ -58,7 +67,8 @@ class LeftOutItem(BaseModel):
 class PlanItem(BaseModel):
     """A plan of a fleet and where it stands."""
 
-    balance: Balance
+    balance: Balance | SkipJsonSchema[None] = Field(default=None, description=OF_TWO)
+    losses: Lengths | SkipJsonSchema[None] = Field(default=None, description=OF_MORE)
     lengths: Lengths
     kept: float | SkipJsonSchema[None] = Field(
         default=None,
@@ -67,7 +77,8 @@ class PlanItem(BaseModel):
     )
     measures: dict[str, float] = Field(
         description="what plans are compared by, as far as the request allows: vehicles, driving,"
-        " service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned"
+        " service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned,"
+        " load_distance"
     )
     routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
     unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")

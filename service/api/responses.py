@@ -30,6 +30,10 @@ PROBLEM_JSON = "application/problem+json"
 LEAST_COMPRESSED = 2**16  # bytes; shorter answers are sent as they are
 _GZIP_LEVEL = 1  # 6 MB of tours in a tenth of a second, to two fifths; 6 takes four times as long
 Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=MOST_OBJECTIVES)]
+OF_TWO = "of two objectives: 0 at the front's least first length, 1 at its least second"
+OF_MORE = (
+    "of more objectives: each length in the front's own box, 0 at its least and 1 at its greatest"
+)
 Balance = Annotated[
     float, Field(description="0 at the front's least first length, 1 at its least second")
 ]
@@ -66,12 +70,11 @@ class TourItem(BaseModel):
     )
     balance: float | SkipJsonSchema[None] = Field(
         default=None,
-        description="of two objectives: 0 at the front's least first length, 1 at its least second",
+        description=OF_TWO,
     )
     losses: Lengths | SkipJsonSchema[None] = Field(
         default=None,
-        description="of more objectives: each length in the front's own box, 0 at its least and 1"
-        " at its greatest",
+        description=OF_MORE,
     )
     kept: float | SkipJsonSchema[None] = Field(
         default=None,

@@ -116,13 +116,15 @@ def plans_as_rows(front: FrontOfPlans, movers: Movers) -> Rows:
     """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops."""
     names = front.names
     of_routes = [f"route {name}" for name in names]
-    rows: Rows = [("plan", "balance", *names, movers.heading, *of_routes, movers.visited)]
+    flat = len(names) == OBJECTIVES
+    standing = ("balance",) if flat else ()
+    rows: Rows = [("plan", *standing, *names, movers.heading, *of_routes, movers.visited)]
     plans: Sequence[FleetPlan | RobotPlan] = front.plans
     for number, plan in enumerate(plans):
         for route in plan.routes:
             lengths = (*plan.lengths.tolist(), movers.mover(route), *route.lengths.tolist())
             visits = csv_text([movers.visits(route)], delimiter=" ")
-            rows.append((number, plan.balance, *lengths, visits))
+            rows.append((number, *((plan.balance,) if flat else ()), *lengths, visits))
     return rows
 
 
@@ -148,13 +150,16 @@ def named_tours(front: Front) -> Table:
 
 def plans_as_table(front: FrontOfPlans, movers: Movers) -> Table:
     """Return a table with a row for each plan."""
+    flat = front.lengths.shape[1] == OBJECTIVES
     rows = []
     plans: Sequence[FleetPlan | RobotPlan] = front.plans
     for number, plan in enumerate(plans):
         lengths = (f"{length:.6g}" for length in plan.lengths)
         counts = (str(count(plan)) for count in movers.counts.values())
-        rows.append((str(number), f"{plan.balance:.3f}", *lengths, *counts))
-    return _table(("plan", "balance", *labels_of(front), *movers.counts), rows)
+        balance = (f"{plan.balance:.3f}",) if flat else ()
+        rows.append((str(number), *balance, *lengths, *counts))
+    standing = ("balance",) if flat else ()
+    return _table(("plan", *standing, *labels_of(front), *movers.counts), rows)
 
 
 def actors_as_table(actors: Iterable[Actor]) -> Table:

@@ -1,24 +1,31 @@
 """The archive of a fleet's search: all nondominated solutions that PyVRP has visited."""
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from math import inf
 from operator import itemgetter
 
+import numpy as np
 import pyvrp
+from numpy.typing import NDArray
 
 from service.fleet.evaluation import plan_lengths, violations
+from service.fleet.fleet import Array
 from service.fleet.goal import Goal
 from service.fleet.plans import Plan
+from service.fleet.rules import Measure, Over
 from service.fleet.translation import Translation
+from service.objectives import OBJECTIVES
 
-Point = tuple[float, float]
+Point = tuple[float, ...]
 _FIRST = itemgetter(0)
 _ROUNDING = 1e-14  # relative error of a sum of doubles: equal plans differ by as much
 _ROUNDED = 4  # units by which each visit is rounded: two legs, a service and a window
+_CROWDED = 2000  # solutions under three objectives, after which a new one must be apart from them
+_APART = 0.01  # in some objective by this share of the front
 
 
 class SolutionArchive:
-    """Solutions that keep every rule, by ascending first and strictly descending second length.
+    """Nondominated solutions that keep every rule, by ascending first length.
 
     A solution may be longer than the limit under which it was found: the limit is not a rule.
 
@@ -32,28 +39,28 @@ class SolutionArchive:
     def __init__(self, translation: Translation) -> None:
         rules = translation.fleet.rules
         self._translation = translation
-        swept = rules.maximum is not None and all(each.longest == inf for each in rules.vehicles)
-        self._any_distance = swept and rules.maximum == translation.distance
-        self._any_time = swept and rules.maximum != translation.distance and not rules.spans
+        swept = rules.swept is not None and all(each.longest == inf for each in rules.vehicles)
+        self._any_distance = swept and translation.duration in (None, 1 - (rules.swept or 0))
+        self._any_time = swept and not self._any_distance and not rules.spans
         # Their limits in a search are no rules.
-        self._any_time |= rules.measure in ("overtime", "lateness")
-        visits = len(rules.clients) + 1
-        self._slack = [_ROUNDED * visits / scale for scale in translation.scales]
-        if rules.measure is not None:
-            self._slack[1] = 0.0
+        self._any_time |= rules.limits_times
+        self._objectives = list(zip(rules.over, rules.layers, strict=True))
+        slack = [_ROUNDED * (len(rules.clients) + 1) / scale for scale in translation.scales]
+        self._slack = np.array([slack[i] if _of_costs(o) else 0.0 for o, i in self._objectives])
+        self._array: Array = np.empty((0, len(rules.over)))  # the points
         self.points: list[Point] = []
         self.guides: list[Point] = []
         self._compared: set[Point] = set()  # guides of solutions whose true lengths are known
         self.solutions: list[pyvrp.Solution] = []
         self.version = 0
-        timed = rules.measure in ("overtime", "lateness")
-        self._guides_decide = not timed and not translation.squeezed.changed
+        unseen = {"overtime", "lateness", "imbalance", "load_distance"}  # by PyVRP
+        self._guides_decide = unseen.isdisjoint(rules.over) and not translation.squeezed.changed
 
     def __len__(self) -> int:
         return len(self.solutions)
 
     def best_within(self, objective: int, length: float) -> int | None:
-        """Return the index of the best solution in the other objective, within a length in one.
+        """Return the index of the best solution in the other of two objectives, within a length.
 
         Lengths are those of PyVRP. None if no solution is within it.
         """
@@ -72,7 +79,7 @@ class SolutionArchive:
             weight = 0  # vehicles that must not leave have a huge cost
         guide = self._guide(solution, weight, goal)
         # PyVRP's lengths are at most the true lengths, up to rounding.
-        if self._is_dominated((guide[0] - self._slack[0], guide[1] - self._slack[1])):
+        if self.dominates(guide - self._slack):
             return
         if guide in self._compared and self._guides_decide:
             return
@@ -80,34 +87,45 @@ class SolutionArchive:
         plan = translation.plan(solution)
         point = plan_lengths(translation.fleet, plan)
         guide = self._completed(guide, plan, point, bool(weight))
-        if self._is_dominated(point):
+        if self.dominates(point):
             return
         if translation.is_rounded and violations(translation.fleet, plan):
             return
-        begin = end = bisect_left(self.points, point[0], key=_FIRST)
-        while end < len(self) and self.points[end][1] * (1 + _ROUNDING) >= point[1]:
-            end += 1
-        self.points[begin:end] = [point]
-        self.guides[begin:end] = [guide]
-        self.solutions[begin:end] = [solution]
+        self._drop(np.all(self._array * (1 + _ROUNDING) >= point, axis=1))
+        place = bisect_left(self.points, point[0], key=_FIRST)
+        self._array = np.insert(self._array, place, point, axis=0)
+        self.points.insert(place, point)
+        self.guides.insert(place, guide)
+        self.solutions.insert(place, solution)
         self.version += 1
+
+    def dominates(self, point: Point | Array) -> bool:
+        """Return whether a solution is at least as good as a point in all lengths.
+
+        If there are many solutions under three objectives, those that are nearly so are enough.
+        """
+        most: Array = np.multiply(point, 1 + _ROUNDING)
+        if len(self) > _CROWDED and len(most) > OBJECTIVES:
+            most = most + _APART * np.ptp(self._array, axis=0)
+        return bool((self._array <= most).all(axis=1).any())
+
+    def _drop(self, dominated: NDArray[np.bool_]) -> None:
+        """Drop some solutions."""
+        for place in np.flatnonzero(dominated)[::-1].tolist():
+            del self.points[place], self.guides[place], self.solutions[place]
+        self._array = self._array[~dominated]
 
     def _completed(self, guide: Point, plan: Plan, point: Point, weighed: bool) -> Point:
         """Return the lengths that `_guide` returned, with what had no weight in them."""
-        first, second = guide
-        translation, measure = self._translation, self._translation.fleet.rules.measure
+        lengths, translation = list(guide), self._translation
         if not weighed:  # then prizes have no weight either
-            first += translation.extras(plan)
-        if measure == "unassigned":
-            second = translation.lost(plan)
-        elif measure is not None:
-            second = point[1]
-        return first, second
-
-    def _is_dominated(self, point: Point) -> bool:
-        """Return whether a solution is at least as good as a point in both lengths."""
-        place = bisect_right(self.points, point[0] * (1 + _ROUNDING), key=_FIRST)
-        return place > 0 and self.points[place - 1][1] <= point[1] * (1 + _ROUNDING)
+            lengths[0] += translation.extras(plan)
+        for index, (over, _) in enumerate(self._objectives):
+            if over == "unassigned":
+                lengths[index] = translation.lost(plan)
+            elif not _of_costs(over):
+                lengths[index] = point[index]
+        return tuple(lengths)
 
     def _keeps_rules(self, solution: pyvrp.Solution) -> bool:
         return (
@@ -118,33 +136,36 @@ class SolutionArchive:
         )
 
     def _guide(self, solution: pyvrp.Solution, weight: int, goal: Goal) -> Point:
-        """Return both lengths of a solution as PyVRP has them, or less.
+        """Return the lengths of a solution as PyVRP has them, or less.
 
         `weight` multiplies what is added to the first. Extras that have no weight count as 0, and
-        so do overtime and lateness.
+        so does what PyVRP does not know.
         """
         lost = self._translation.uncollected(solution, goal)
-        measure = self._translation.fleet.rules.measure
-        first = self._length(solution, 0)
         extras, scale = solution.fixed_vehicle_cost(), self._translation.scales[0]
-        match measure:
-            case None:
-                second = self._length(solution, 1)
-            case "vehicles":
-                second = float(solution.num_routes())
-            case "unassigned":
-                weighed = goal.prizes * self._translation.prize_scale
-                second = lost / weighed if weighed else 0.0
-            case _:
-                second = 0.0
-        if measure != "unassigned":
+        prizes = goal.prizes * self._translation.prize_scale
+        lengths = []
+        for over, layer in self._objectives:
+            if _of_costs(over):
+                lengths.append(self._length(solution, over, layer))
+            elif over == "vehicles":
+                lengths.append(float(solution.num_routes()))
+            else:
+                lengths.append(lost / prizes if over == "unassigned" and prizes else 0.0)
+        if "unassigned" not in self._translation.fleet.rules.over:
             extras += lost
-        return first + extras / (weight * scale) if extras and weight else first, second
+        if extras and weight:
+            lengths[0] += extras / (weight * scale)
+        return tuple(lengths)
 
-    def _length(self, solution: pyvrp.Solution, objective: int) -> float:
-        is_duration = objective == self._translation.duration
-        scale = self._translation.scales[objective]
-        if objective != self._translation.fleet.rules.maximum:
+    def _length(self, solution: pyvrp.Solution, over: Over | Measure, layer: int) -> float:
+        is_duration = layer == self._translation.duration
+        scale = self._translation.scales[layer]
+        if over == "sum":
             return (solution.duration() if is_duration else solution.distance()) / scale
         length = pyvrp.Route.duration if is_duration else pyvrp.Route.distance
         return max(map(length, solution.routes()), default=0) / scale
+
+
+def _of_costs(over: Over | Measure) -> bool:
+    return over in ("sum", "max")

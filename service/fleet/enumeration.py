@@ -1,12 +1,16 @@
 """Find the exact front of a fleet of few stops and vehicles by dynamic programming over routes.
 
 Every order of every subset of the stops is a route. One vehicle after another takes a route or
-none. Among the partial plans that visit the same stops, dominated ones are dropped.
+none. Among the partial plans that visit the same stops, dominated ones are dropped. Where
+the imbalance is an objective, they are compared by their longest route, which should be short, and
+by their shortest, which should be long.
 """
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from itertools import permutations, product
+from math import inf
+from operator import add
 from typing import NamedTuple
 
 import numpy as np
@@ -20,13 +24,18 @@ from service.pareto import nondominated
 MOST_STOPS = 6  # stops to visit
 _MOST_VEHICLES = 6
 Stops = frozenset[int]
+# How the values of two partial plans are joined, if not by adding them, and those of no route.
+_JOINED: Mapping[str, tuple[Callable[[float, float], float], ...]] = {
+    "max": (max,),
+    "imbalance": (max, max),
+}
+_NOTHING: Mapping[str, tuple[float, ...]] = {"imbalance": (-inf, -inf)}
 
 
 class _Partial(NamedTuple):
-    """The routes of some vehicles, and the sums of their lengths."""
+    """The routes of some vehicles, and the values by which these are compared."""
 
-    first: float
-    second: float
+    values: tuple[float, ...]
     routes: tuple[Route, ...]
 
 
@@ -50,7 +59,8 @@ def exact_plans(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> list
     Return None if `ended`, which is called every few milliseconds, returns True before the end.
     """
     rules = fleet.rules
-    partials: Partials = {frozenset(): [_Partial(0.0, 0.0, ())]}
+    nothing = tuple(value for over in rules.over for value in _NOTHING.get(over, (0.0,)))
+    partials: Partials = {frozenset(): [_Partial(nothing, ())]}
     try:
         for index, vehicle in enumerate(rules.vehicles):
             routes = _routes(fleet, index, ended)
@@ -74,9 +84,17 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
             if ended():
                 raise _Ended
             if _ships_in_order(rules, stops) and not any(route_violations(fleet, route)):
-                first, second = route_lengths(fleet, route)
-                found[frozenset(stops)].append(_Partial(first + fixed, second, (route,)))
+                first, *others = _values(fleet, route)
+                found[frozenset(stops)].append(_Partial((first + fixed, *others), (route,)))
     return _undominated(found)
+
+
+def _values(fleet: Fleet, route: Route) -> Iterator[float]:
+    """Yield the values by which a route is compared: its lengths, for imbalance with both signs."""
+    for over, length in zip(fleet.rules.over, route_lengths(fleet, route), strict=True):
+        yield length
+        if over == "imbalance":
+            yield -length
 
 
 def _trips(rules: Rules, vehicle: int, stops: tuple[int, ...]) -> Iterator[Route]:
@@ -114,16 +132,16 @@ def _with_another(
 
 
 def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
-    first, second = (
-        max(x, y) if over == "max" else x + y
-        for x, y, over in zip(a[:2], b[:2], rules.over, strict=True)
-    )
-    return _Partial(first, second, a.routes + b.routes)
+    ways = [way for over in rules.over for way in _JOINED.get(over, (add,))]
+    values = tuple(way(x, y) for way, x, y in zip(ways, a.values, b.values, strict=True))
+    return _Partial(values, a.routes + b.routes)
 
 
 def _undominated(found: Partials) -> Partials:
     """Return the partial plans without those that another one of the same stops dominates."""
     return {
-        visited: [each[index] for index in nondominated(np.array([one[:2] for one in each]))]
+        visited: [each[index] for index in nondominated(np.array([one.values for one in each]))]
+        if len(each) > 1
+        else each
         for visited, each in found.items()
     }

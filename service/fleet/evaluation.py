@@ -13,37 +13,52 @@ import numpy as np
 
 from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import Rule, Rules
+from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import Schedule, legs, schedule, trips_of
-from service.objectives import OBJECTIVES
 
 _TOLERANCE = 1e-9  # of the length of a route: sums of floats depend on their order
 _ROUNDING = 2.0**-52  # relative, for each time of a route
 
 
-def route_lengths(fleet: Fleet, route: Route) -> tuple[float, float]:
-    """Return what a route adds to the lengths of its plan, before prizes and fixed costs.
+def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
+    """Return the lengths of a route, before prizes and fixed costs.
 
-    In the clock's objective that is its duration, in others the costs of its legs.
+    By the clock's costs that is its duration, by others the sum of its legs. The imbalance of a
+    plan is that of the lengths that routes have here.
     """
-    return _length(fleet, route, 0), _length(fleet, route, 1)
+    times = None if fleet.rules.clock is None else schedule(fleet, route)
+    pairs = zip(fleet.rules.over, fleet.rules.layers, strict=True)
+    return tuple(_length(fleet, route, times, over, layer) for over, layer in pairs)
 
 
-def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, float]:
+def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, ...]:
     """Return the lengths of a plan. The first one includes fixed costs and lost prizes.
 
-    If the prizes of what is left out are the second objective, the first does not include them.
+    If the prizes of what is left out are an objective, the first does not include them.
     """
+    return joined_lengths(fleet, plan, [route_lengths(fleet, each) for each in plan.routes])
+
+
+def joined_lengths(
+    fleet: Fleet, plan: Plan, of_routes: Sequence[tuple[float, ...]]
+) -> tuple[float, ...]:
+    """Return the lengths of a plan, given those of its routes."""
     rules = fleet.rules
-    routes = np.reshape([route_lengths(fleet, each) for each in plan.routes], (-1, OBJECTIVES))
-    first, second = (
-        float(lengths.max(initial=0.0) if over == "max" else lengths.sum())
-        for lengths, over in zip(routes.T, rules.over, strict=True)
-    )
-    fixed, lost = fixed_costs(rules, plan), lost_prizes(rules, plan)
-    if rules.measure == "unassigned":
-        return first + fixed, second + lost
-    return first + fixed + lost, second
+    columns = np.reshape(of_routes, (-1, len(rules.over))).T
+    lengths = [_joined(over, column) for over, column in zip(rules.over, columns, strict=True)]
+    lengths[0] += fixed_costs(rules, plan)
+    paid = rules.over.index("unassigned") if "unassigned" in rules.over else 0
+    lengths[paid] += lost_prizes(rules, plan)
+    return tuple(lengths)
+
+
+def _joined(over: Over | Measure, lengths: Array) -> float:
+    """Return the length of a plan whose routes have these lengths, shape (k,)."""
+    if over == "sum" or not len(lengths):
+        return float(lengths.sum())
+    if over == "max":
+        return float(lengths.max())
+    return float(np.ptp(lengths) if over == "imbalance" else lengths.sum())
 
 
 def fixed_costs(rules: Rules, plan: Plan) -> float:
@@ -62,8 +77,9 @@ def unassigned(rules: Rules, plan: Plan) -> list[int]:
 
 
 def points_of(fleet: Fleet, plans: Sequence[Plan]) -> Array:
-    """Return the lengths of plans, shape (m, 2)."""
-    return np.array([plan_lengths(fleet, plan) for plan in plans]).reshape(-1, OBJECTIVES)
+    """Return the lengths of k plans under m objectives, shape (k, m)."""
+    lengths = [plan_lengths(fleet, plan) for plan in plans]
+    return np.array(lengths).reshape(-1, len(fleet.rules.over))
 
 
 def violations(fleet: Fleet, plan: Plan) -> list[str]:
@@ -80,24 +96,44 @@ def violations(fleet: Fleet, plan: Plan) -> list[str]:
     ]
 
 
-def _length(fleet: Fleet, route: Route, objective: int) -> float:
-    match fleet.rules.over[objective]:
+def _length(
+    fleet: Fleet, route: Route, times: Schedule | None, over: Over | Measure, layer: int
+) -> float:
+    """Return a length of a route, whose times are needed if the fleet has a clock."""
+    match over:
         case "vehicles":
             return 1.0
         case "unassigned":
             return 0.0
-        case "overtime":
-            return overtime(fleet.rules, route, schedule(fleet, route))
-        case "lateness":
-            return schedule(fleet, route).lateness
-    return cost_length(fleet, route, objective)
+        case "overtime" if times is not None:
+            return overtime(fleet.rules, route, times)
+        case "lateness" if times is not None:
+            return times.lateness
+        case "load_distance":
+            return load_distance(fleet, route)
+        case "imbalance" if fleet.rules.limited is not None:
+            layer = fleet.rules.limited
+    if layer == fleet.rules.clock and times is not None:
+        return times.duration
+    return sum(legs(fleet, route, layer))
 
 
-def cost_length(fleet: Fleet, route: Route, objective: int) -> float:
+def cost_length(fleet: Fleet, route: Route, layer: int) -> float:
     """Return the length of a route in costs: by the clock its duration, else that of its legs."""
-    if objective == fleet.rules.clock:
+    if layer == fleet.rules.clock:
         return schedule(fleet, route).duration
-    return sum(legs(fleet, route, objective))
+    return sum(legs(fleet, route, layer))
+
+
+def load_distance(fleet: Fleet, route: Route) -> float:
+    """Return the sum over the legs of the first costs times the load, in its first dimension."""
+    vehicle = fleet.rules.vehicles[route.vehicle]
+    first, *others = trips_of(fleet.rules, route)
+    # The loads before and after each stop. Open routes have no leg at that end.
+    loads = [*_loads(fleet.rules, first, 0, vehicle.initial_load)]
+    loads += [load for trip in others for load in _loads(fleet.rules, trip, 0, ())]
+    loads = loads[vehicle.start is None : len(loads) - (vehicle.end is None)]
+    return sum(cost * load for cost, load in zip(legs(fleet, route, 0), loads, strict=True))
 
 
 def overtime(rules: Rules, route: Route, times: Schedule) -> float:
@@ -197,16 +233,18 @@ def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:
         yield Broken("max_trips", f"has {len(trips)} trips, and may have {vehicle.max_trips}")
     for dimension, capacity in enumerate(vehicle.capacity):
         for number, trip in enumerate(trips):
-            first = vehicle.initial_load and number == 0
-            on_board = vehicle.initial_load[dimension] if first else 0
-            if (most := on_board + max(_loads(rules, trip, dimension))) > capacity:
+            first = vehicle.initial_load if number == 0 else ()
+            if (most := max(_loads(rules, trip, dimension, first))) > capacity:
                 yield Broken("capacity", f"holds {most} of {capacity}")
 
 
-def _loads(rules: Rules, trip: Sequence[int], dimension: int) -> Iterator[int]:
-    """Return the load for a trip in one dimension, at its start and after each visit.
+def _loads(
+    rules: Rules, trip: Sequence[int], dimension: int, initial_load: Sequence[int]
+) -> Iterator[int]:
+    """Return the load on a trip in one dimension, at its start and after each visit.
 
-    At the start it is the demand of all stops that are not in shipments.
+    At the start it is the demand of all stops that are not in shipments, and the initial load,
+    which stays on board.
     """
     pickups = {each.delivery: each.pickup for each in rules.shipments}
 
@@ -216,4 +254,5 @@ def _loads(rules: Rules, trip: Sequence[int], dimension: int) -> Iterator[int]:
         return load if stop in rules.shipped and stop not in pickups else -load
 
     brought = -sum(change(stop) for stop in trip if stop not in rules.shipped)
+    brought += initial_load[dimension] if initial_load else 0
     return accumulate(map(change, trip), initial=brought)

@@ -9,7 +9,7 @@ import numpy as np
 from service.construction.first_tours import MIN_CONSTRUCTED, Constructor, construct
 from service.errors import Refusal
 from service.fleet.evaluation import plan_lengths
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.optimal_split import (
     FleetArrays,
     Indices,
@@ -30,6 +30,7 @@ from service.objectives import OBJECTIVES
 from service.preferences import spread
 
 _TOURS = 21  # the number of evenly spread preferences
+_WEIGHTS = 15  # of three objectives
 _MOST_ROUTES = 2**22  # routes in the tables of all sequences together: 64 MB
 _MOST_STEPS = 2e8  # steps of the dynamic program of a sequence: tenths of a second
 _CYCLIC_STEPS = 1e7  # most steps with which every begin is tried; else only the first is
@@ -129,17 +130,34 @@ class Cutter:
 
     def plans(self) -> Iterator[Plan]:
         """Yield the best cuts under many limits or weights; nothing if no cut keeps every rule."""
-        maximum = self._fleet.rules.maximum
-        return self._under_weights() if maximum is None else self._under_limits(maximum)
+        rules = self._fleet.rules
+        first_sum = np.eye(len(rules.over))[rules.over.index("sum")]
+        if len(rules.over) > OBJECTIVES:
+            return self._under_weights_and_limits()
+        if rules.swept is None:
+            return self._under_weights()
+        return self._under_limits(first_sum, rules.swept, self._cuts)
 
-    def _under_limits(self, maximum: int) -> Iterator[Plan]:
+    def _under_weights_and_limits(self) -> Iterator[Plan]:
+        """Yield the best plans under weights of more than two objectives, and under limits."""
+        rules = self._fleet.rules
+        weighed = [over in ("sum", "vehicles", "unassigned") for over in rules.over]
+        weights = np.zeros((_WEIGHTS if sum(weighed) > 1 else 1, len(rules.over)))
+        weights[:, weighed] = np.square(spread(len(weights), sum(weighed)))
+        for each in weights / self._fleet.scale:
+            if rules.swept is not None:
+                yield from self._under_limits(each, rules.swept, self._cuts // len(weights))
+            elif cut := self._best(self._costs(each)):
+                yield cut[0]
+
+    def _under_limits(self, weights: Array, limited: int, cuts: int) -> Iterator[Plan]:
         """Yield the plan of the least sum under each limit, from no limit to the least possible.
 
         Each limit is just below the longest route of the plan before (the epsilon-constraint
         method). If cuts are slow, limits are farther apart, so that there is time for all of them.
         """
-        costs = self._costs(np.eye(OBJECTIVES)[1 - maximum], maximum)
-        least = float(np.nextafter(self._least_limit(maximum), inf))
+        costs = self._costs(weights, limited)
+        least = float(np.nextafter(self._least_limit(limited), inf))
         limit, apart = inf, 0.0
         while cut := self._best(costs, limit):
             plan, longest = cut
@@ -147,14 +165,12 @@ class Cutter:
             if not plan.routes:  # all stops are left out: no lower limit changes this plan
                 return
             if limit == inf:
-                apart = (longest - least) / self._cuts
+                apart = (longest - least) / max(1, cuts)
             limit = min(longest, max(limit - apart, least))
 
     def _under_weights(self) -> Iterator[Plan]:
         """Yield the plans at both ends, and those on the hull between (Aneja and Nair, 1979)."""
-        scale = self._fleet.largest_legs.copy()
-        if self._fleet.rules.measure is not None:
-            scale[1] = self._fleet.scale[1]
+        scale = self._fleet.scale
         scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
         steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale
         ends = [cut[0] for weights in steepest if (cut := self._best(self._costs(weights)))]
@@ -194,30 +210,35 @@ class Cutter:
         return (plan_of(self._sequences[number], chosen), float(longest))
 
     def _least_limit(self, limited: int) -> float:
-        """Return the least limit that lets each required stop have a route of its own."""
+        """Return the least limit in these costs that lets each stop have a route of its own."""
         alone = self._tables[0][:, :, 0, limited].min(axis=0)
         required = [self._fleet.rules.visits[stop].prize is None for stop in self._sequences[0]]
         return float(alone[required].max(initial=0.0))
 
     def _costs(self, weights: Array, limited: int | None = None) -> list[RouteCosts]:
-        """Return the costs of all routes along each sequence, with weights of both lengths.
+        """Return the costs of all routes along each sequence.
 
-        The first objective includes prizes and fixed costs. `limited` is the objective to bound, if
-        any.
+        Args:
+            weights: The weight of each objective, shape (m,). The first includes fixed costs, and
+                prizes if these are no objective. Only sums, vehicles and prizes have a weight.
+            limited: The number of the costs in which routes are bounded, if they are.
         """
         rules = self._fleet.rules
+        by_layer = np.zeros(LAYERS)
+        for over, layer, weight in zip(rules.over, rules.layers, weights, strict=True):
+            by_layer[layer] += weight if over == "sum" else 0.0
+        each_vehicle = weights[rules.over.index("vehicles")] if "vehicles" in rules.over else 0.0
+        lost = weights[rules.over.index("unassigned") if "unassigned" in rules.over else 0]
         fixed = np.array([vehicle.fixed for vehicle in rules.vehicles])[:, np.newaxis, np.newaxis]
         found = []
         for table, sequence in zip(self._tables, self._sequences, strict=True):
             feasible = np.isfinite(table[..., 0])
             lengths = np.where(feasible[..., np.newaxis], table, 0.0)
-            if rules.measure is not None:  # overtime and lateness have no weight
-                lengths[..., 1] = rules.measure == "vehicles"
             prizes = (rules.visits[stop].prize for stop in sequence)
-            lost = weights[1 if rules.measure == "unassigned" else 0]
             skipping = [inf if prize is None else lost * prize for prize in prizes]
             bounded = np.zeros(feasible.shape) if limited is None else lengths[..., limited]
-            cost = np.where(feasible, lengths @ weights + weights[0] * fixed, inf)
+            extra = weights[0] * fixed + each_vehicle
+            cost = np.where(feasible, lengths @ by_layer + extra, inf)
             # The compiled code expects this layout.
             found.append(RouteCosts(cost, np.ascontiguousarray(bounded), np.array(skipping)))
         return found
@@ -239,5 +260,5 @@ def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
 def warm_up() -> None:
     """Compile the optimal split, or load it from the cache."""
     rules = Rules(visits=(Visit(), Visit()), vehicles=(VehicleType(start=0, end=0),))
-    fleet = Fleet(rules=rules, costs=np.ones((OBJECTIVES, rules.n, rules.n)))
+    fleet = Fleet(rules=rules, costs=np.ones((LAYERS, rules.n, rules.n)))
     list(Cutter(fleet, [np.array([1])], lambda: False).plans())

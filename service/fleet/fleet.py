@@ -8,27 +8,27 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from service.fleet.rules import Rules
+from service.fleet.rules import Measure, Over, Rules
 from service.instance import largest_costs, ordinary_costs
-from service.objectives import OBJECTIVES
 
 Array = NDArray[np.float64]
+LAYERS = 2  # costs: PyVRP knows one distance and one duration
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fleet:
-    """Rules, and under each of two objectives the costs between the stops, shape (2, n, n).
+    """Rules, and two costs of the legs between the stops, shape (2, n, n).
 
-    Where the second objective is a measure, the second costs are those of the clock, or a copy of
-    the first. Costs get a diagonal of 0, and are read-only. A leg that has an infinite cost in one
-    objective is forbidden, and gets infinite costs in both.
+    `rules.layers` says of which each objective is. If only one objective has costs, the second
+    costs are those of the clock, or a copy of the first. Costs get a diagonal of 0, and are
+    read-only. A leg of which one cost is infinite is forbidden, and gets two infinite costs.
     """
 
     rules: Rules
     costs: Array
 
     def __post_init__(self) -> None:
-        shape = (OBJECTIVES, self.rules.n, self.rules.n)
+        shape = (LAYERS, self.rules.n, self.rules.n)
         if self.costs.shape != shape:
             raise ValueError(f"costs must have shape {shape}, got {self.costs.shape}")
         costs = np.where(np.eye(self.rules.n, dtype=np.bool_), 0.0, self.costs)
@@ -55,7 +55,7 @@ class Fleet:
 
     @cached_property
     def largest_legs(self) -> Array:
-        """The largest cost of a leg in ordinary plans, in each objective, shape (2,).
+        """The largest of each cost of a leg in ordinary plans, shape (2,).
 
         Outliers count only if a stop cannot be reached or left without them.
         """
@@ -66,22 +66,30 @@ class Fleet:
 
     @property
     def scale(self) -> Array:
-        """The unit of each objective, shape (2,), 1 if that would be 0.
+        """The unit of each of m objectives, shape (m,), 1 if that would be 0.
 
-        It is the largest leg; of a measure one vehicle, the largest prize, the most overtime of a
-        vehicle, or for lateness the largest leg by the clock.
+        It is the largest leg, of lateness by the clock and of imbalance in the costs by which
+        routes are compared; otherwise one vehicle, the largest prize, the most overtime of a
+        vehicle, or the largest leg with the largest capacity.
         """
-        units, rules = self.largest_legs.copy(), self.rules
-        match rules.measure:
-            case "vehicles":
-                units[1] = 1.0
-            case "unassigned":
-                units[1] = max(visit.prize or 0.0 for visit in rules.visits)
-            case "overtime":
-                units[1] = max(vehicle.max_overtime for vehicle in rules.vehicles)
-            case "lateness":
-                units[1] = units[rules.clock or 0]
+        pairs = zip(self.rules.over, self.rules.layers, strict=True)
+        units = np.array([self._unit(over, layer) for over, layer in pairs])
         return np.where(units > 0, units, 1.0)
+
+    def _unit(self, over: Over | Measure, layer: int) -> float:
+        legs, rules = self.largest_legs, self.rules
+        match over:
+            case "vehicles":
+                return 1.0
+            case "unassigned":
+                return max(visit.prize or 0.0 for visit in rules.visits)
+            case "overtime":
+                return max(vehicle.max_overtime for vehicle in rules.vehicles)
+            case "lateness" | "imbalance":
+                return float(legs[rules.limited or 0])
+            case "load_distance":
+                return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
+        return float(legs[layer])
 
 
 def least_paths(costs: Array, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:

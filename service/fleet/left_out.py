@@ -40,7 +40,7 @@ class Serving(NamedTuple):
 
     stop: int
     plan: int | None
-    price: tuple[float, float] | None
+    price: tuple[float, ...] | None
     reasons: tuple[Reason, ...] = ()
 
 
@@ -52,7 +52,7 @@ def explain(fleet: Fleet, plans: Sequence[Plan], points: Array) -> list[list[Ser
     Args:
         fleet: The fleet.
         plans: The m plans.
-        points: Their lengths, shape (m, 2).
+        points: Their lengths under d objectives, shape (m, d).
     """
     left_out = [unassigned(fleet.rules, plan) for plan in plans]
     if not any(left_out):
@@ -80,7 +80,7 @@ def _served_elsewhere(
     grown = points[serving] - points[index]
     with np.errstate(over="ignore"):
         best = int((grown.clip(min=0.0) / fleet.scale).sum(axis=1).argmin())
-    return Serving(stop, serving[best], (float(grown[best, 0]), float(grown[best, 1])))
+    return Serving(stop, serving[best], tuple(grown[best].tolist()))
 
 
 def with_all_stops(fleet: Fleet, plan: Plan) -> Plan:
@@ -94,7 +94,7 @@ def with_all_stops(fleet: Fleet, plan: Plan) -> Plan:
 def with_stop(fleet: Fleet, plan: Plan, stop: int) -> Plan | None:
     """Return a plan with one more stop where it costs the least; None if it fits nowhere.
 
-    Both lengths count in units of the fleet's scale.
+    All lengths count in units of the fleet's scale.
     """
     found, _ = _insertions(fleet, plan, stop)
     return min(found, key=lambda each: _cost(fleet, each), default=None)
@@ -111,8 +111,8 @@ def _inserted(fleet: Fleet, plan: Plan, stop: int) -> Serving:
     if not found:
         return Serving(stop, None, None, tuple(Reason(*each) for each in sorted(reasons.items())))
     cheapest = plan_lengths(fleet, min(found, key=lambda each: _cost(fleet, each)))
-    first, second = plan_lengths(fleet, plan)
-    return Serving(stop, None, (cheapest[0] - first, cheapest[1] - second))
+    price = np.subtract(cheapest, plan_lengths(fleet, plan))
+    return Serving(stop, None, tuple(price.tolist()))
 
 
 def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[Plan], dict[int, Broken]]:

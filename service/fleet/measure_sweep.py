@@ -61,7 +61,7 @@ class MeasureSweep:
             grown = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
             iterations = max(_LEAST_ITERATIONS, int(min(grown, self._left() / _SHARE)))
             yield Step(self._free, self._cheapest(), iterations)
-            if self._rules.measure == "vehicles":
+            if "vehicles" in self._rules.over:
                 yield from self._under_numbers(number, iterations)
             else:
                 yield from self._under_times(iterations)
@@ -106,6 +106,6 @@ class MeasureSweep:
             yield Step(goal, self._archive.solutions[min(within, default=-1)], iterations)
 
     def _limited(self, limit: float) -> Goal:
-        if self._rules.measure == "overtime":
+        if "overtime" in self._rules.over:
             return replace(self._free, overtime=limit)
         return replace(self._free, lateness=limit)

@@ -2,7 +2,7 @@
 
 from math import inf
 
-from service.fleet.evaluation import cost_length, lost_prizes, overtime
+from service.fleet.evaluation import cost_length, load_distance, lost_prizes, overtime
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan
 from service.fleet.schedule import Schedule, legs, schedule
@@ -16,8 +16,11 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     - `lateness`: the sum of the times by which visits begin after they are due
     - `overtime`: the sum of the times by which routes end after their shifts
     - `longest`, `shortest`, `imbalance`: the longest and the shortest route, and their difference,
-      by the clock; without a clock in the objective that is a maximum
+      by the clock; without a clock in the objective that is a maximum, or in the first one if
+      `imbalance` is an objective
     - `unassigned`: the prizes of the stops that are left out
+    - `load_distance`: the sum over all legs of the first costs times the load, in its first
+      dimension
     """
     rules = fleet.rules
     found: dict[str, float] = {"vehicles": len(plan.routes)}
@@ -29,6 +32,8 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
         found |= {"longest": longest, "shortest": shortest, "imbalance": longest - shortest}
     if any(visit.prize is not None for visit in rules.visits):
         found["unassigned"] = lost_prizes(rules, plan)
+    if rules.dimensions:
+        found["load_distance"] = sum(load_distance(fleet, route) for route in plan.routes)
     return found
 
 

@@ -44,14 +44,14 @@ def _refuse(obstacles: Iterator[Obstacle]) -> None:
 
 
 def least_lengths(fleet: Fleet) -> Array:
-    """Return lower bounds on the lengths of plans, shape (2,), that are cheap to compute. O(n^2).
+    """Return lower bounds on m lengths of plans, shape (m,), that are cheap to compute. O(n^2).
 
     If all vehicles have a start, a leg must lead to each required stop; if all have an end, a leg
     must lead away from it.
     """
     rules = fleet.rules
     required = _required(rules)
-    steps = np.where(np.eye(rules.n, dtype=bool), np.inf, fleet.costs)
+    steps = np.where(np.eye(rules.n, dtype=bool), np.inf, fleet.costs)[list(rules.layers)]
     longest = np.array([over == "max" for over in rules.over])
     least = np.zeros(len(steps))
     for end, legs in (("start", steps.min(axis=1)), ("end", steps.min(axis=2))):
@@ -59,8 +59,7 @@ def least_lengths(fleet: Fleet) -> Array:
             of_stops = legs[:, required]
             total = np.where(longest, of_stops.max(axis=1), of_stops.sum(axis=1))
             least = np.maximum(least, total)
-    if rules.measure is not None:
-        least[1] = 0.0
+    least[[over not in ("sum", "max") for over in rules.over]] = 0.0
     return least
 
 

@@ -11,12 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
 from service.jit import allocating, compiled, inlined
-from service.objectives import OBJECTIVES
 
 Indices = NDArray[np.int64]
 _ROUNDING = 1e-10  # relative, of sums of costs; less than what the check of plans allows
@@ -30,7 +29,7 @@ class FleetArrays(NamedTuple):
 
     costs: Array  # (2, n, n)
     clock: int  # -1 for none
-    limited: int  # the objective that `longest` bounds; -1 for none
+    limited: int  # the number of the costs that `longest` bounds; -1 for none
     demand: Indices  # (n, d)
     service: Array  # (n,)
     release: Array  # (n,)
@@ -85,11 +84,12 @@ def route_table(fleet: FleetArrays, sequence: Indices, most: int) -> Array:
         most: The most stops of a route.
 
     Returns:
-        Shape (v, c, most, 2): both lengths of the route, by the type of vehicles, the first place
-        in the sequence, and the number of stops less one; infinite if the route breaks a rule.
+        Shape (v, c, most, 2): the length of the route in both costs, by the type of vehicles, the
+        first place in the sequence, and the number of stops less one; infinite if the route breaks
+        a rule.
     """
     types, c = len(fleet.ends), len(sequence)
-    table = np.full((types, c, most, OBJECTIVES), np.inf)
+    table = np.full((types, c, most, LAYERS), np.inf)
     for vehicle in range(types):
         for place in range(c):
             fitting = min(most, _fitting(fleet, sequence, vehicle, place))

@@ -20,16 +20,20 @@ from service.fleet.fleet import Array, Fleet
 from service.fleet.goal import FREE
 from service.fleet.left_out import with_all_stops
 from service.fleet.measure_sweep import MeasureSweep
+from service.fleet.mixed_sweep import MixedSweep
+from service.fleet.moves import Mover
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan, Route
 from service.fleet.reference_point import default_reference_point
+from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
 from service.fleet.translation import Translation
 from service.front import Progress, ReportOf, Termination
-from service.pareto import hypervolume, nondominated
+from service.pareto import nondominated
 from service.search.best_subset import best_subset, selection_seconds
+from service.search.hypervolume import hypervolume
 
 _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62
@@ -49,8 +53,8 @@ class FleetOptions:
             cutting the tours of the network into routes.
         size: The greatest number of plans of the front.
         seed: The seed of all random choices.
-        reference_point: The reference point of the hypervolume, shape (2,); by default lengths that
-            no sensible plan reaches.
+        reference_point: The reference point of the hypervolume under m objectives, shape (m,); by
+            default lengths that no sensible plan reaches.
         iterations: The most iterations of PyVRP. With an infinite time limit, the same seed and
             iterations give the same front.
         driven: A plan to start from, which may leave out stops.
@@ -286,13 +290,15 @@ class _Search:
         options, archive = self._options, self.archive
         solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
         random = np.random.default_rng(options.seed)
-        swept = self._fleet.rules.measure in (None, "unassigned")
-        sweep = Sweep if swept else MeasureSweep
+        mover = Mover(self._translation, archive, random)
+        sweep = _sweep_of(self._fleet.rules)
         for step in sweep(self._translation, archive, random, self._left).steps():
             if self._left() < 1 or self._ended():
                 return "cancelled" if self._cancelled else "time_limit"
             iterations = min(step.iterations, options.iterations - self._iterations)
             self._iterations += solver.search(replace(step, iterations=iterations))
+            if step.moves is not None:
+                mover.improve(step.moves, self._ended)
         return "converged"
 
     def front(self, size: int, terminated: Termination | None) -> FleetFront:
@@ -303,7 +309,8 @@ class _Search:
             Cancelled: No plan was found before `stop` returned True.
         """
         archive = self.archive
-        chosen = best_subset(np.array(archive.points).reshape(-1, 2), size, self._reference_point)
+        points = np.array(archive.points).reshape(-1, len(self._reference_point))
+        chosen = best_subset(points, size, self._reference_point)
         found = [self._translation.plan(archive.solutions[index]) for index in chosen]
         plans = [plan for plan in found if not violations(self._fleet, plan)]
         if not plans and self._cancelled:
@@ -351,8 +358,16 @@ class _Search:
         found = len(self.archive)
         left_out = min((each.num_missing_clients() for each in self.archive.solutions), default=0)
         checked = (min(found, self._options.size) + left_out) * self._fleet.rules.n
-        selected = selection_seconds(self._options.size, found)
+        selected = selection_seconds(self._options.size, found, len(self._reference_point))
         return self._pause + _CHECKING * checked + selected
+
+
+def _sweep_of(rules: Rules) -> type[Sweep] | type[MeasureSweep] | type[MixedSweep]:
+    """Return the searches for the objectives of a fleet."""
+    second, *more = rules.over[1:]
+    if more or second in ("imbalance", "load_distance"):
+        return MixedSweep
+    return Sweep if second in ("sum", "max", "unassigned") else MeasureSweep
 
 
 def _front(

@@ -57,11 +57,11 @@ class FleetFront:
     Attributes:
         fleet: The fleet.
         plans: The m plans.
-        points: Their lengths, shape (m, 2).
+        points: Their lengths under d objectives, shape (m, d).
         found: The number of nondominated plans found; m of these were kept.
         constructed: The number of plans that were cut from the tours of a network.
-        scale: The unit of each objective, shape (2,).
-        reference_point: The reference point of the hypervolume, shape (2,).
+        scale: The unit of each objective, shape (d,).
+        reference_point: The reference point of the hypervolume, shape (d,).
         hypervolume: The hypervolume of the plans kept.
         terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.

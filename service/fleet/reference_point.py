@@ -7,23 +7,26 @@ from service.fleet.rules import Rules
 
 
 def default_reference_point(fleet: Fleet) -> Array:
-    """Return lengths above those of sensible plans, shape (2,).
+    """Return lengths above those of sensible plans under m objectives, shape (m,).
 
-    They are the number of stops times the scale, plus what else can add to a length. In the
-    first objective these are all prizes and fixed costs. In the clock's objective, and in lateness,
-    they are all services, and the time from the first shift or window to the end of the last, in
-    which a vehicle may wait: once, or for each vehicle if times are summed.
+    They are the number of stops times the scale, plus what else can add to a length. In the first
+    objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
+    imbalance by the clock they are all services, and the time from the first shift or window to the
+    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed.
     """
     rules = fleet.rules
     point = rules.n * fleet.scale
     prizes = sum(visit.prize or 0.0 for visit in rules.visits)
-    point[0] += 0.0 if rules.measure == "unassigned" else prizes
+    point[0] += 0.0 if "unassigned" in rules.over else prizes
     point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
-    for objective, over in enumerate(rules.over):
-        if over == "lateness" or (over in ("sum", "max") and objective == rules.clock):
-            vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+    vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+    for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
+        timed = {"lateness": True, "imbalance": rules.clock is not None}
+        costs = over in ("sum", "max") and layer == rules.clock
+        if costs or timed.get(over, False):
             point[objective] += sum(visit.service for visit in rules.visits)
-            point[objective] += _waiting(rules) * (1 if over == "max" else vehicles)
+            once = over in ("max", "imbalance")
+            point[objective] += _waiting(rules) * (1 if once else vehicles)
     return point
 
 

@@ -12,7 +12,7 @@ from service.errors import invalid
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
-Measure = Literal["vehicles", "unassigned", "overtime", "lateness"]
+Measure = Literal["vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"]
 Span = tuple[float, float]
 # The rules that a route can break by itself.
 Rule = Literal[
@@ -122,9 +122,12 @@ class Rules:
         visits: The demands of each of the n stops. Starts and ends of vehicles have none.
         vehicles: The types of vehicles.
         shipments: The pairs of stops that one vehicle must visit in order.
-        over: How each objective measures a plan: by the costs of its legs, of which it takes the
-            sum over the routes, or the longest route; or by another measure. The first is of costs.
-        clock: The objective that is time. Service, windows and shifts are in its unit.
+        over: How each of two or three objectives measures a plan: by the costs of its legs, of
+            which it takes the sum over the routes, or the longest route; or by another measure. The
+            first is of costs.
+        layers: The number, 0 or 1, of the costs that each objective is of. Of the first it is 0,
+            and of a measure it says nothing.
+        clock: The number of the costs that are time. Service, windows and shifts are in its unit.
 
     Raises:
         Refusal: The rules contradict each other, or are not supported.
@@ -133,14 +136,14 @@ class Rules:
     visits: tuple[Visit, ...]
     vehicles: tuple[VehicleType, ...]
     shipments: tuple[Shipment, ...] = ()
-    over: tuple[Over | Measure, Over | Measure] = ("sum", "sum")
+    over: tuple[Over | Measure, ...] = ("sum", "sum")
+    layers: tuple[int, ...] = (0, 1)
     clock: int | None = None
 
     def __post_init__(self) -> None:
-        if self.over == ("max", "max"):
-            demand = "must be sum, as that of objectives/0 is max, got max"
-            raise invalid("objectives/1/over", demand)
-        _check_measure(self)
+        if len(self.layers) != len(self.over):
+            raise ValueError(f"there are {len(self.over)} objectives, got layers {self.layers}")
+        _check_objectives(self)
         for index, vehicle in enumerate(self.vehicles):
             _check_vehicle(self, vehicle, f"vehicles/{index}")
         for index, visit in enumerate(self.visits):
@@ -178,21 +181,46 @@ class Rules:
         """The objective that is the longest route, if there is one."""
         return self.over.index("max") if "max" in self.over else None
 
-    @property
+    @cached_property
     def limited(self) -> int | None:
-        """The objective that `longest` limits, if there is one."""
-        return self.maximum if self.clock is None else self.clock
+        """The number of the costs that `longest` limits, and by which routes are compared.
 
-    @property
-    def measure(self) -> Measure | None:
-        """The measure that is the second objective, if it is none of costs."""
-        second = self.over[1]
-        return None if second == "sum" or second == "max" else second
+        They are the clock, or those of the objective that is a maximum, or if routes are to be
+        equally long, those of the first objective.
+        """
+        if self.clock is not None:
+            return self.clock
+        if self.maximum is not None:
+            return self.layers[self.maximum]
+        return 0 if "imbalance" in self.over else None
 
-    @property
+    @cached_property
+    def swept(self) -> int | None:
+        """The number of the costs on which the search limits routes, if it limits them."""
+        if self.maximum is not None:
+            return self.layers[self.maximum]
+        return self.limited if "imbalance" in self.over else None
+
+    @cached_property
     def limits_routes(self) -> bool:
         """Whether the search minimises a sum under limits on routes or visits."""
-        return self.maximum is not None or self.measure in ("overtime", "lateness")
+        return self.swept is not None or self.limits_times
+
+    @cached_property
+    def limits_times(self) -> bool:
+        """Whether the search limits overtime or lateness."""
+        return not {"overtime", "lateness"}.isdisjoint(self.over)
+
+    @cached_property
+    def sums(self) -> tuple[int, ...]:
+        """The numbers of the costs of which some objective is the sum, in the order of these."""
+        pairs = zip(self.layers, self.over, strict=True)
+        return tuple(dict.fromkeys(layer for layer, over in pairs if over == "sum"))
+
+    @cached_property
+    def weighs(self) -> bool:
+        """Whether the search minimises weighted sums of several objectives."""
+        return len(self.sums) + ("unassigned" in self.over) > 1
 
     @cached_property
     def spans(self) -> tuple[Span, ...]:
@@ -281,20 +309,39 @@ def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
                 raise invalid(f"{part}/{name}", "must not be given beside shipments")
 
 
-def _check_measure(rules: Rules) -> None:
-    """Raise a refusal unless the data have what the second objective measures."""
-    if rules.over[0] not in ("sum", "max"):
-        raise invalid("objectives/0/measure", "must be given for the second objective alone")
-    part = "objectives/1/measure"
-    if rules.measure is not None and rules.over[0] == "max":
-        raise invalid(part, "needs a first objective over sum, got max")
-    match rules.measure:
+def _check_objectives(rules: Rules) -> None:
+    """Raise a refusal unless the objectives fit each other, and the data what they measure."""
+    first, *others = rules.over
+    if first not in ("sum", "max"):
+        raise invalid("objectives/0/measure", "must not be given for the first objective")
+    for index, over in enumerate(others, start=1):
+        part = f"objectives/{index}"
+        if over == "max" and "max" in rules.over[:index]:
+            before = f"objectives/{rules.over.index('max')}"
+            raise invalid(f"{part}/over", f"must be sum, as that of {before} is max, got max")
+        if over == "sum" or over == "max":
+            continue
+        if over in rules.over[:index]:
+            before = f"objectives/{rules.over.index(over)}"
+            raise invalid(f"{part}/measure", f"must be another than that of {before}, got {over}")
+        if first == "max":
+            raise invalid(f"{part}/measure", "needs a first objective over sum, got max")
+        _check_measured(rules, over, f"{part}/measure")
+    if first == "max" and len(others) > 1:
+        raise invalid("objectives/0/over", "must be sum beside two other objectives, got max")
+
+
+def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
+    """Raise a refusal unless the data have what a measure is of."""
+    match measure:
         case "unassigned" if all(visit.prize is None for visit in rules.visits):
             raise invalid(part, "unassigned needs stops with a prize, which may be left out")
         case "overtime" if not any(vehicle.max_overtime for vehicle in rules.vehicles):
             raise invalid(part, "overtime needs vehicles with max_overtime")
         case "lateness" if all(visit.due == inf for visit in rules.visits):
             raise invalid(part, "lateness needs stops with due")
+        case "load_distance" if not rules.dimensions:
+            raise invalid(part, "load_distance needs vehicles with a capacity, and demands")
 
 
 def _check_visit(rules: Rules, visit: Visit, index: int) -> None:

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 
 from service.errors import Refusal
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Rules, Span
 from service.instance import OUTLYING
@@ -65,7 +65,7 @@ class Units:
 
     Args:
         fleet: The fleet in these units.
-        shifts: The powers of two, shape (2,), by which each objective was multiplied: exactly.
+        shifts: The powers of two, shape (2,), by which both costs were multiplied: exactly.
     """
 
     fleet: Fleet
@@ -116,9 +116,17 @@ class Units:
         return cls(Fleet(rules=scaled, costs=costs), shifts)
 
     def points(self, points: Array) -> Array:
-        """Return points, shape (..., 2), in these units; infinite where these are too small."""
+        """Return points, shape (..., m), in these units; infinite where these are too small."""
+        rules = self.fleet.rules
+        numbers = {"vehicles": None, "unassigned": 0, "load_distance": 0}
+        timed = dict.fromkeys(("overtime", "lateness", "imbalance"), rules.limited)
+        layers = [
+            {**numbers, **timed}.get(over, layer)
+            for over, layer in zip(rules.over, rules.layers, strict=True)
+        ]
+        shifts = [0 if layer is None else self.shifts[layer] for layer in layers]
         with np.errstate(over="ignore"):
-            scaled: Array = np.ldexp(points, self.shifts)
+            scaled: Array = np.ldexp(points, shifts)
         return scaled
 
 
@@ -150,9 +158,9 @@ class Squeezed:
 
     Args:
         legs: The costs, shape (2, n, n). Forbidden legs have finite costs, higher than all others.
-        largest: The largest leg of ordinary plans, in each objective, shape (2,).
-        highest: The largest allowed leg, in each objective, shape (2,); in the first objective, the
-            largest prize or fixed cost if that is more.
+        largest: The largest leg of ordinary plans, of both costs, shape (2,).
+        highest: The largest allowed leg, of both costs, shape (2,); of the first costs, the largest
+            prize or fixed cost if that is more.
         prizes: The prize of each stop, shape (n,); 0 if it has none.
         fixed: The costs of using a vehicle of each type, shape (v,).
         changed: Whether any number was squeezed.
@@ -171,25 +179,25 @@ class Squeezed:
         rules = fleet.rules
         prizes = np.array([visit.prize or 0.0 for visit in rules.visits])
         fixed = np.array([vehicle.fixed for vehicle in rules.vehicles])
-        legs, (largest, highest) = np.empty_like(fleet.costs), np.empty((2, len(fleet.costs)))
+        legs, (largest, highest) = np.empty_like(fleet.costs), np.empty((2, LAYERS))
         changed = False
-        for objective, costs in enumerate(fleet.costs):
+        for layer, costs in enumerate(fleet.costs):
             ordinary = _ordinary(costs)
-            waiting = _waiting(rules) if objective == rules.clock else 0.0
-            extra = np.concatenate((prizes, fixed)) if objective == 0 else np.empty(0)
+            waiting = _waiting(rules) if layer == rules.clock else 0.0
+            extra = np.concatenate((prizes, fixed)) if layer == 0 else np.empty(0)
             numbers = np.concatenate((costs[np.isfinite(costs)], extra))
             of_plan = max(rules.n, _LEAST_LEGS) * ordinary + waiting
             top = max(of_plan, min(_HIGHEST, _most_legs(rules)) * ordinary)
             scale = _Scale.of(numbers, of_plan, top, 2 * rules.n)
             squeezed = scale(costs)
             forbidden = np.isinf(costs)
-            highest[objective] = squeezed.max(where=~forbidden, initial=0.0)
-            no_way = _FORBIDDEN * max(of_plan, float(highest[objective]))
-            legs[objective] = np.where(forbidden, no_way, squeezed)
-            needed = float(scale(fleet.needed_legs[objective]))
-            largest[objective] = ordinary if needed <= ordinary else needed + ordinary
+            highest[layer] = squeezed.max(where=~forbidden, initial=0.0)
+            no_way = _FORBIDDEN * max(of_plan, float(highest[layer]))
+            legs[layer] = np.where(forbidden, no_way, squeezed)
+            needed = float(scale(fleet.needed_legs[layer]))
+            largest[layer] = ordinary if needed <= ordinary else needed + ordinary
             changed = changed or len(scale.huge) > 0
-            if objective == 0:
+            if layer == 0:
                 prizes, fixed = scale(prizes), scale(fixed)
         highest[0] = max(highest[0], prizes.max(), fixed.max())
         return cls(legs, largest, highest, prizes, fixed, changed)
@@ -287,7 +295,7 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
     Raises:
         Refusal: Times and costs are too far apart.
     """
-    totals = [_largest_total(fleet, squeezed, objective, horizon) for objective in (0, 1)]
+    totals = [_largest_total(fleet, squeezed, layer, horizon) for layer in range(LAYERS)]
     largest = squeezed.largest.tolist()
     most = max(1.0, *(total / leg for total, leg in zip(totals, largest, strict=True)))
     heaviest = _heaviest(fleet.rules)
@@ -310,18 +318,18 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
 
 def _heaviest(rules: Rules) -> int:
     """Return the largest weight of a goal. Weights multiply penalties as they multiply costs."""
-    return 1 if rules.limits_routes or rules.measure == "vehicles" else STEEPEST
+    return STEEPEST if rules.weighs else 1
 
 
-def _largest_total(fleet: Fleet, squeezed: Squeezed, objective: int, horizon: Horizon) -> float:
+def _largest_total(fleet: Fleet, squeezed: Squeezed, layer: int, horizon: Horizon) -> float:
     """Return a bound on the total length of all routes of a plan, with their possible lateness.
 
     One leg leads to each visit, and the last leg of a route leads away from one. At each visit a
     route can be late by at most the horizon.
     """
-    legs = squeezed.legs[objective]
+    legs = squeezed.legs[layer]
     total = float(legs.max(axis=0).sum() + legs.max(axis=1).sum())
-    if objective == fleet.rules.clock:
+    if layer == fleet.rules.clock:
         total += _services(fleet.rules) + fleet.rules.n * (horizon.end - horizon.begin)
     return total
 

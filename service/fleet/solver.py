@@ -17,6 +17,7 @@ from pyvrp.IteratedLocalSearch import (
 from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
 
 from service.fleet.goal import Goal, Weights
+from service.fleet.moves import Moves
 from service.fleet.scales import Penalties
 from service.fleet.translation import Translation
 
@@ -34,11 +35,13 @@ class Step:
         goal: The goal of the search.
         start: The solution to start from, found under any goal; None starts from a random one.
         iterations: The most iterations.
+        moves: Moves to try afterwards, which PyVRP cannot measure.
     """
 
     goal: Goal
     start: pyvrp.Solution | None
     iterations: int
+    moves: Moves | None = None
 
 
 class Solver:

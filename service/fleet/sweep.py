@@ -55,6 +55,7 @@ class Sweep:
         self._two_sums = rules.maximum is None
         self._maximum = 0 if rules.maximum is None else rules.maximum
         self._limit_scale = translation.scales[self._maximum]
+        self._weighs_prizes = "unassigned" in rules.over
         self._few = len(rules.clients) <= FEW_STOPS
 
     def steps(self) -> Iterator[Step]:
@@ -77,9 +78,9 @@ class Sweep:
 
         The first search shows how long iterations take.
         """
-        both = self._translation.fleet.rules.measure is None
-        weights = (1, 1) if self._two_sums and both else self._translation.sum_weights
-        free = Goal(weights=weights, prizes=0 if both else 1)
+        both = self._two_sums and not self._weighs_prizes
+        weights = (1, 1) if both else self._translation.sum_weights
+        free = Goal(weights=weights, prizes=int(self._weighs_prizes))
         iterations = _FIRST_ITERATIONS
         yield Step(free, self._least_sum(), iterations)
         while not len(self._archive):
@@ -123,7 +124,8 @@ class Sweep:
         Each further limit is at a share of an interval between two neighbours: the interval in
         which the front may gain the most hypervolume.
         """
-        least, greatest = self._least_limit(), self._limit(max(self._lengths(self._maximum)))
+        least = least_limit(self._translation)
+        greatest = self._limit(max(self._lengths(self._maximum)))
         intervals = [(least, max(least, greatest))]
         yield self._limited(least, iterations)
         for _ in range(most - 1):
@@ -164,19 +166,6 @@ class Sweep:
     def _limit(self, length: float) -> int:
         return round(length * self._limit_scale)
 
-    def _least_limit(self) -> int:
-        """Return an estimate of the least limit under which every stop can be visited."""
-        rules, costs = self._translation.fleet.rules, self._translation.squeezed.legs[self._maximum]
-        alone = np.full(rules.n, np.inf)
-        for vehicle in rules.vehicles:
-            there = 0.0 if vehicle.start is None else least_paths(costs, [vehicle.start])
-            back = 0.0 if vehicle.end is None else least_paths(costs.T, [vehicle.end])
-            alone = np.minimum(alone, there + back)
-        if rules.clock == self._maximum:
-            alone += [visit.service for visit in rules.visits]
-        required = [s for s in rules.clients if rules.visits[s].prize is None]
-        return min(UNBOUNDED, self._limit(float(alone[required].max(initial=0.0))) + _ROUNDED)
-
     def _hull_weights(self, iterations: int) -> Iterator[Step]:
         """Yield searches with the weights of both ends of the front, and of all edges of its hull.
 
@@ -196,9 +185,9 @@ class Sweep:
     def _weighted(self, weights: tuple[float, float], iterations: int) -> Step:
         """Return a search with these weights, from the solution that is best under them."""
         index = int((np.array(self._points()) @ np.array(weights)).argmin())
-        first, second = (_whole(each / max(weights)) for each in weights)
+        first, second = (whole_weight(each / max(weights)) for each in weights)
         prizes = 0
-        if self._translation.fleet.rules.measure == "unassigned":
+        if self._weighs_prizes:
             prizes, second = second, 0
         whole = (first, second) if self._translation.distance == 0 else (second, first)
         goal = Goal(weights=whole, prizes=prizes)
@@ -207,13 +196,33 @@ class Sweep:
     def _points(self) -> list[Point]:
         """Return the lengths of all solutions in PyVRP's units: their products fit a double."""
         first, second = self._translation.scales
-        if self._translation.fleet.rules.measure == "unassigned":
+        if self._weighs_prizes:
             second = self._translation.prize_scale
         return [(x * first, y * second) for x, y in self._archive.guides]
 
 
-def _whole(weight: float) -> int:
-    """Return a weight as a whole number, where the larger of both is 1; 0 only if it is 0."""
+def least_limit(translation: Translation) -> int:
+    """Return an estimate of the least limit on routes under which every stop can be visited.
+
+    It is in PyVRP's units of the costs on which the search limits routes.
+    """
+    rules = translation.fleet.rules
+    assert rules.swept is not None
+    costs = translation.squeezed.legs[rules.swept]
+    alone = np.full(rules.n, np.inf)
+    for vehicle in rules.vehicles:
+        there = 0.0 if vehicle.start is None else least_paths(costs, [vehicle.start])
+        back = 0.0 if vehicle.end is None else least_paths(costs.T, [vehicle.end])
+        alone = np.minimum(alone, there + back)
+    if rules.clock == rules.swept:
+        alone += [visit.service for visit in rules.visits]
+    required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
+    least = float(alone[required].max(initial=0.0)) * translation.scales[rules.swept]
+    return min(UNBOUNDED, round(least) + _ROUNDED)
+
+
+def whole_weight(weight: float) -> int:
+    """Return a weight as a whole number, where the largest is 1; 0 only if it is 0."""
     return max(1, round(STEEPEST * weight)) if weight else 0
 
 

@@ -1,9 +1,9 @@
 """A fleet in PyVRP's terms: whole numbers, one matrix of distances and one of durations.
 
-One objective becomes PyVRP's duration and the other its distance. Two objectives and a clock never
-need a third matrix: the duration is the objective that is time, and a maximum is bounded by a limit
-on each route. Costs are scaled by powers of ten, so that decimals of a few digits stay exact. Other
-numbers are rounded against the plan, so that a plan of PyVRP breaks no rule.
+One of the two costs becomes PyVRP's duration and the other its distance: the duration is the clock,
+and a maximum is bounded by a limit on each route. Costs are scaled by powers of ten, so that
+decimals of a few digits stay exact. Other numbers are rounded against the plan, so that a plan of
+PyVRP breaks no rule.
 """
 
 import math
@@ -16,14 +16,13 @@ import pyvrp
 from numpy.typing import NDArray
 
 from service.fleet.evaluation import unassigned
-from service.fleet.fleet import Fleet
+from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.goal import FREE, Goal, Weights
 from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import VehicleType
 from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
 from service.fleet.schedule import schedule
-from service.objectives import OBJECTIVES
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
 _PRIZE_DIGITS = 6  # the digits of the largest prize where prizes are an objective
@@ -39,10 +38,10 @@ class Translation:
             solutions may break rules.
 
     Attributes:
-        distance: The objective that is PyVRP's distance.
-        duration: The objective that is its duration; None if a maximum and a sum have equal costs,
-            since the distance then serves both.
-        scales: The factor of costs in each objective.
+        distance: The number of the costs that are PyVRP's distance.
+        duration: The number of those that are its duration; None if a maximum and a sum have equal
+            costs, since the distance then serves both.
+        scales: The factor of both costs.
         prize_scale: The factor of prizes.
         penalties: The greatest penalties.
     """
@@ -53,9 +52,9 @@ class Translation:
         # Each leg and each service may be rounded up by one.
         self._slack = 2 * (rules.n + 1) if loose else 0
         duration = 1 if rules.limited is None else rules.limited
-        untimed_maximum = rules.clock is None and rules.maximum is not None
+        untimed_maximum = rules.clock is None and rules.swept is not None
         same = untimed_maximum and np.array_equal(fleet.costs[0], fleet.costs[1])
-        self.distance = 1 - duration
+        self.distance = rules.sums[0] if same else 1 - duration
         self.duration = None if same else duration
         # A location for each stop, and one more for "anywhere": open routes start or end there.
         self._depots = [*sorted(rules.depots), rules.n]
@@ -71,9 +70,9 @@ class Translation:
         self.squeezed = Squeezed.of(fleet)
         self._horizon = Horizon.of(rules, float(self.squeezed.largest[rules.clock or 0]))
         scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
-        self.scales = [scales[self.distance]] * OBJECTIVES if same else scales
+        self.scales = [scales[self.distance]] * LAYERS if same else scales
         self.prize_scale = self.scales[0]
-        if rules.measure == "unassigned":
+        if "unassigned" in rules.over:
             largest = float(self.squeezed.prizes.max())
             self.prize_scale = float(f"1e{math.floor(_PRIZE_DIGITS - math.log10(largest or 1.0))}")
         self._unlimited: tuple[Goal, pyvrp.ProblemData] | None = None  # the latest
@@ -81,9 +80,7 @@ class Translation:
     @property
     def sum_weights(self) -> Weights:
         """The weights of distance and duration with which the first sum is minimised."""
-        rules = self.fleet.rules
-        first = 0 if rules.maximum is None else 1 - rules.maximum
-        return (1, 0) if first == self.distance else (0, 1)
+        return (1, 0) if self.fleet.rules.sums[0] == self.distance else (0, 1)
 
     @cached_property
     def is_rounded(self) -> bool:
@@ -96,8 +93,8 @@ class Translation:
         changed = self.fleet.forbids or self.squeezed.changed
         trips = any(vehicle.reload for vehicle in rules.vehicles)
         trips |= any(vehicle.breaks for vehicle in rules.vehicles)
-        timed = rules.measure in ("overtime", "lateness")
-        return self._slack > 0 or changed or too_late or trips or self._has_choice or timed
+        loose = self._slack > 0 or rules.limits_times
+        return loose or changed or too_late or trips or self._has_choice
 
     def plan(self, solution: pyvrp.Solution) -> Plan:
         """Return the plan of a solution."""
@@ -167,7 +164,7 @@ class Translation:
     def extras(self, plan: Plan) -> float:
         """Return what a plan adds to its first length, squeezed: fixed costs, and lost prizes."""
         used = self.squeezed.fixed[[route.vehicle for route in plan.routes]]
-        if self.fleet.rules.measure == "unassigned":
+        if "unassigned" in self.fleet.rules.over:
             return float(used.sum())
         return float(used.sum() + self.lost(plan))
 
@@ -220,7 +217,7 @@ class Translation:
     @cached_property
     def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The distances and the durations, with a row and a column of zeros for "anywhere"."""
-        scales = np.reshape(self.scales, (OBJECTIVES, 1, 1))
+        scales = np.reshape(self.scales, (LAYERS, 1, 1))
         padded = np.pad(round_up(self.squeezed.legs * scales), ((0, 0), (0, 1), (0, 1)))
         whole = padded.astype(np.int64)
         durations = np.zeros_like(whole[0]) if self.duration is None else whole[self.duration]
@@ -325,7 +322,7 @@ class Translation:
         longest = UNBOUNDED
         if vehicle.longest < UNBOUNDED / scale:
             longest = int(round_down(vehicle.longest * scale)) + self._slack
-        limits_duration = self.duration is not None and rules.maximum == self.duration
+        limits_duration = self.duration is not None and rules.swept == self.duration
         if rules.clock is not None and not limits_duration:
             return limit, longest
         limit = min(limit, longest)
@@ -339,7 +336,7 @@ class Translation:
     def _prize(self, stop: int, goal: Goal) -> int:
         """Return the cost of leaving a stop out under a goal."""
         prize = float(self.squeezed.prizes[stop])
-        if self.fleet.rules.measure != "unassigned":
+        if "unassigned" not in self.fleet.rules.over:
             return self._extra(prize, goal)
         return min(round(min(prize * self.prize_scale, _MOST_EXTRA)) * goal.prizes, _MOST_EXTRA)
 

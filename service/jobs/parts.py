@@ -60,8 +60,9 @@ def parts_of(task: Task) -> frozenset[Part]:
     match task.subject:
         case SharedCoverage():
             return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY}
-        case UnmeasuredFleet():
-            return frozenset({Part.FEW_CITIES, Part.FLEETS})
+        case UnmeasuredFleet(rules=rules):
+            several = {Part.SEVERAL_OBJECTIVES} if len(rules.over) > OBJECTIVES else set()
+            return frozenset({Part.FEW_CITIES, Part.FLEETS} | several)
         case Stops() as stops:
             return _of_stops(stops, task) if task.needs_compiled_code else frozenset()
     assert isinstance(task.subject, Coverage)

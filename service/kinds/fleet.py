@@ -19,7 +19,8 @@ from service.fleet.schedule import schedule
 from service.front import ReportOf, reporting
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Report, Tools
-from service.pareto import balances
+from service.objectives import OBJECTIVES
+from service.pareto import balances, losses
 from service.requests.limits import check_reference_point
 from service.requests.task import Task, UnmeasuredFleet, VehicleName
 
@@ -114,9 +115,11 @@ def document_of_plans(
         members: Other members of the document.
     """
     network = actor.info.identity if actor is not None and front.constructed else None
-    columns = zip(front.plans, balances(front.points).tolist(), front.points.tolist(), strict=True)
+    flat = front.points.shape[1] == OBJECTIVES
+    name, places = ("balance", balances) if flat else ("losses", losses)
+    columns = zip(front.plans, places(front.points).tolist(), front.points.tolist(), strict=True)
     plans, ends = joined(
-        encode(plan, {"balance": balance, "lengths": lengths}) for plan, balance, lengths in columns
+        encode(plan, {name: place, "lengths": lengths}) for plan, place, lengths in columns
     )
     return FrontDocument.of(
         front, hypervolume_bound=None, actor=network, tours=plans, ends=ends, **members

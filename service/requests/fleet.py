@@ -7,6 +7,7 @@ from pydantic import Field
 from pydantic_core import to_json
 
 from service.errors import invalid
+from service.fleet.fleet import LAYERS
 from service.fleet.rules import (
     Rules,
     VehicleType,
@@ -16,9 +17,9 @@ from service.requests.fields import (
     GEOMETRY,
     Geometry,
     Items,
-    OneForBoth,
     SearchFields,
     SomeItems,
+    TwoOrThree,
 )
 from service.requests.fleet_fields import (
     Clock,
@@ -32,7 +33,6 @@ from service.requests.limits import Limits, check_amounts, check_limit, lower_de
 from service.requests.stop_fields import (
     check_unique,
     read_objectives,
-    read_sources,
     read_stops,
 )
 from service.requests.stops import Labels, Source, Stop, Stops, locations_of
@@ -43,23 +43,24 @@ _MOST_VEHICLE_TYPES = 100
 
 
 class FleetRequest(SearchFields):
-    """Stops, vehicles and two objectives, and the options of their front of plans."""
+    """Stops, vehicles and two or three objectives, and the options of their front of plans."""
 
     stops: SomeItems[FleetStopItem] = Field(description="by ids that come back with every plan")
     vehicles: Annotated[
         list[VehicleItem], Field(min_length=1, max_length=_MOST_VEHICLE_TYPES, fail_fast=True)
     ] = Field(description="the types of vehicles")
-    objectives: OneForBoth[FleetObjectiveItem] = Field(
-        description="both, each with the costs between the stops"
+    objectives: TwoOrThree[FleetObjectiveItem] = Field(
+        description="two or three: costs between the stops, of two kinds at most, or other measures"
+        " of plans"
     )
     shipments: Items[ShipmentItem] = Field(
         default_factory=list, description="pairs of stops that one vehicle visits, in order"
     )
     clock: Clock | None = Field(
         default=None,
-        description="the name of the objective that is time; or, where the second objective is a"
-        " measure, the source of times that are no objective. All times are in its unit; the length"
-        " of a route in it includes service and waiting",
+        description="the name of the objective that is time; or, where the costs of all objectives"
+        " are the same, the source of times that are no objective. All times are in its unit; the"
+        " length of a route in it includes service and waiting",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
@@ -92,17 +93,18 @@ class FleetRequest(SearchFields):
         check_unique([item.id for item in self.vehicles], "vehicles")
         vehicles, names = self._vehicles(ids)
         types = types_by_id(names)
-        first, second = self.objectives
+        costs, layers = self._layers()
         rules = Rules(
             visits=tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops)),
             vehicles=vehicles,
             shipments=tuple(
                 item.shipment(f"shipments/{i}", ids) for i, item in enumerate(self.shipments)
             ),
-            over=(first.of_plan or first.over, second.of_plan or second.over),
-            clock=self._clock(),
+            over=tuple(item.of_plan or item.over for item in self.objectives),
+            layers=layers,
+            clock=self._clock(costs, layers),
         )
-        stops = Stops(locations_of(labels.stops), self._sources(labels.stops))
+        stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops))
         return UnmeasuredFleet(rules, names, stops)
 
     def _vehicles(
@@ -120,37 +122,65 @@ class FleetRequest(SearchFields):
         shifts.sort(key=lambda each: each[0])
         return tuple(each[2] for each in shifts), tuple(each[1] for each in shifts)
 
-    def _sources(self, stops: Sequence[Stop]) -> list[Source]:
-        """Return the sources of two costs: of both objectives, or of one and the clock.
+    def _layers(self) -> tuple[list[int], tuple[int, ...]]:
+        """Return the objectives that bring costs, and which of these costs each objective is of.
 
-        If only one has costs, the second are the same.
+        Of three objectives two may have the same costs. Of a measure the costs do not matter.
+
+        Raises:
+            Refusal: An objective has both costs and a measure, or there are too many costs.
         """
-        costs = [item for item in self.objectives if item.of_plan is None]
-        sources = read_sources(costs, stops)
+        shared = len(self.objectives) > OBJECTIVES
+        costs: list[int] = []
+        layers: list[int] = []
         for index, item in enumerate(self.objectives):
-            if item.of_plan is not None and {*item.sources, "over"} & item.model_fields_set:
-                raise invalid(
-                    f"objectives/{index}", "must have either a measure, or costs and over"
-                )
+            part = f"objectives/{index}"
+            if item.of_plan is not None:
+                if {*item.sources, "over"} & item.model_fields_set:
+                    raise invalid(part, "must have either a measure, or costs and over")
+                layers.append(0)
+                continue
+            same = (number for number, each in enumerate(costs) if self._same_costs(each, index))
+            layers.append(next(same, len(costs)) if shared else len(costs))
+            if layers[-1] == len(costs):
+                costs.append(index)
+            if len(costs) > LAYERS:
+                demand = "must have the costs of one of the others: a fleet has two kinds at most"
+                raise invalid(part, demand)
+        return costs, tuple(layers)
+
+    def _same_costs(self, first: int, second: int) -> bool:
+        """Return whether two objectives have the same costs between the stops."""
+        a, b = (self.objectives[index] for index in (first, second))
+        names = ("matrix", "coordinates", "measure", "speed")
+        return all(getattr(a, name) == getattr(b, name) for name in names)
+
+    def _sources(self, costs: Sequence[int], stops: Sequence[Stop]) -> list[Source]:
+        """Return the sources of two costs: of objectives, or of one and the clock.
+
+        If there is only one, the second are the same.
+        """
+        sources = [self.objectives[each].source(f"objectives/{each}", stops) for each in costs]
         if isinstance(self.clock, ClockItem):
             self.clock.objective("clock")
             sources.append(self.clock.source("clock", stops))
-        return [*sources, sources[0]][:OBJECTIVES]
+        return [*sources, *sources[:1]][:LAYERS]
 
-    def _clock(self) -> int | None:
+    def _clock(self, costs: Sequence[int], layers: Sequence[int]) -> int | None:
         """Return the number of the costs that are time."""
-        names = [item.name for item in self.objectives if item.of_plan is None]
         if self.clock is None:
             return None
         if isinstance(self.clock, ClockItem):
-            if len(names) == OBJECTIVES:
-                demand = "must be the name of an objective where both objectives have costs"
+            if len(costs) == LAYERS:
+                demand = "must be the name of an objective where objectives have two kinds of costs"
                 raise invalid("clock", demand)
             return 1
+        items = zip(self.objectives, layers, strict=True)
+        names = {item.name: layer for item, layer in items if item.of_plan is None}
         if self.clock not in names:
             demand = f"must be {' or '.join(map(show, names))}, the name of an objective with costs"
             raise invalid("clock", f"{demand}, got {show(self.clock)}")
-        return names.index(self.clock)
+        return names[self.clock]
 
 
 def parse_fleet_request(body: bytes, limits: Limits) -> FleetRequest:

@@ -232,9 +232,11 @@ class FleetObjectiveItem(ObjectiveItem):
     of_plan: Measure | None = Field(
         default=None,
         alias="measure",
-        description="in place of a source of costs, for the second objective: the number of"
+        description="in place of a source of costs, not for the first objective: the number of"
         " vehicles that are used, the prizes of the stops that are left out, the overtime beyond"
-        " shifts, or the lateness after stops are due, each summed up over the plan",
+        " shifts, the lateness after stops are due, each summed up over the plan; the imbalance,"
+        " by which the longest route is longer than the shortest; or the load distance, the first"
+        " costs of each leg times the load",
     )
     over: Over = Field(
         default="sum",

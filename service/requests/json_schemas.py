@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from service.objectives import OBJECTIVES
+from service.objectives import MOST_OF_FLEETS
 from service.requests.coverage import ENDS, OF_ONE_ROBOT, CoverageRequest
 from service.requests.fields import PlanFields
 from service.requests.fleet import FleetRequest
@@ -94,15 +94,15 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     return _by_title(*map(_without_null, items), *objectives, *map(_without_null, forms))
 
 
-def _of_two(schema: Schema) -> Schema:
-    """Return the schema of a request that is about two objectives alone, which is changed."""
-    schema["properties"]["reference_point"]["maxItems"] = OBJECTIVES
+def _of_fleet(schema: Schema) -> Schema:
+    """Return the schema of a request for a fleet, which is changed: it has fewer objectives."""
+    schema["properties"]["reference_point"]["maxItems"] = MOST_OF_FLEETS
     return schema
 
 
 def fleet_schemas(limits: Limits) -> dict[str, Schema]:
     """Return the schema of a request for a fleet, and of all that is in it, by name."""
-    whole = _of_two(_limited(FleetRequest, limits))
+    whole = _of_fleet(_limited(FleetRequest, limits))
     parts = whole.pop("$defs")
     fields = whole["properties"]
     fields["stops"]["maxItems"] = fields["shipments"]["maxItems"] = limits.fleet_stops
@@ -136,7 +136,7 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
 
 def replan_fleet_schemas(limits: Limits) -> dict[str, Schema]:
     """Return the schema of a request to replan a fleet, and of what only it has, by name."""
-    whole = _of_two(_limited(ReplanFleetRequest, limits))
+    whole = _of_fleet(_limited(ReplanFleetRequest, limits))
     parts = whole.pop("$defs")
     for name in ("routes", "add", "remove"):
         whole["properties"][name]["maxItems"] = limits.fleet_stops

@@ -151,7 +151,7 @@ def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) ->
     check_router(fleet.stops.sources, limits)
     return Task(
         subject=fleet,
-        options=request.options(),
+        options=request.options(len(fleet.rules.over)),
         actor=actor_for_plans(actors),
         labels=request.labels,
         geometry=request.geometry,

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import islice
 from math import inf
+from operator import le
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
+from service.fleet.mixed_sweep import MixedSweep
+from service.fleet.moves import Mover
 from service.fleet.necessary import least_lengths
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront
@@ -24,13 +27,20 @@ from service.fleet.translation import Translation
 from service.front import Progress
 from service.pareto import nondominated
 from tests.helpers.actors import Shuffler, info_of
-from tests.helpers.fleets import Point, bounded_fleet, exact_front, hull_corners, random_fleet
+from tests.helpers.fleets import (
+    Point,
+    bounded_fleet,
+    exact_front,
+    hull_corners,
+    mixed_fleet,
+    random_fleet,
+)
 
 ENOUGH = FleetOptions(time_limit=inf, iterations=20_000)
 
 
 def points_of(front: FleetFront) -> list[Point]:
-    return [(float(x), float(y)) for x, y in front.points]
+    return [tuple(point.tolist()) for point in front.points]
 
 
 def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> Fleet:
@@ -50,7 +60,7 @@ def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> 
 
 
 @pytest.mark.parametrize("seed", range(60))
-@pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet])
+@pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet, mixed_fleet])
 def test_a_handful_of_stops_has_the_front_of_brute_force(
     fleet_of: Callable[[int], Fleet], seed: int
 ) -> None:
@@ -65,14 +75,19 @@ def test_a_handful_of_stops_has_the_front_of_brute_force(
         assert refused.value.code == "no-plan"
 
 
-def searched(fleet: Fleet) -> list[Point]:
+def searched(
+    fleet: Fleet, sweep: type[Sweep] | type[MixedSweep] = Sweep, searches: int = 8
+) -> list[Point]:
     """Return the points that PyVRP finds of a fleet so small that it would be enumerated."""
     translation = Translation(fleet)
     archive = SolutionArchive(translation)
     solver = Solver(translation, 0, archive.offer, lambda: False)
     random = np.random.default_rng(0)
-    for step in islice(Sweep(translation, archive, random, lambda: inf).steps(), 8):
+    mover = Mover(translation, archive, random)
+    for step in islice(sweep(translation, archive, random, lambda: inf).steps(), searches):
         solver.search(step)
+        if step.moves is not None:
+            mover.improve(step.moves, lambda: False)
     plans = [translation.plan(solution) for solution in archive.solutions]
     assert [violations(fleet, plan) for plan in plans] == [[]] * len(plans)
     return sorted({plan_lengths(fleet, plan) for plan in plans})
@@ -87,6 +102,18 @@ def test_pyvrp_finds_no_more_than_brute_force_and_seldom_less() -> None:
         limited = fleet.rules.maximum is not None
         same += found == expected if limited else hull_corners(found) == hull_corners(expected)
     assert same > 8
+
+
+def test_searches_for_any_objectives_find_no_more_than_brute_force_and_seldom_less() -> None:
+    same = tried = 0
+    for seed in range(24):
+        fleet = mixed_fleet(seed)
+        if not (expected := exact_front(fleet)):
+            continue
+        found = searched(fleet, MixedSweep, 24)
+        assert all(any(all(map(le, a, b)) for a in expected) for b in found)
+        tried, same = tried + 1, same + (found == expected)
+    assert same >= 0.8 * tried > 8
 
 
 def test_iterations_and_seed_decide_the_front() -> None:

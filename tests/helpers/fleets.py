@@ -10,10 +10,22 @@ import numpy as np
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.rules import ALWAYS, Break, Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import ALWAYS, Break, Measure, Over, Rules, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 
-Point = tuple[float, float]
+Point = tuple[float, ...]
+Objectives = tuple[Over | Measure, ...]
+# Each with the costs that its objectives are of.
+MIXED: Sequence[tuple[Objectives, tuple[int, ...]]] = (
+    (("sum", "imbalance"), (0, 0)),
+    (("sum", "load_distance"), (0, 0)),
+    (("sum", "max", "vehicles"), (0, 1, 0)),
+    (("sum", "max", "sum"), (0, 0, 1)),
+    (("sum", "unassigned", "max"), (0, 0, 0)),
+    (("sum", "lateness", "vehicles"), (0, 0, 0)),
+    (("sum", "overtime", "imbalance"), (0, 0, 0)),
+    (("sum", "sum", "load_distance"), (0, 1, 0)),
+)
 
 
 def random_fleet(seed: int, over: tuple[str, str] | None = None) -> Fleet:
@@ -72,10 +84,21 @@ def _vehicles(
 
 
 def bounded_fleet(seed: int) -> Fleet:
-    """Return a fleet of up to four stops to visit with some of all bounds, against any measure."""
+    """Return a fleet of up to four stops to visit with some of all bounds, against a measure."""
+    measures: Sequence[Measure | None] = (None, "vehicles", "unassigned", "overtime", "lateness")
+    measure = measures[seed % len(measures)]
+    second = "max" if seed % 2 else "sum"
+    return _bounded(seed, ("sum", second if measure is None else measure), (0, 1))
+
+
+def mixed_fleet(seed: int) -> Fleet:
+    """Return the same under three objectives, or two that the search knows nothing of."""
+    return _bounded(seed, *MIXED[seed % len(MIXED)])
+
+
+def _bounded(seed: int, over: Objectives, layers: tuple[int, ...]) -> Fleet:
     random = np.random.default_rng(seed)
     n = int(random.integers(2, 4))
-    measure = (None, "vehicles", "unassigned", "overtime", "lateness")[seed % 5]
     costs = random.integers(1, 20, (2, n + 2, n + 2)).astype(float)
 
     def likely(share: float = 0.4) -> bool:
@@ -95,8 +118,8 @@ def bounded_fleet(seed: int) -> Fleet:
             demand=(whole(1, 5),),
             service=float(whole(0, 4)),
             windows=windows() if likely() else (ALWAYS,),
-            prize=float(whole(1, 40)) if measure == "unassigned" or likely() else None,
-            due=float(whole(5, 50)) if measure == "lateness" or likely() else inf,
+            prize=float(whole(1, 40)) if "unassigned" in over or likely() else None,
+            due=float(whole(5, 50)) if "lateness" in over or likely() else inf,
             release=float(whole(0, 30)) if likely(0.3) else 0.0,
             skills=("cold",) if likely(0.2) else (),
             vehicles=(whole(0, 2),) if likely(0.15) else (),
@@ -123,12 +146,11 @@ def bounded_fleet(seed: int) -> Fleet:
             max_stops=None if reload or likely(0.6) else whole(1, 4),
             reload=reload,
             initial_load=(whole(0, capacity),) if likely(0.2) else (),
-            max_overtime=float(whole(1, 30)) if measure == "overtime" or likely(0.2) else 0.0,
+            max_overtime=float(whole(1, 30)) if "overtime" in over or likely(0.2) else 0.0,
             leaves_by=float(begin + whole(0, 20)) if likely(0.2) else inf,
             breaks=breaks(),
         )
 
-    over = ("sum", ["sum", "max"][whole(0, 2)] if measure is None else measure)
     ends = (vehicle(), vehicle())
     types = tuple(
         dataclasses.replace(each, max_trips=2) if each.reload and likely() else each
@@ -136,7 +158,7 @@ def bounded_fleet(seed: int) -> Fleet:
     )
     depots = {end for each in types for end in (0, each.end, *each.reload) if end is not None}
     visits = tuple(Visit() if stop in depots else visit() for stop in range(n + 2))
-    rules = Rules(visits=visits, vehicles=types, over=over, clock=whole(0, 2))
+    rules = Rules(visits=visits, vehicles=types, over=over, layers=layers, clock=whole(0, 2))
     return Fleet(rules=rules, costs=costs)
 
 
@@ -174,8 +196,8 @@ def exact_front(fleet: Fleet) -> list[Point]:
     found = {
         plan_lengths(fleet, plan) for plan in every_plan(fleet.rules) if not violations(fleet, plan)
     }
-    points = np.array(sorted(found)).reshape(-1, 2)
-    return [(float(x), float(y)) for x, y in points[nondominated(points)]]
+    points = np.array(sorted(found)).reshape(-1, len(fleet.rules.over))
+    return [tuple(point.tolist()) for point in points[nondominated(points)]]
 
 
 def hull_corners(points: list[Point]) -> list[Point]:

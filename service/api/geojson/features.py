@@ -54,7 +54,7 @@ class Drawing:
         """Return the drawing of all routes, each with the number of its plan and its lengths."""
         indexes = {stop["id"]: index for index, stop in enumerate(record.front.stops or ())}
         routes = [
-            {"plan": number, "balance": plan["balance"], "plan_lengths": plan["lengths"], **route}
+            {"plan": number, **_place(plan), "plan_lengths": plan["lengths"], **route}
             for number, plan in enumerate(plans, first)
             for route in plan["routes"]
         ]
@@ -149,3 +149,8 @@ def _crossing(
 def _encode_positions(line: Line) -> bytes:
     parts = (line[i : i + _PART] for i in range(0, len(line), _PART))
     return b"[" + b",".join(to_json(part.tolist())[1:-1] for part in parts) + b"]"
+
+
+def _place(plan: dict[str, Any]) -> dict[str, Any]:
+    """Return where a plan stands in its front: its balance, or its losses."""
+    return {name: plan[name] for name in ("balance", "losses") if name in plan}

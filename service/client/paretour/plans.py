@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import nan
 from typing import Any, Generic, TypeVar, Unpack
 
 import numpy as np
@@ -29,7 +30,7 @@ class FleetRoute:
     Attributes:
         vehicle: The id of its type.
         stops: The ids of its stops in order, with its start and end if these are stops.
-        lengths: Its lengths, shape (2,).
+        lengths: Its lengths, shape (m,).
         arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
             (len(stops),). None without a clock.
         breaks: When each break on the way begins.
@@ -68,8 +69,9 @@ class _Plan(Generic[Item]):
     """A plan of a front: routes of the vehicles or robots used.
 
     Attributes:
-        balance: 0 at the least first length of the front, 1 at the least second.
-        lengths: Its lengths, shape (2,).
+        balance: 0 at the least first length of the front, 1 at the least second; NaN under three
+            objectives.
+        lengths: Its lengths, shape (m,).
         routes: The routes of those that leave.
     """
 
@@ -98,8 +100,8 @@ class LeftOut:
     Attributes:
         stop: Its id.
         plan: The number of the plan of the front that serves it at the least price, if one does.
-        price: What both lengths grow by there, or if the stop is inserted here, shape (2,). None if
-            no vehicle can serve it.
+        price: What each length grows by there, or if the stop is inserted here, shape (m,). None
+            if no vehicle can serve it.
         reasons: If none can, a reason for each type of vehicles.
     """
 
@@ -116,7 +118,8 @@ class FleetPlan(_Plan[FleetRoute]):
     Attributes:
         unassigned: The ids of the stops that it leaves out.
         measures: What plans are compared by, as far as the request allows: vehicles, driving,
-            service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned.
+            service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned,
+            load_distance.
         left_out: For each stop that it leaves out, what it would cost to serve it, or why none can.
         kept: If it was replanned, the share of the stops left that the same vehicles visit after
             the same stops.
@@ -165,10 +168,12 @@ class _FrontOfPlans(StoredFront[Plan]):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FleetFront(_FrontOfPlans[FleetPlan]):
-    """A front of plans for a fleet, with both objectives as the request named them."""
+    """A front of plans for a fleet, with the objectives as the request named them."""
 
     def _columns(self) -> dict[str, Sequence[Any]]:
-        found: dict[str, Sequence[Any]] = {"balance": [plan.balance for plan in self.plans]}
+        found: dict[str, Sequence[Any]] = {}
+        if self.lengths.shape[1] == PAIR:
+            found["balance"] = [plan.balance for plan in self.plans]
         if self.plans:
             names = self.plans[0].measures
             found |= {name: [plan.measures[name] for plan in self.plans] for name in names}
@@ -234,9 +239,10 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
 
 def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
     plan = members(value, where)
+    lengths = plan.read("lengths", floats(None))
     return FleetPlan(
-        balance=plan.read("balance", number),
-        lengths=plan.read("lengths", floats(PAIR)),
+        balance=plan.read("balance", number) if len(lengths) == PAIR else nan,
+        lengths=lengths,
         routes=plan.read("routes", each(_parse_fleet_route)),
         unassigned=plan.read("unassigned", each(text)),
         measures=plan.maybe("measures", _measures) or {},
@@ -251,7 +257,7 @@ def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
     return FleetRoute(
         vehicle=route.read("vehicle", text),
         stops=stops,
-        lengths=route.read("lengths", floats(PAIR)),
+        lengths=route.read("lengths", floats(None)),
         arrivals=route.maybe("arrivals", floats(len(stops))),
         breaks=route.maybe("breaks", each(number)) or (),
         shift=route.maybe("shift", count),
@@ -264,7 +270,7 @@ def _parse_left_out(value: Any, where: str) -> LeftOut:
     return LeftOut(
         stop=left_out.read("stop", text),
         plan=left_out.maybe("plan", count),
-        price=left_out.maybe("price", floats(PAIR)),
+        price=left_out.maybe("price", floats(None)),
         reasons=left_out.maybe("reasons", each(_parse_reason)) or (),
     )
 

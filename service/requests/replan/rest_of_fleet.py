@@ -59,7 +59,7 @@ def rest_of_fleet(
     check_router(subject.stops.sources, limits)
     return Task(
         subject=subject,
-        options=lower_defaults(request, n, limits, id_bytes).options(),
+        options=lower_defaults(request, n, limits, id_bytes).options(len(subject.rules.over)),
         actor=actor_for_plans(actors),
         labels=rest.labels,
         geometry=request.geometry,
@@ -121,6 +121,7 @@ class _Rest:
             vehicles=tuple(self._placed(vehicle) for vehicle in self._types),
             shipments=tuple(self._shipments()),
             over=self._rules.over,
+            layers=self._rules.layers,
             clock=self._rules.clock,
         )
         stops = Stops(locations_of(self.labels.stops), self._sources())
@@ -267,15 +268,24 @@ class _Rest:
 
     def _sources(self) -> list[Source]:
         """Return the sources of both costs between the stops of the rest."""
-        sources = list(self._fleet.stops.sources)
-        if self._rules.measure is not None and self._rules.clock != 1:
-            sources = sources[:1]  # the second costs are the same
-        names = [objective.name for objective in self._known.objectives[: len(sources)]]
+        sources, names = list(self._fleet.stops.sources), self._names_of_costs()
+        sources = sources[: len(names)]  # if there is no more, the second costs are the same
         sources = extended_sources(sources, names, self._all)
         sources, _ = changed_sources(sources, names, self._request.costs, self._all)
         chosen = np.array(list(self._place), np.int64)
         placed = [between(source, chosen) for source in sources]
         return [*placed, placed[0]][:2]
+
+    def _names_of_costs(self) -> list[str]:
+        """Return the name of the objective that each costs are of; of own times, the second's."""
+        objectives = [objective.name for objective in self._known.objectives]
+        names: dict[int, str] = {}
+        for name, over, layer in zip(objectives, self._rules.over, self._rules.layers, strict=True):
+            if over in ("sum", "max"):
+                names.setdefault(layer, name)
+        if self._rules.clock is not None:
+            names.setdefault(self._rules.clock, objectives[self._rules.clock])
+        return [names[layer] for layer in sorted(names)]
 
     def _driven(self) -> Iterator[Route]:
         """Yield what is left of the routes of the plan."""

@@ -1,0 +1,165 @@
+"""Choose the searches for fronts of three objectives, or of one that PyVRP does not know.
+
+Each search minimises a weighted sum of costs and prizes, under limits on routes, vehicles, overtime
+and lateness, as the objectives need them. Weights and limits are random, so that each region of the
+front is visited again and again. Each search is followed by moves, which are measured exactly.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import count
+
+import numpy as np
+import pyvrp
+
+from service.fleet.archive import SolutionArchive
+from service.fleet.fleet import Array
+from service.fleet.goal import Goal
+from service.fleet.moves import Moves
+from service.fleet.scales import UNBOUNDED
+from service.fleet.solver import Step
+from service.fleet.sweep import least_limit, whole_weight
+from service.fleet.translation import Translation
+
+_FIRST_ITERATIONS = 100
+_MOST_DOUBLINGS = 10
+_LEAST_ITERATIONS = 50
+_SEARCHES = 16  # in a round, for which there should be time
+_UNLIMITED = 0.25  # share of the searches without one of the limits
+_STRICTEST = 0.25  # share of them that allow no overtime, or no lateness
+_ANY_START = 0.25  # share of them that start from any solution
+_MOVES = 10  # for each iteration of PyVRP, which takes about as long
+_FEWER_MOVES = 2  # if PyVRP knows all objectives
+_BEYOND = 1e3  # how much worse a start is that exceeds a limit by the width of the front
+
+
+class MixedSweep:
+    """The searches for a front. Each must be run into the archive before the next is requested.
+
+    Args:
+        translation: The translation of the fleet.
+        archive: The solutions of all searches; it may hold some already.
+        random: Chooses weights and limits.
+        left: Estimates the number of iterations for which there is time.
+    """
+
+    def __init__(
+        self,
+        translation: Translation,
+        archive: SolutionArchive,
+        random: np.random.Generator,
+        left: Callable[[], float],
+    ) -> None:
+        self._translation = translation
+        self._rules = translation.fleet.rules
+        self._archive = archive
+        self._random = random
+        self._left = left
+        unseen = {"overtime", "lateness", "imbalance", "load_distance"}
+        self._moves = _FEWER_MOVES if unseen.isdisjoint(self._rules.over) else _MOVES
+
+    def steps(self) -> Iterator[Step]:
+        """Yield searches for the least costs until there is a solution, and then all others."""
+        prizes = int("unassigned" in self._rules.over)
+        free = Goal(weights=self._translation.sum_weights, prizes=prizes)
+        iterations = _FIRST_ITERATIONS
+        yield Step(free, self._archive.solutions[0] if len(self._archive) else None, iterations)
+        while not len(self._archive):
+            iterations *= 2
+            yield Step(free, None, iterations)
+        for number in count():
+            grown = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
+            iterations = max(_LEAST_ITERATIONS, int(min(grown, self._left() / _SEARCHES)))
+            for _ in range(_SEARCHES):
+                weights = self._random.exponential(size=len(self._rules.over)) / self._widths()
+                yield self._search(weights, iterations)
+
+    def _widths(self) -> Array:
+        """Return how wide the front is in each objective, shape (m,); a unit if it has no width."""
+        widths = np.ptp(np.array(self._archive.points), axis=0)
+        return np.where(widths > 0, widths, self._translation.fleet.scale)
+
+    def _search(self, weights: Array, iterations: int) -> Step:
+        """Return a search with these weights, and random limits."""
+        distance, duration, prizes = self._whole_weights(weights)
+        goal = Goal(
+            weights=(distance, duration),
+            prizes=prizes,
+            limit=self._limit(),
+            vehicles=self._vehicles(),
+            overtime=self._time_limit("overtime"),
+            lateness=self._time_limit("lateness"),
+        )
+        moves = Moves(weights, self._moves * iterations)
+        return Step(goal, self._start(goal, weights), iterations, moves)
+
+    def _whole_weights(self, weights: Array) -> tuple[int, int, int]:
+        """Return the weights of distance, duration and prizes in PyVRP's units."""
+        rules, translation = self._rules, self._translation
+        pairs = list(zip(rules.over, rules.layers, strict=True))
+        found = np.zeros(3)
+        for (over, layer), weight in zip(pairs, weights, strict=True):
+            if over == "sum":
+                found[int(layer != translation.distance)] = weight / translation.scales[layer]
+            elif over == "unassigned":
+                found[2] = weight / translation.prize_scale
+        distance, duration, prizes = (whole_weight(each / found.max()) for each in found)
+        return distance, duration, prizes
+
+    def _any_solution(self) -> pyvrp.Solution:
+        return self._archive.solutions[int(self._random.integers(len(self._archive)))]
+
+    def _limit(self) -> int:
+        """Return a limit on routes: between the least possible and the longest of a solution."""
+        if self._rules.swept is None or self._random.random() < _UNLIMITED:
+            return UNBOUNDED
+        timed = self._rules.swept == self._translation.duration
+        length = pyvrp.Route.duration if timed else pyvrp.Route.distance
+        longest = max(map(length, self._any_solution().routes()), default=0)
+        least = min(least_limit(self._translation), longest)
+        return least + int(self._random.random() * (longest - least))
+
+    def _vehicles(self) -> tuple[int, ...] | None:
+        """Return the most vehicles of each type: those of a solution, or one fewer."""
+        if "vehicles" not in self._rules.over or self._random.random() < _UNLIMITED:
+            return None
+        used = Counter(route.vehicle_type() for route in self._any_solution().routes())
+        if len(used) and self._random.random() < 1 / 2:
+            used[self._random.choice(sorted(used))] -= 1
+        return tuple(used[index] for index in range(len(self._rules.vehicles)))
+
+    def _time_limit(self, measure: str) -> float:
+        """Return a limit on the overtime of each route, or on the lateness of each visit."""
+        if measure not in self._rules.over:
+            return np.inf
+        kind = self._random.random()
+        if kind < _UNLIMITED:
+            return np.inf
+        if kind < _UNLIMITED + _STRICTEST:
+            return 0.0
+        objective = self._rules.over.index(measure)
+        return max(point[objective] for point in self._archive.points) * self._random.random() ** 2
+
+    def _start(self, goal: Goal, weights: Array) -> pyvrp.Solution:
+        """Return the solution that is best under these weights and limits, or sometimes any."""
+        if self._random.random() < _ANY_START:
+            return self._any_solution()
+        points, limits = np.array(self._archive.points), self._limits(goal)
+        with np.errstate(over="ignore", invalid="ignore"):
+            beyond = np.nan_to_num((points - limits).clip(min=0.0))
+            values = (points + _BEYOND * beyond) @ weights
+        return self._archive.solutions[int(values.argmin())]
+
+    def _limits(self, goal: Goal) -> Array:
+        """Return the limits of a goal on each objective of plans, shape (m,)."""
+        limits = np.full(len(self._rules.over), np.inf)
+        for index, (over, layer) in enumerate(
+            zip(self._rules.over, self._rules.layers, strict=True)
+        ):
+            if over == "max" and goal.limit < UNBOUNDED:
+                limits[index] = goal.limit / self._translation.scales[layer]
+            elif over == "vehicles" and goal.vehicles is not None:
+                limits[index] = sum(goal.vehicles)
+            elif over in ("overtime", "lateness"):
+                limits[index] = getattr(goal, over)
+        return limits
