@@ -23,18 +23,24 @@ class Placed(NamedTuple):
     after: bool
 
 
-# The earliest time of a state, and how it was reached: the breaks taken so far.
-_State = tuple[float, tuple[Placed, ...]]
+class _State(NamedTuple):
+    """The earliest time of a state, and how it was reached."""
+
+    time: float
+    departure: float
+    placed: tuple[Placed, ...]
 
 
 def place_breaks(
     stays: Sequence[Stay],
     driven: Sequence[float],
-    begin: float,
-    last: float,
+    span: Span,
+    leaves_by: float,
     breaks: Sequence[Break],
-) -> tuple[Placed, ...] | None:
-    """Return where breaks are taken so that a route ends as early as possible; None if nowhere.
+) -> tuple[float, tuple[Placed, ...]] | None:
+    """Return a departure and where breaks are taken so that a route ends as early as possible.
+
+    None if the breaks fit nowhere.
 
     A vehicle takes its breaks in order, between two visits, and none while it drives. A break that
     can be taken before the departure, or after the end, is not on the way. This is dynamic
@@ -44,48 +50,57 @@ def place_breaks(
     Args:
         stays: What is asked for at each of the m places.
         driven: The times of the m - 1 legs between them.
-        begin: The earliest departure.
-        last: The latest end.
+        span: The earliest departure, and the latest end.
+        leaves_by: The latest departure.
         breaks: The k breaks, by ascending time.
     """
+    begin, last = span
     states: list[_State | None] = [None] * (len(breaks) + 1)
-    before = next((i for i, each in enumerate(breaks) if each[0] + each[2] > begin), len(breaks))
-    states[before] = (begin, ())
+    if begin <= leaves_by:
+        states[0] = _State(begin, begin, ())
+    for number, (opens, _, length) in enumerate(breaks, start=1):
+        begin = max(begin, opens + length)
+        if begin <= leaves_by:
+            states[number] = _State(begin, begin, ())
     for place, (stay, leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
         _rest(states, breaks, place, after=False)
         states = [_served(state, stay) for state in states]
         _rest(states, breaks, place, after=True)
-        states = [None if each is None else (each[0] + leg, each[1]) for each in states]
+        states = [each and each._replace(time=each.time + leg) for each in states]
     ended = [
         state
         for number, state in enumerate(states)
         if state is not None
-        and state[0] <= last
-        and (number == len(breaks) or state[0] <= breaks[number][1])
+        and state.time <= last
+        and (number == len(breaks) or state.time <= breaks[number][1])
     ]
-    return min(ended, key=lambda state: state[0])[1] if ended else None
+    if not ended:
+        return None
+    _, departure, placed = min(ended, key=lambda state: state.time)
+    return departure, placed
 
 
 def _rest(states: list[_State | None], breaks: Sequence[Break], place: int, *, after: bool) -> None:
     """Let the vehicle take one break after another at a place."""
     for number, (opens, closes, length) in enumerate(breaks):
         state = states[number]
-        if state is None or state[0] > closes:
+        if state is None or state.time > closes:
             continue
-        ends = max(state[0], opens) + length
+        ends = max(state.time, opens) + length
         known = states[number + 1]
-        if known is None or ends < known[0]:
-            states[number + 1] = (ends, (*state[1], Placed(number, place, after)))
+        if known is None or ends < known.time:
+            placed = (*state.placed, Placed(number, place, after))
+            states[number + 1] = _State(ends, state.departure, placed)
 
 
 def _served(state: _State | None, stay: Stay) -> _State | None:
     """Return the state after a visit; None if all of its windows are over."""
     if state is None:
         return None
-    window = next((each for each in stay.windows if each[1] >= state[0]), None)
+    window = next((each for each in stay.windows if each[1] >= state.time), None)
     if window is None:
         return None
-    return max(state[0], window[0]) + stay.service, state[1]
+    return state._replace(time=max(state.time, window[0]) + stay.service)
 
 
 def with_breaks(

@@ -63,33 +63,28 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
     driven = legs(fleet, route, fleet.rules.clock)
     vehicle = fleet.rules.vehicles[route.vehicle]
     trips = trips_of(fleet.rules, route)
-    begin = max(vehicle.way[0], _released(fleet.rules, trips[0]))
+    released = max(vehicle.way[0], _released(fleet.rules, trips[0]))
     stays = _stays(fleet.rules, route, trips)
     if vehicle.breaks:
-        return _with_breaks(stays, driven, begin, vehicle)
-    return _timed(stays, driven, begin, vehicle)
+        return _with_breaks(stays, driven, released, vehicle)
+    return _timed(stays, driven, released, vehicle)
 
 
 def _with_breaks(
-    stays: Sequence[Stay], driven: Sequence[float], begin: float, vehicle: VehicleType
+    stays: Sequence[Stay], driven: Sequence[float], released: float, vehicle: VehicleType
 ) -> Schedule:
     """Return the times of a route with the breaks of its vehicle; late by inf if one fits nowhere.
 
     The vehicle leaves after breaks that it can take at its start.
     """
-    placed = place_breaks(stays, driven, begin, vehicle.way[1], vehicle.breaks)
-    if placed is None:
-        plain = _timed(stays, driven, begin, vehicle)
+    span = (released, vehicle.way[1])
+    found = place_breaks(stays, driven, span, vehicle.leaves_by, vehicle.breaks)
+    if found is None:
+        plain = _timed(stays, driven, released, vehicle)
         return replace(plain, late=plain.late or inf)
-    first = [each for each in placed if each.place == 0 and (not each.after or stays[0] == _FREE)]
-    for each in first:
-        opens, _, length = vehicle.breaks[each.number]
-        if max(begin, opens) + length > vehicle.leaves_by:
-            break
-        begin = max(begin, opens) + length
-        placed = placed[1:]
+    departure, placed = found
     extended, legs_between, begins, places = with_breaks(stays, driven, vehicle.breaks, placed)
-    times = _timed(extended, legs_between, begin, vehicle)
+    times = _timed(extended, legs_between, departure, vehicle)
     rests = [place for place in range(len(extended)) if place not in places]
     opens_of = [extended[place].windows[0][0] for place in rests]
     taken = zip([times.arrivals[place] for place in rests], opens_of, strict=True)

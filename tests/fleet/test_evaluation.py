@@ -1,7 +1,7 @@
 """The lengths and times of plans, and the rules that they break."""
 
 import dataclasses
-from itertools import islice
+from itertools import islice, pairwise, takewhile
 from math import inf
 
 import numpy as np
@@ -14,11 +14,13 @@ from service.fleet.evaluation import (
     violations,
 )
 from service.fleet.fleet import Fleet
+from service.fleet.measures import measures
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules, Shipment, VehicleType, Visit
 from service.fleet.schedule import schedule
 from tests.helpers.fleets import best_times, bounded_fleet, every_plan, random_fleet
 
+FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))
 LINE = np.abs(np.subtract.outer([0.0, 1, 2, 3, 4], [0.0, 1, 2, 3, 4]))
 
 
@@ -76,7 +78,7 @@ def test_times_agree_with_trying_every_departure(seed: int) -> None:
             assert (times.end, times.lateness, times.arrivals[0]) == expected
 
 
-@pytest.mark.parametrize("seed", range(100))
+@pytest.mark.parametrize("seed", range(140))
 def test_times_with_all_bounds_agree_with_trying_every_departure_and_window(seed: int) -> None:
     fleet = bounded_fleet(seed)
     plans = list(islice(every_plan(fleet.rules), 3000))
@@ -91,7 +93,45 @@ def test_times_with_all_bounds_agree_with_trying_every_departure_and_window(seed
             assert fleet.rules.vehicles[route.vehicle].breaks or known == expected
 
 
-FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))
+def carried(fleet: Fleet, route: Route) -> float:
+    """Return the load distance of a route, driven stop by stop with each order on board."""
+    rules, vehicle = fleet.rules, fleet.rules.vehicles[route.vehicle]
+    ends = [[] if end is None else [end] for end in (vehicle.start, vehicle.end)]
+    path = [*ends[0], *route.stops, *ends[1]]
+    first = len(ends[0])
+    on_board = list(vehicle.initial_load)[:1]
+
+    def loaded(place: int) -> list[int]:
+        trip = takewhile(lambda stop: stop not in vehicle.reload, path[place:])
+        return [rules.visits[stop].demand[0] for stop in trip if rules.visits[stop].demand]
+
+    on_board += loaded(first)
+    total = 0.0
+    for place, (here, there) in enumerate(pairwise(path)):
+        if place >= first and rules.visits[here].demand:
+            on_board.remove(rules.visits[here].demand[0])
+        elif place >= first and here in vehicle.reload:
+            on_board = loaded(place + 1)
+        total += sum(on_board) * fleet.costs[0, here, there]
+    return total
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_load_distance_is_that_of_the_orders_on_board(seed: int) -> None:
+    fleet = bounded_fleet(seed)
+    plans = list(islice(every_plan(fleet.rules), 3000))
+    plan = plans[(seed * 997) % len(plans)]
+    expected = sum(carried(fleet, route) for route in plan.routes)
+    assert measures(fleet, plan)["load_distance"] == pytest.approx(expected)
+
+
+def test_what_a_shipment_picks_up_counts_until_it_is_delivered() -> None:
+    visits = (Visit(), Visit(demand=(2,)), Visit(demand=(3,)), Visit(), Visit())
+    fleet = fleet_of(visits=visits, vehicles=(FULL,), shipments=(Shipment(2, 3),))
+    plan = Plan((Route(0, (1, 2, 3, 4)),))
+    assert measures(fleet, plan)["load_distance"] == 2 * LINE[0, 1] + 3 * LINE[2, 3]
+
+
 BROKEN = [
     ({}, [(1, 2, 3)], "stop 4 is not visited"),
     ({}, [(1, 2), (2, 3, 4)], "stop 2 is visited 2 times"),

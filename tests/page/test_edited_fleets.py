@@ -181,6 +181,25 @@ def test_objectives_are_chosen_from_a_list(fleet: Page) -> None:
     assert asked["clock"] == "longest route"
 
 
+def test_a_third_objective_is_chosen_from_a_list_and_planned(fleet: Page) -> None:
+    third = fleet.get_by_label("and against", exact=True)
+    expect(third).to_have_value("")
+    third.select_option("Vehicles used")
+    assert curl_body(fleet, "fleet")["objectives"][2] == {"name": "vehicles", "measure": "vehicles"}
+    plan(fleet)
+    wait_until_planned(fleet)
+    expect(fleet.locator("#several")).to_be_visible()
+    front = shown_front(fleet)
+    assert [len(each["lengths"]) for each in front["front"]] == [3] * len(front["front"])
+    # What is the second objective now can no longer be the third.
+    fleet.get_by_label("First objective against").select_option("Vehicles used")
+    assert len(curl_body(fleet, "fleet")["objectives"]) == 2
+    third.select_option("Load times distance")
+    assert curl_body(fleet, "fleet")["objectives"][2]["measure"] == "load_distance"
+    third.select_option("nothing else")
+    assert len(curl_body(fleet, "fleet")["objectives"]) == 2
+
+
 def test_a_clock_in_metres_is_not_taken_in_silence(fleet: Page) -> None:
     fleet.get_by_label("What the second objective is measured by").select_option(
         "Straight lines, m"

@@ -8,7 +8,7 @@ import { cellText, hintOf, isUnread, secondsIn, withText } from "./cells.js";
 import { columnsOf, isShown } from "./columns.js";
 import { vehiclesIn } from "./fleet_request.js";
 import { byIds, vehicleRenamed, withVehicle } from "./references.js";
-import { AGAINST, againstOf, doubtOfTimes, isTraded, timedBy, timesOf, tradedAgainst } from "./trade.js";
+import { AGAINST, againstOf, alsoAgainst, doubtOfTimes, isTraded, timedBy, timesOf, tradedAgainst, tradedAlsoAgainst } from "./trade.js";
 
 const element = (id) => document.getElementById(id);
 const TIMES = { "": "There are no times", first: "Those of the first objective", second: "Those of the second objective", own: "Times of their own" };
@@ -41,7 +41,8 @@ export class FleetForm {
     this.#objectives = new ObjectiveFields(element("fleet-objectives"), (axis, change) => this.#measure(axis, change));
     this.#clock = new ObjectiveFields(element("fleet-clock"), (_, change) => onChange({ ...this.#asked, clock: { ...this.#asked.clock, ...change } }));
     element("add-vehicle").addEventListener("click", () => this.#addVehicle());
-    element("against").addEventListener("change", ({ target }) => this.#trade(target.value));
+    element("against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAgainst));
+    element("also-against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAlsoAgainst));
     element("times").addEventListener("change", ({ target }) => this.#onTrade(timedBy(this.#asked, target.value)));
     element("widen").addEventListener("click", ({ target }) => target.setAttribute("aria-pressed", target.getAttribute("aria-pressed") !== "true"));
     for (const table of ["stops", "vehicles"]) {
@@ -122,10 +123,10 @@ export class FleetForm {
     this.#vehicles.focus(this.#asked.vehicles.length - 1);
   }
 
-  /** Takes another second objective, and shows the columns that it needs. */
-  #trade(key) {
-    for (const table of ["stops", "vehicles"]) if (AGAINST[key][table]) this.#added[table].add(AGAINST[key][table]);
-    this.#onTrade(tradedAgainst(this.#asked, key));
+  /** Takes another second or third objective, and shows the columns that it needs. */
+  #trade(key, traded) {
+    for (const table of ["stops", "vehicles"]) if (AGAINST[key]?.[table]) this.#added[table].add(AGAINST[key][table]);
+    this.#onTrade(traded(this.#asked, key));
   }
 
   #onTrade(asked) {
@@ -149,6 +150,7 @@ export class FleetForm {
     this.#objectives.show(objectives, true);
     this.#clock.show(times === "own" ? [clock] : [], true, ["Times"]);
     choose("against", Object.entries(AGAINST).map(([key, { title }]) => [key, title]), againstOf(this.#asked));
+    choose("also-against", alsoAgainst(this.#asked), againstOf(this.#asked, 2));
     const offered = Object.entries(TIMES).filter(([key]) => key !== (objectives[1].measure ? "second" : "own"));
     choose("times", offered, times ?? "");
   }

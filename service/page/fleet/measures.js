@@ -1,7 +1,7 @@
 /** The measures of a plan, as rows of a table. */
 
 import { withUnit } from "../common/objectives.js";
-import { clockUnit, unitOf } from "./units.js";
+import { clockUnit, unitOfRoutes } from "./units.js";
 
 const NAMES = {
   vehicles: "Vehicles used",
@@ -14,6 +14,7 @@ const NAMES = {
   shortest: "Shortest route",
   imbalance: "Longest less shortest",
   unassigned: "Prizes left out",
+  load_distance: "Load times distance",
 };
 
 /**
@@ -29,11 +30,9 @@ export function measuresOf({ measures = {} }, objectives, request) {
   });
 }
 
-/** Routes are compared by the clock, or else by the objective that is a maximum. */
 function unitsOf(objectives, request) {
   const time = clockUnit(request);
-  const most = request.objectives?.find(({ over }) => over === "max");
-  const route = request.clock || !most ? time : unitOf(most);
   const times = { driving: time, service: time, waiting: time, lateness: time, overtime: time };
+  const route = unitOfRoutes(request);
   return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit };
 }

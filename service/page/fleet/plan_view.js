@@ -40,12 +40,12 @@ export class PlanView {
     this.show(null);
   }
 
-  /** Sets the names of both lengths. */
+  /** Sets the names of the lengths. */
   name(objectives) {
     this.#objectives = objectives;
     const plan = this.#plan;
     this.show(null);
-    this.show(plan, this.#movers);
+    if (plan?.lengths.length === objectives.length) this.show(plan, this.#movers);
   }
 
   /** Takes the stop that is chosen on a map; null if none is. */

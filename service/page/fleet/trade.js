@@ -13,24 +13,48 @@ export const AGAINST = {
   unassigned: { title: "Orders left out", name: "orders left out", stops: "prize" },
   overtime: { title: "Overtime", name: "overtime", vehicles: "max_overtime" },
   lateness: { title: "Lateness", name: "lateness", stops: "due" },
+  imbalance: { title: "Longest less shortest route", name: "imbalance" },
+  load_distance: { title: "Load times distance", name: "load times distance", vehicles: "capacity" },
 };
+const COSTS = ["max", "sum"];
 
 /** Whether the objectives of a request can be chosen here. */
-export const isTraded = ({ objectives }) => Array.isArray(objectives) && objectives.length === 2 && objectives.every((each) => each?.name);
+export const isTraded = ({ objectives }) =>
+  Array.isArray(objectives) && [2, 3].includes(objectives.length) && objectives.every((each) => each?.name);
 
-/** The key in AGAINST of a request's second objective. */
-export const againstOf = ({ objectives: [, { measure, over = "sum" }] }) => measure ?? over;
+/** The key in AGAINST of an objective of a request, by its number; "" if there is none. */
+export const againstOf = ({ objectives }, axis = 1) => (objectives[axis] ? (objectives[axis].measure ?? objectives[axis].over ?? "sum") : "");
+
+/** The keys of third objectives, each with its title: not what the first two are already. */
+export const alsoAgainst = (asked) => [
+  ["", "nothing else"],
+  ...Object.entries(AGAINST)
+    .filter(([key]) => key === "sum" || (key !== againstOf(asked) && key !== againstOf(asked, 0)))
+    .map(([key, { title }]) => [key, title]),
+];
+
+/** The request with another third objective; "" takes it away. Costs are those of the second or the first objective. */
+export function tradedAlsoAgainst(asked, key) {
+  const objectives = asked.objectives.slice(0, 2);
+  if (!key) return { ...asked, objectives };
+  const { name } = AGAINST[key];
+  const unique = objectives.some((each) => each.name === name) ? `${name} too` : name;
+  if (!COSTS.includes(key)) return { ...asked, objectives: [...objectives, { name: unique, measure: key }] };
+  const { name: _, over: __, ...costs } = objectives.findLast(({ measure }) => !measure);
+  return { ...asked, objectives: [...objectives, { ...costs, name: unique, over: key }] };
+}
 
 /** The request with another second objective. Its costs become those of the clock if they were, and back. */
 export function tradedAgainst(asked, key) {
-  const [first, second] = asked.objectives;
+  const [first, second, ...more] = asked.objectives;
   const { name } = AGAINST[key];
   const { clock, ...others } = asked;
-  const timed = (made) => ({ ...others, objectives: [first, made], ...(clock && { clock }) });
-  if (key !== "max" && key !== "sum") {
-    const kept = { ...timed({ name, measure: key }) };
+  const kept = more.filter((each) => againstOf({ objectives: [each] }, 0) !== key || key === "sum");
+  const timed = (made) => ({ ...others, objectives: [first, made, ...kept], ...(clock && { clock }) });
+  if (!COSTS.includes(key)) {
+    const made = timed({ name, measure: key });
     const { over: _, ...costs } = second;
-    return !second.measure && clock === second.name ? { ...kept, clock: { ...costs, name: "time" } } : kept;
+    return !second.measure && clock === second.name ? { ...made, clock: { ...costs, name: "time" } } : made;
   }
   if (!second.measure) return { ...timed({ ...second, name, over: key }), ...(clock === second.name && { clock: name }) };
   if (clock && typeof clock === "object") return { ...timed({ ...clock, name, over: key }), clock: name };

@@ -9,9 +9,15 @@ export function clockUnit({ clock, objectives }) {
 /** The unit of the costs of an objective of a request, as the service answers it. */
 export const unitOf = ({ unit, from, speed }) => unit ?? (from ? (speed != null || from === "road_time" ? "s" : "m") : "");
 
+/** The unit by which routes are compared: that of the clock, or of the objective that is a maximum, or of the first. */
+export function unitOfRoutes(request) {
+  const compared = request.objectives?.find(({ over }) => over === "max") ?? request.objectives?.[0];
+  return request.clock || !compared ? clockUnit(request) : unitOf(compared);
+}
+
 /** These objectives with units for those that are measures of plans of a request. */
 export function withUnits(objectives, request) {
   const time = clockUnit(request ?? {});
-  const units = { lateness: time, overtime: time, unassigned: objectives[0].unit };
+  const units = { lateness: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}) };
   return objectives.map((each) => (each.measure && !each.unit ? { ...each, unit: units[each.measure] ?? "" } : each));
 }

@@ -31,10 +31,12 @@ function csvOfPlans(plans, titles, { one, stops, by, through }) {
   const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
     routes.map((route) => {
       const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
-      return [plan, balance, ...lengths, route[by], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places];
+      const before = balance === undefined ? [plan] : [plan, balance];
+      return [...before, ...lengths, route[by], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places];
     }),
   );
-  const head = ["plan", "balance", ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
+  const flat = titles.length === 2 ? ["balance"] : [];
+  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
   return [head, ...rows].map(line).join("");
 }
 
