@@ -18,7 +18,7 @@ _SAMPLE = 2**14  # bytes by which an encoding is guessed
 
 
 def text_of(source: Source) -> str:
-    """Return the text of a file, with a note if it is not UTF-8.
+    """Return the text of a file, whose lines end as in Unix, with a note if it is not UTF-8.
 
     Raises:
         UnreadableFile: The bytes are not text.
@@ -35,7 +35,7 @@ def text_of(source: Source) -> str:
     if not encoding.startswith("utf"):
         said = f"The text was read as {encoding}, as it is not UTF-8"
         source.note("encoding", f"{said}: if letters look wrong, save the file as UTF-8.")
-    return text
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _encoding_of(data: bytes) -> str:

@@ -37,6 +37,7 @@ _NAMES = (
     "page",
     "replan",
     "roads",
+    "routing",
     "scale",
     "search",
     "several",

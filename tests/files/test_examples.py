@@ -20,6 +20,7 @@ ACTORS = {
     "pa-one-matrix": info_of("pa-one-matrix", "matrices"),
 }
 FOLDER = Path(__file__).parent / "examples"
+BINARY = (".xlsx", ".XLSX", ".pgm")
 HELSINKI = [[24.94, 60.17], [24.95, 60.18]]
 
 
@@ -295,6 +296,17 @@ def test_what_an_example_becomes_is_a_request_that_the_service_takes(names: str)
             parse_task(TaskSource(reading.kind, body), LIMITS, ACTORS)
     else:
         parse_task(TaskSource(reading.kind, body), LIMITS, ACTORS)
+
+
+@pytest.mark.parametrize("end", [b"\r\n", b"\r"])
+@pytest.mark.parametrize("names", sorted({*EARTH, *OTHERS}))
+def test_lines_may_end_as_in_windows_or_on_an_old_mac(names: str, end: bytes) -> None:
+    files = [NamedFile(name, (FOLDER / name).read_bytes()) for name in names.split()]
+    if any(b"\0" in each.data or each.name.endswith(BINARY) for each in files):
+        return  # not text of one byte a character
+    unix = [each.data.replace(b"\r\n", b"\n") for each in files]
+    ended = [NamedFile(f.name, d.replace(b"\n", end)) for f, d in zip(files, unix, strict=True)]
+    assert read_files(ended, Bounds(), wanted=None) == read(names)
 
 
 @pytest.mark.parametrize(("name", "sentence"), REFUSED.items())

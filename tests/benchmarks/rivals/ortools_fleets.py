@@ -1,11 +1,17 @@
-"""OR-Tools' routing solver for fleets with one depot, capacities and a limit on each route."""
+"""OR-Tools' routing solver for fleets with one depot and capacities.
+
+Under a limit on each route, or with windows and shipments.
+"""
 
 import numpy as np
+from numpy.typing import NDArray
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from tests.benchmarks.rivals.ortools_routing import FINENESS
+
+_FINE = 1000  # whole units of a cost of 1
 
 
 def route_fleet(fleet: Fleet, limit: float, seconds: float) -> Plan | None:
@@ -53,3 +59,70 @@ def _plan(
             index = solution.Value(routing.NextVar(index))
         routes.append(Route(0, tuple(stops)))
     return Plan(tuple(route for route in routes if route.stops))
+
+
+def route_in_time(fleet: Fleet, vehicle_cost: float, seconds: float) -> Plan | None:
+    """The plan of the least distance and cost of vehicles; None where none was found.
+
+    By guided local search, from savings or with windows and shipments from parallel insertion. Of
+    a fleet as above, whose clock has the same costs as the distance.
+    """
+    rules = fleet.rules
+    (vehicle,) = rules.vehicles
+    whole = np.ceil(fleet.costs[0] * _FINE).astype(np.int64)
+    count = min(vehicle.count, len(rules.clients))
+    manager = pywrapcp.RoutingIndexManager(rules.n, count, 0)
+    routing = pywrapcp.RoutingModel(manager)
+    routing.SetArcCostEvaluatorOfAllVehicles(routing.RegisterTransitMatrix(whole.tolist()))
+    routing.SetFixedCostOfAllVehicles(round(vehicle_cost * _FINE))
+    load = routing.RegisterUnaryTransitVector(_loads(fleet))
+    # With shipments a vehicle may leave empty; what is delivered from the depot is on board first.
+    routing.AddDimension(load, 0, vehicle.capacity[0], not rules.shipments, "load")
+    if rules.clock is not None:
+        _add_times(fleet, routing, manager, whole)
+    for each in rules.shipments:
+        _add_shipment(routing, *map(manager.NodeToIndex, (each.pickup, each.delivery)))
+    parameters = _parameters(seconds)
+    if rules.clock is not None:
+        strategy = routing_enums_pb2.FirstSolutionStrategy.PARALLEL_CHEAPEST_INSERTION
+        parameters.first_solution_strategy = strategy
+    solution = routing.SolveWithParameters(parameters)
+    return None if solution is None else _plan(manager, routing, solution)
+
+
+def _loads(fleet: Fleet) -> list[int]:
+    """What each stop adds to the load; of a delivery of a shipment it is negative."""
+    visits = fleet.rules.visits
+    loads = [sum(visit.demand) for visit in visits]
+    for each in fleet.rules.shipments:
+        loads[each.delivery] = -loads[each.pickup]
+    return loads
+
+
+def _add_times(
+    fleet: Fleet,
+    routing: pywrapcp.RoutingModel,
+    manager: pywrapcp.RoutingIndexManager,
+    whole: NDArray[np.int64],
+) -> None:
+    rules = fleet.rules
+    (vehicle,) = rules.vehicles
+    services = np.array([round(visit.service * _FINE) for visit in rules.visits])
+    driven = routing.RegisterTransitMatrix((whole + services[:, np.newaxis]).tolist())
+    begin, end = (round(time * _FINE) for time in vehicle.shift)
+    routing.AddDimension(driven, end, end, False, "time")
+    times = routing.GetDimensionOrDie("time")
+    for stop in rules.clients:
+        opens, closes = rules.visits[stop].windows[0]
+        until = round(min(closes * _FINE, end))
+        times.CumulVar(manager.NodeToIndex(stop)).SetRange(round(opens * _FINE), until)
+    for number in range(routing.vehicles()):
+        times.CumulVar(routing.Start(number)).SetRange(begin, end)
+        times.CumulVar(routing.End(number)).SetRange(begin, end)
+
+
+def _add_shipment(routing: pywrapcp.RoutingModel, pickup: int, delivery: int) -> None:
+    routing.AddPickupAndDelivery(pickup, delivery)
+    solver, times = routing.solver(), routing.GetDimensionOrDie("time")
+    solver.Add(routing.VehicleVar(pickup) == routing.VehicleVar(delivery))
+    solver.Add(times.CumulVar(pickup) <= times.CumulVar(delivery))
