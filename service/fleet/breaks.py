@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import inf
 from typing import NamedTuple
 
-from service.fleet.rules import Break, Span
+from service.fleet.vehicles import Break, Span
 
 
 class Stay(NamedTuple):

@@ -2,14 +2,17 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
 from math import inf
 
 import numpy as np
 
 from service.construction.first_tours import MIN_CONSTRUCTED, Constructor, construct
 from service.errors import Refusal
+from service.fleet.conflicts import FEW_STOPS
 from service.fleet.evaluation import plan_lengths
 from service.fleet.fleet import LAYERS, Array, Fleet
+from service.fleet.left_out import with_all_stops
 from service.fleet.optimal_split import (
     FleetArrays,
     Indices,
@@ -22,9 +25,10 @@ from service.fleet.optimal_split import (
     states_of,
     stock_of,
 )
-from service.fleet.plans import Plan
-from service.fleet.rules import Rules, VehicleType, Visit
+from service.fleet.plans import Plan, Route
+from service.fleet.rules import Rules
 from service.fleet.scales import Horizon
+from service.fleet.vehicles import VehicleType, Visit
 from service.instance import Instance
 from service.objectives import OBJECTIVES
 from service.preferences import spread
@@ -242,6 +246,45 @@ class Cutter:
             # The compiled code expects this layout.
             found.append(RouteCosts(cost, np.ascontiguousarray(bounded), np.array(skipping)))
         return found
+
+
+def plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
+    """Yield plans that take tenths of a second, for when a search had none: they may break rules.
+
+    One route first, then that route cut in the best places; for few stops also the plan into which
+    one after the other is inserted where it costs the least.
+    """
+    plan = _one_route(fleet)
+    yield plan
+    if plan.routes and not fleet.rules.shipments:
+        try:
+            cutter = Cutter(fleet, [np.array(plan.routes[0].stops, np.int64)], stop)
+        except Refusal:  # it cannot be cut
+            pass
+        else:
+            yield from islice(cutter.plans(), 1)
+    if len(fleet.rules.clients) <= FEW_STOPS:
+        yield with_all_stops(fleet, Plan(()))
+
+
+def _one_route(fleet: Fleet) -> Plan:
+    """Return the plan in which one of the largest vehicles goes to the nearest stop each time.
+
+    What a shipment picks up is delivered at once. O(n^2), so that there is time for it when there
+    was none for a search. It may break rules.
+    """
+    rules = fleet.rules
+    vehicle = max(range(len(rules.vehicles)), key=lambda index: rules.vehicles[index].capacity)
+    with np.errstate(over="ignore"):
+        costs = (fleet.costs / fleet.scale[:, np.newaxis, np.newaxis]).sum(axis=0)
+    deliveries = {each.pickup: each.delivery for each in rules.shipments}
+    left = [stop for stop in rules.clients if stop not in deliveries.values()]
+    position, stops = rules.vehicles[vehicle].start, list[int]()
+    while left:
+        stop = left.pop(0 if position is None else int(costs[position, left].argmin()))
+        stops += [stop, deliveries[stop]] if stop in deliveries else [stop]
+        position = stops[-1]
+    return Plan((Route(vehicle, tuple(stops)),) if stops else ())
 
 
 def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:

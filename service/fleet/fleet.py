@@ -1,4 +1,4 @@
-"""A fleet: its rules, and the costs between its stops."""
+"""A fleet: its rules, the costs between its stops, and the units of its objectives."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -136,3 +136,33 @@ def _least_bound(costs: Array, starts: Sequence[int]) -> float:
         return float(steps.max(where=np.isfinite(steps), initial=0.0))
     bounds = least_paths(costs, starts, np.maximum)
     return float(bounds.max(where=np.isfinite(bounds), initial=0.0))
+
+
+def default_reference_point(fleet: Fleet) -> Array:
+    """Return lengths above those of sensible plans under m objectives, shape (m,).
+
+    They are the number of stops times the scale, plus what else can add to a length. In the first
+    objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
+    imbalance by the clock they are all services, and the time from the first shift or window to the
+    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed.
+    """
+    rules = fleet.rules
+    point = rules.n * fleet.scale
+    prizes = sum(visit.prize or 0.0 for visit in rules.visits)
+    point[0] += 0.0 if "unassigned" in rules.over else prizes
+    point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
+    vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+    for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
+        timed = {"lateness": True, "imbalance": rules.clock is not None}
+        costs = over in ("sum", "max") and layer == rules.clock
+        if costs or timed.get(over, False):
+            point[objective] += sum(visit.service for visit in rules.visits)
+            once = over in ("max", "imbalance")
+            point[objective] += _waiting(rules) * (1 if once else vehicles)
+    return point
+
+
+def _waiting(rules: Rules) -> float:
+    """Return the longest time that a vehicle may wait between two bounds of times."""
+    bounds = [time for span in rules.spans for time in span if time < inf]
+    return max(bounds, default=0.0) - min(bounds, default=0.0)

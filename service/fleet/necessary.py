@@ -13,7 +13,8 @@ from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import route_violations
 from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.plans import Route
-from service.fleet.rules import Rules, VehicleType
+from service.fleet.rules import Rules
+from service.fleet.vehicles import VehicleType
 
 NAMES = CityNames("stop")
 

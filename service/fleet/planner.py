@@ -1,10 +1,9 @@
 """plan_fleet(...): from a fleet to its front of plans."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import islice
 from math import inf
 
 import numpy as np
@@ -12,19 +11,18 @@ import numpy as np
 from service.construction.first_tours import SHARE, Constructor
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
-from service.fleet.conflicts import FEW_STOPS, no_plan
+from service.fleet.conflicts import no_plan
 from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
-from service.fleet.first_plans import Cutter, network_sequences
-from service.fleet.fleet import Array, Fleet
+from service.fleet.first_plans import Cutter, network_sequences, plain_plans
+from service.fleet.fleet import Array, Fleet, default_reference_point
 from service.fleet.goal import FREE
 from service.fleet.left_out import with_all_stops
 from service.fleet.measure_sweep import MeasureSweep
 from service.fleet.mixed_sweep import MixedSweep
 from service.fleet.moves import Mover
 from service.fleet.necessary import check_necessary
-from service.fleet.plans import FleetFront, Plan, Route
-from service.fleet.reference_point import default_reference_point
+from service.fleet.plans import FleetFront, Plan
 from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
@@ -159,49 +157,10 @@ def _searched(
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
     if not search.archive and terminated != "cancelled":
-        for plan in _plain_plans(fleet, stop):
+        for plan in plain_plans(fleet, stop):
             if not violations(fleet, plan):
                 return _front(fleet, options, [plan], terminated, began)
     return search.front(options.size, terminated)
-
-
-def _plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
-    """Yield plans that take tenths of a second, for when a search had none: they may break rules.
-
-    One route first, then that route cut in the best places; for few stops also the plan into which
-    one after the other is inserted where it costs the least.
-    """
-    plan = _one_route(fleet)
-    yield plan
-    if plan.routes and not fleet.rules.shipments:
-        try:
-            cutter = Cutter(fleet, [np.array(plan.routes[0].stops, np.int64)], stop)
-        except Refusal:  # it cannot be cut
-            pass
-        else:
-            yield from islice(cutter.plans(), 1)
-    if len(fleet.rules.clients) <= FEW_STOPS:
-        yield with_all_stops(fleet, Plan(()))
-
-
-def _one_route(fleet: Fleet) -> Plan:
-    """Return the plan in which one of the largest vehicles goes to the nearest stop each time.
-
-    What a shipment picks up is delivered at once. O(n^2), so that there is time for it when there
-    was none for a search. It may break rules.
-    """
-    rules = fleet.rules
-    vehicle = max(range(len(rules.vehicles)), key=lambda index: rules.vehicles[index].capacity)
-    with np.errstate(over="ignore"):
-        costs = (fleet.costs / fleet.scale[:, np.newaxis, np.newaxis]).sum(axis=0)
-    deliveries = {each.pickup: each.delivery for each in rules.shipments}
-    left = [stop for stop in rules.clients if stop not in deliveries.values()]
-    position, stops = rules.vehicles[vehicle].start, list[int]()
-    while left:
-        stop = left.pop(0 if position is None else int(costs[position, left].argmin()))
-        stops += [stop, deliveries[stop]] if stop in deliveries else [stop]
-        position = stops[-1]
-    return Plan((Route(vehicle, tuple(stops)),) if stops else ())
 
 
 def _constructed(

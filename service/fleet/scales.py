@@ -10,7 +10,8 @@ import numpy as np
 from service.errors import Refusal
 from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.loads import loads_of
-from service.fleet.rules import Rules, Span
+from service.fleet.rules import Rules
+from service.fleet.vehicles import Span
 from service.instance import OUTLYING
 
 _LARGEST = 2.0**61  # the largest penalty of all routes together: PyVRP's integers have 64 bits

@@ -9,7 +9,8 @@ from math import inf
 from service.fleet.breaks import Stay, place_breaks, with_breaks
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route, path_of
-from service.fleet.rules import ALWAYS, Rules, VehicleType
+from service.fleet.rules import Rules
+from service.fleet.vehicles import ALWAYS, VehicleType
 
 
 @dataclass(frozen=True)

@@ -20,9 +20,9 @@ from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.goal import FREE, Goal, Weights
 from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import VehicleType
 from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
 from service.fleet.schedule import schedule
+from service.fleet.vehicles import VehicleType
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
 _PRIZE_DIGITS = 6  # the digits of the largest prize where prizes are an objective

@@ -9,10 +9,9 @@ from typing import Any, NamedTuple
 from pydantic_core import to_json
 
 from service.errors import NoTour
-from service.fleet.evaluation import route_lengths, unassigned
+from service.fleet.evaluation import measures, route_lengths, unassigned
 from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
-from service.fleet.measures import measures
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
 from service.fleet.schedule import schedule

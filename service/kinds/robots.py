@@ -22,7 +22,8 @@ from service.coverage.survey import Survey, survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.fleet.rules import Over, Rules, VehicleType, Visit
+from service.fleet.rules import Over, Rules
+from service.fleet.vehicles import VehicleType, Visit
 from service.front import reporting
 from service.kinds.fleet import document_of_plans, plan_front
 from service.kinds.front_document import FrontDocument, encode_path, with_member

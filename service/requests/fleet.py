@@ -8,10 +8,8 @@ from pydantic_core import to_json
 
 from service.errors import invalid
 from service.fleet.fleet import LAYERS
-from service.fleet.rules import (
-    Rules,
-    VehicleType,
-)
+from service.fleet.rules import Rules
+from service.fleet.vehicles import VehicleType
 from service.objectives import OBJECTIVES
 from service.requests.fields import (
     GEOMETRY,

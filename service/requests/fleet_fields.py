@@ -7,15 +7,8 @@ from typing import Annotated
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
-from service.fleet.rules import (
-    ALWAYS,
-    Measure,
-    Over,
-    Shipment,
-    Span,
-    VehicleType,
-    Visit,
-)
+from service.fleet.rules import Measure, Over
+from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 from service.requests.fields import (
     AsInteger,
     Cost,

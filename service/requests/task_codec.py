@@ -18,7 +18,8 @@ from pydantic_core import from_json, to_json
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, Robot
 from service.fleet.plans import Route
-from service.fleet.rules import Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Rules
+from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds
 from service.objectives import Objective

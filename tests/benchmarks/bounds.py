@@ -26,7 +26,8 @@ from service.fleet.evaluation import violations
 from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route, kept_share
-from service.fleet.rules import ALWAYS, Measure, Over, Rules, VehicleType, Visit
+from service.fleet.rules import Measure, Over, Rules
+from service.fleet.vehicles import ALWAYS, VehicleType, Visit
 from service.front import Progress
 from service.pareto import knee
 from tests.benchmarks.cells import of

@@ -32,9 +32,10 @@ from service.fleet.fleet import Fleet
 from service.fleet.goal import Goal
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
-from service.fleet.rules import Rules, VehicleType, Visit
+from service.fleet.rules import Rules
 from service.fleet.scales import UNBOUNDED
 from service.fleet.translation import Translation
+from service.fleet.vehicles import VehicleType, Visit
 from service.pareto import hypervolume, nondominated
 from tests.benchmarks import printed
 from tests.benchmarks.fleet_table import OURS, PLAIN, compared

@@ -22,8 +22,9 @@ from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
-from service.fleet.rules import Rules, VehicleType, Visit
+from service.fleet.rules import Rules
 from service.fleet.translation import Translation
+from service.fleet.vehicles import VehicleType, Visit
 from service.pareto import nondominated
 from tests.benchmarks.fleet import Find, swept
 from tests.benchmarks.fleet_table import OURS, PLAIN
@@ -70,7 +71,7 @@ def read_solomon(path: Path) -> Solomon:
         end=0,
         count=int(read["vehicles"]),
         capacity=(int(read["capacity"]),),
-        shift=depot.window,
+        shift=depot.windows[0],
     )
     rules = Rules(visits=(Visit(), *visits), vehicles=(vehicle,), over=("sum", "max"), clock=1)
     known = vrplib.read_solution(path.with_suffix(".sol"))

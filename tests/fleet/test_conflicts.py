@@ -10,7 +10,8 @@ import pytest
 from service.errors import NoTour
 from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
-from service.fleet.rules import Rules, VehicleType, Visit
+from service.fleet.rules import Rules
+from service.fleet.vehicles import VehicleType, Visit
 
 SOON = Visit(windows=((5.0, 5.0),))
 

@@ -8,16 +8,17 @@ import numpy as np
 import pytest
 
 from service.fleet.evaluation import (
+    measures,
     plan_lengths,
     route_lengths,
     unassigned,
     violations,
 )
 from service.fleet.fleet import Fleet
-from service.fleet.measures import measures
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Rules
 from service.fleet.schedule import schedule
+from service.fleet.vehicles import Shipment, VehicleType, Visit
 from tests.helpers.fleets import best_times, bounded_fleet, every_plan, random_fleet
 
 FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))

@@ -13,7 +13,8 @@ from service.fleet.first_plans import Cutter
 from service.fleet.fleet import Fleet
 from service.fleet.optimal_split import Indices
 from service.fleet.plans import Plan
-from service.fleet.rules import Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Rules
+from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.helpers.fleets import Point, every_plan, hull_corners, random_fleet
 

@@ -11,7 +11,8 @@ from service.fleet.fleet import Fleet
 from service.fleet.left_out import explain
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import Rules, VehicleType, Visit
+from service.fleet.rules import Rules
+from service.fleet.vehicles import VehicleType, Visit
 from tests.helpers.fleets import bounded_fleet, exact_front
 
 

@@ -13,7 +13,8 @@ from service.fleet.fleet import Fleet
 from service.fleet.necessary import check_necessary
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route
-from service.fleet.rules import ALWAYS, Over, Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Over, Rules
+from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.fleet.test_outliers import AnyOrder
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from service.fleet.reference_point import default_reference_point
 
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, InvalidInstance, Refusal
@@ -16,9 +17,9 @@ from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront, path_of
-from service.fleet.reference_point import default_reference_point
-from service.fleet.rules import ALWAYS, Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Rules
 from service.fleet.schedule import schedule
+from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.instance import Instance
 from service.pareto import nondominated
 from tests.helpers.fleets import exact_front, random_fleet

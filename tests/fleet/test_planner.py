@@ -20,10 +20,11 @@ from service.fleet.moves import Mover
 from service.fleet.necessary import least_lengths
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront
-from service.fleet.rules import Over, Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Over, Rules
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
 from service.fleet.translation import Translation
+from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.front import Progress
 from service.pareto import nondominated
 from tests.helpers.actors import Shuffler, info_of

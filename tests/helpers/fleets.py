@@ -10,7 +10,8 @@ import numpy as np
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.rules import ALWAYS, Break, Measure, Over, Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Measure, Over, Rules
+from service.fleet.vehicles import ALWAYS, Break, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 
 Point = tuple[float, ...]

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from service.errors import Refusal
-from service.fleet.rules import ALWAYS, Shipment, VehicleType, Visit
+from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.requests.fleet import parse_fleet_request
 from service.requests.json_schemas import fleet_schemas
 from service.requests.limits import Limits

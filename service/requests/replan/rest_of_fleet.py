@@ -11,7 +11,8 @@ import numpy as np
 from service.actor_info import ActorInfo
 from service.errors import Refusal, invalid
 from service.fleet.plans import Route
-from service.fleet.rules import Rules, Shipment, VehicleType, Visit
+from service.fleet.rules import Rules
+from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.requests.limits import Limits, check_amounts, check_limit, check_router, lower_defaults
 from service.requests.parser import actor_for_plans
 from service.requests.replan.costs import (

@@ -7,7 +7,7 @@ import vroom
 
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import Span
+from service.fleet.vehicles import Span
 
 _FINE = 1000  # whole units of a cost of 1
 _MOST = 2**31 - 1

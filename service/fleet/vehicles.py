@@ -1,0 +1,89 @@
+"""Say what stops, shipments and types of vehicles ask for: the parts of a fleet's rules."""
+
+from dataclasses import dataclass
+from math import inf
+
+Span = tuple[float, float]
+Break = tuple[float, float, float]  # the earliest and the latest begin, and how long it takes
+ALWAYS: Span = (0.0, inf)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Visit:
+    """The demands of a stop on the vehicle that visits it.
+
+    Args:
+        demand: The load brought there, or at a pick-up the load taken on, in each dimension of the
+            vehicles' capacity.
+        service: How long the visit takes.
+        windows: When the visit may begin: in any of these, by ascending begin.
+        prize: The cost of leaving the stop out; None if it must be visited.
+        due: The time at which the visit should have begun. If it begins later, the plan is late by
+            the difference.
+        release: The earliest time at which a vehicle can load what it brings there.
+        skills: The skills of which its vehicle must have all.
+        vehicles: The types of vehicles that may visit it; empty for any.
+    """
+
+    demand: tuple[int, ...] = ()
+    service: float = 0.0
+    windows: tuple[Span, ...] = (ALWAYS,)
+    prize: float | None = None
+    due: float = inf
+    release: float = 0.0
+    skills: tuple[str, ...] = ()
+    vehicles: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Shipment:
+    """Two stops: the same vehicle takes a load from the one to the other."""
+
+    pickup: int
+    delivery: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class VehicleType:
+    """A number of equal vehicles.
+
+    Args:
+        start: The stop at which they start; None if each starts at its first visit.
+        end: The stop at which they end; None if each ends at its last visit.
+        count: The number of vehicles.
+        capacity: The most that a vehicle can hold, in each dimension.
+        shift: The earliest departure and the latest end of a route.
+        longest: The limit on the time of a route; without a clock, on its length in the objective
+            that is a maximum.
+        fixed: The cost of using one vehicle.
+        skills: What they are able to do.
+        max_stops: The most stops of a route; None for any number. Not for who may load again.
+        reload: The stops at which they may load again on their way.
+        max_trips: The most trips of a route, each from one loading to the next; None for any.
+        initial_load: The load on board at the start, in each dimension, or empty. It is unloaded at
+            the first stop for reloading, or at the end.
+        max_overtime: How much later than its shift a route may end.
+        breaks: The breaks of a driver who is on the way then, by ascending time.
+        leaves_by: The latest departure: of a vehicle on its way, the present time.
+    """
+
+    start: int | None = None
+    end: int | None = None
+    count: int = 1
+    capacity: tuple[int, ...] = ()
+    shift: Span = ALWAYS
+    longest: float = inf
+    fixed: float = 0.0
+    skills: tuple[str, ...] = ()
+    max_stops: int | None = None
+    reload: tuple[int, ...] = ()
+    max_trips: int | None = None
+    initial_load: tuple[int, ...] = ()
+    max_overtime: float = 0.0
+    leaves_by: float = inf
+    breaks: tuple[Break, ...] = ()
+
+    @property
+    def way(self) -> Span:
+        """The earliest departure, and the latest end with overtime."""
+        return self.shift[0], self.shift[1] + self.max_overtime
