@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from service.fleet.reference_point import default_reference_point
 
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, InvalidInstance, Refusal
 from service.fleet.enumeration import exact_plans
 from service.fleet.evaluation import points_of, violations
-from service.fleet.fleet import Fleet
+from service.fleet.fleet import Fleet, default_reference_point
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront, path_of
 from service.fleet.rules import Rules
