@@ -6,6 +6,7 @@ import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
 import { FileNotes } from "./opening/file_notes.js";
 import { formOf, kindOf } from "./common/kinds.js";
+import { keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
@@ -17,7 +18,7 @@ import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
-import { pastedFile, read } from "./opening/reading.js";
+import { read, takePasted } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
 import { takeDropped } from "./opening/dropping.js";
 import { Problem, Service } from "./planning/service.js";
@@ -301,14 +302,6 @@ function tellFolder(name) {
   tellUnread(new Problem({ code: "folder", detail: `${name} is a folder: drop its files` }));
 }
 
-/** Opens text of a file, wherever it is pasted; rows of numbers go into their box. */
-function pasted(event) {
-  const file = pastedFile(event.clipboardData.getData("text"));
-  if (!file) return;
-  event.preventDefault();
-  openFiles([file]);
-}
-
 /** Opens an example by its file. Returns false if it does not exist, or something else was opened meanwhile. */
 async function openExample(file, refused) {
   if (!examples.choose(file)) return false;
@@ -348,10 +341,11 @@ async function openLinked() {
   const link = await linked(location.hash);
   if (!link) return false;
   if (!(await openAsked(link))) return true;
-  result.want(link.balance);
-  const request = link.asked || examples.chosen ? input.request : null;
-  const searched = input.asked.time_limit !== 0;
-  await run((mine) => stored(mine, link.id, request, searched));
+  const carried = keptAnswer(link, input.instance, input.ids);
+  result.want(link.balance, carried?.front[0]);
+  const request = link.asked?.request || examples.chosen ? input.request : null;
+  const known = { request, searched: input.asked.time_limit !== 0, carried };
+  await run((mine) => stored(mine, link.id, known));
   return true;
 }
 
@@ -381,7 +375,7 @@ element("clear").addEventListener("click", () => {
 element("example").addEventListener("change", ({ target }) => planExample(target.value));
 element("file").addEventListener("change", openChosen);
 takeDropped(element("drop"), openFiles, tellFolder);
-addEventListener("paste", pasted);
+takePasted(openFiles);
 addEventListener("hashchange", openLinked);
 
 const equipment = service.get("page/map.json").catch(() => null);

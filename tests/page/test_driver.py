@@ -75,6 +75,10 @@ def test_a_plan_is_a_row_for_each_stop_a_route_of_gpx_and_a_list(window: Page) -
         for route in routes
     ]
     assert ["depot", "A, at the back", "depot"] in points
+    alone = json.loads(given(window, "Save the selected tour alone as JSON"))
+    assert alone["front"] == [front["front"][0]]
+    for member in ("id", "kind", "objectives", "stops"):
+        assert alone[member] == front[member]
     window.evaluate("window.print = () => {}")
     window.get_by_role("button", name="Print the stops of the selected tour").click()
     sheet = window.locator("#sheet")
@@ -104,6 +108,8 @@ def test_a_tour_over_the_day_has_its_hours(window: Page) -> None:
     assert rows[0]["stop"] == rows[-1]["stop"] == "s0"
     assert rows[0]["arrives"].startswith("7:30")
     assert "vehicle" not in rows[0]
+    [alone] = json.loads(given(window, "Save the selected tour alone as JSON"))["front"]
+    assert [row["stop"] for row in rows] == [*alone["stops"], "s0"]
 
 
 def test_stops_without_places_have_no_gpx(window: Page) -> None:

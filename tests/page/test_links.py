@@ -1,9 +1,14 @@
 """Links that the page copies: they open the same front in another window."""
 
+import base64
 import json
 import re
+import zlib
+from typing import Any
 
+import httpx
 import numpy as np
+import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
@@ -11,6 +16,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    wait_for_next_frame,
     wait_until_planned,
 )
 
@@ -83,9 +89,188 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     wait_until_planned(page)
     link = copied(page, "link")
     expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
-    assert len(link) < 100
+    assert len(link) < 1000
     with open_page(browser, link) as other:
         wait_until_planned(other)
         expect(other.get_by_text("The link only names a front")).to_be_visible()
         expect(other.locator("#plane-1")).to_be_hidden()
         expect(other.get_by_label("A front of")).to_be_visible()
+
+
+SHORT = 2000  # characters of a link to a tour of 60 stops, at most
+KEPT = "The service no longer keeps this front. This is the {} that was chosen"
+rng = np.random.default_rng(5)
+
+
+def stops(**members: Any) -> list[dict[str, Any]]:
+    """Sixty stops in Helsinki, with further members of each but the first."""
+    places = np.column_stack([24.9 + rng.random(60) / 10, 60.15 + rng.random(60) / 20]).round(5)
+    return [
+        {"id": f"order-{k}", "location": place, **(members if k else {})}
+        for k, place in enumerate(places.tolist())
+    ]
+
+
+def under(count: int) -> list[dict[str, Any]]:
+    """So many objectives: one measured on the earth, the others in a plane each."""
+    planes = [(100 * rng.random((60, 2))).astype(int).tolist() for _ in range(count - 1)]
+    further = [{"name": f"cost {k}", "coordinates": plane} for k, plane in enumerate(planes)]
+    return [{"name": "way", "from": "great_circle"}, *further]
+
+
+VANS = [{"id": "van", "count": 3, "capacity": [25], "start": "order-0", "end": "order-0"}]
+REQUESTS = {
+    "two": {"stops": stops(), "objectives": under(2), "time_limit": 0},
+    "three": {"stops": stops(), "objectives": under(3), "time_limit": 0.3},
+    "fleet": {
+        "stops": stops(demand=[1]),
+        "vehicles": VANS,
+        "objectives": [
+            {"name": "way", "from": "great_circle"},
+            {"name": "longest", "from": "great_circle", "over": "max"},
+        ],
+        "time_limit": 0.3,
+    },
+}
+
+
+def select_another(page: Page) -> None:
+    """Select a tour or plan that the page does not select by itself."""
+    if page.locator("#several").is_visible():
+        page.get_by_role("slider", name="Way", exact=True).press("Home")
+    else:
+        page.get_by_role("slider", name="Balance").press("Home")
+    wait_for_next_frame(page)
+
+
+def on_screen(page: Page) -> list[str]:
+    """The selected tour or plan as the page shows it: its lengths and its stops in their order."""
+    page.locator("#order").evaluate("details => details.open = true")
+    wait_for_next_frame(page)
+    lengths = page.locator("#comparison tbody:not(.measures) td:nth-child(2)").all_inner_texts()
+    listed = "#order li" if page.locator("#order").is_visible() else "#fleet-stops li"
+    return [*lengths, *page.locator(listed).all_text_contents()]
+
+
+def open_and_plan(page: Page, request: dict[str, Any]) -> None:
+    open_files(page, {"request.json": json.dumps(request)})
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+
+
+@pytest.mark.parametrize("name", REQUESTS)
+def test_a_link_keeps_the_tour_that_was_chosen(
+    page: Page, browser: Browser, released: str, name: str
+) -> None:
+    open_and_plan(page, REQUESTS[name])
+    before = on_screen(page)
+    select_another(page)
+    chosen = on_screen(page)
+    assert chosen != before
+    link = copied(page, "link")
+    assert len(link) < SHORT
+    with open_page(browser, link) as other:
+        wait_until_planned(other)
+        assert on_screen(other) == chosen
+    front = re.findall("front=([0-9a-f]+)", link)[0]
+    assert httpx.delete(f"{released}/front/{front}").is_success
+    noun = "plan" if name == "fleet" else "tour"
+    with open_page(browser, link) as other:
+        expect(other.locator("#choice")).to_contain_text(KEPT.format(noun))
+        expect(other.locator("#status")).to_have_text(f"This is the {noun} of the link.")
+        expect(other.locator("#count")).to_have_text("60 stops")
+        assert on_screen(other) == chosen
+        expect(other.get_by_role("button", name="Save GeoJSON")).to_be_disabled()
+        assert copied(other, "link") == link
+        other.get_by_role("button", name="Plan again").click()
+        wait_until_planned(other)
+        expect(other.get_by_role("button", name="Plan again")).to_be_hidden()
+        expect(other.locator("#choice")).not_to_contain_text("no longer keeps")
+
+
+@pytest.mark.parametrize("example", ["warehouse-cleaning.json", "warehouse-robots.json"])
+def test_a_link_keeps_what_was_chosen_on_a_map(
+    browser: Browser, released: str, example: str
+) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        page.get_by_label("Example").select_option(example)
+        expect(page.locator("#brought")).to_contain_text("grid")
+        wait_until_planned(page)
+        select_another(page)
+        chosen = on_screen(page)
+        link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", copied(page, "link"))
+    with open_page(browser, link) as other:
+        expect(other.locator("#choice")).to_contain_text("The service no longer keeps this front.")
+        assert on_screen(other) == chosen
+        expect(other.locator("#grid")).to_be_visible()
+
+
+ITEM = {"lengths": [1, 2], "balance": 0, "tour": [2, 0, 1]}
+ROUTE = {"vehicle": "van", "stops": ["order-0", "order-1"], "lengths": [1, 1]}
+PLAN = {"lengths": [1, 2], "balance": 0, "routes": [ROUTE]}
+SOUND = {
+    "two": {"kind": "front", "item": ITEM},
+    "three": {"kind": "front", "item": {**ITEM, "lengths": [1, 2, 3], "losses": [0, 0, 1]}},
+    "fleet": {"kind": "fleet", "item": PLAN},
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "item"),
+    [
+        ("two", "front", {**ITEM, "lengths": ["<b>", 2]}),
+        ("two", "front", {**ITEM, "lengths": [1, 2, 3]}),
+        ("two", "front", {**ITEM, "tour": [0, 60]}),  # there are 60 stops
+        ("two", "front", {**ITEM, "tour": {"length": 3}}),
+        ("two", "front", {**ITEM, "angle": "up"}),
+        ("two", "front", {**ITEM, "balance": None}),
+        ("two", "front", {**ITEM, "times": "late"}),
+        ("two", "fleet", ITEM),
+        ("two", "coverage", ITEM),
+        ("two", "toString", ITEM),
+        ("two", "front", None),
+        ("three", "front", {**ITEM, "lengths": [1, 2, 3]}),  # without losses
+        ("fleet", "fleet", {**PLAN, "routes": [{**ROUTE, "stops": ["nowhere"]}]}),
+        ("fleet", "fleet", {**PLAN, "routes": [{**ROUTE, "arrivals": ["soon", 1]}]}),
+        ("fleet", "fleet", {**PLAN, "routes": [{**ROUTE, "lengths": [1]}]}),
+        ("fleet", "fleet", {**PLAN, "routes": [None]}),
+        ("fleet", "fleet", {**PLAN, "measures": {"driving": "far"}}),
+        ("fleet", "fleet", {**PLAN, "unassigned": [1]}),
+    ],
+)
+def test_a_tour_in_a_link_that_does_not_fit_its_request_is_refused(
+    planned: Page, name: str, kind: str, item: Any
+) -> None:
+    """Links come from anywhere."""
+    request = REQUESTS[name]
+    assert kept(planned, request, SOUND[name])
+    assert not kept(planned, request, {"kind": kind, "item": item})
+
+
+def kept(page: Page, request: dict[str, Any], chosen: dict[str, Any]) -> bool:
+    """Whether the page would show the tour of a link to a front that is gone."""
+    link = {"id": 32 * "0", "asked": {"chosen": chosen, "objectives": request["objectives"]}}
+    ids = [stop["id"] for stop in request["stops"]]
+    shown = page.evaluate(
+        """async ([link, request, ids]) => {
+          const { keptAnswer } = await import("./page/result/chosen.js");
+          return keptAnswer(link, request, ids) !== null;
+        }""",
+        [link, request, ids],
+    )
+    assert isinstance(shown, bool)
+    return shown
+
+
+def test_a_front_is_planned_again_where_the_tour_of_the_link_does_not_fit(
+    browser: Browser, released: str
+) -> None:
+    chosen = {"kind": "front", "item": {**ITEM, "tour": [0, 60]}}
+    request = REQUESTS["two"]
+    asked = {"request": request, "objectives": request["objectives"], "chosen": chosen}
+    deflated = zlib.compress(json.dumps(asked).encode(), wbits=-15)
+    text = base64.urlsafe_b64encode(deflated).decode().rstrip("=")
+    with open_page(browser, f"{released}/#front={32 * '0'}&asked={text}") as page:
+        wait_until_planned(page)
+        expect(page.locator("#choice")).not_to_contain_text("no longer keeps")

@@ -33,8 +33,18 @@ async function checked(file) {
   }
 }
 
+/** Opens text of a file, wherever it is pasted; rows of numbers go into their box. */
+export function takePasted(openFiles) {
+  addEventListener("paste", (event) => {
+    const file = pastedFile(event.clipboardData.getData("text"));
+    if (!file) return;
+    event.preventDefault();
+    openFiles([file]);
+  });
+}
+
 /** The file of text that is pasted; null for rows of numbers, and for a name or a number for a field. */
-export function pastedFile(text) {
+function pastedFile(text) {
   const [first, ...others] = text.trim().split("\n");
   const isFile = /^[{[]/.test(first) || (others.length && /[^-+\d.,;e\s]/i.test(first));
   return isFile ? new File([text], "pasted text") : null;

@@ -21,6 +21,7 @@ const SEARCH_ALONE = { queued: "The search waits for its turn.", running: "The s
 
 /** The sentence for a state of a planning. */
 export const sentence = (state) =>
+  (state.stage === "kept" && `This is the ${kindNamed(state.answer).noun.one} of the link.`) ||
   (state.stage === "warming-up" && warmingUp(state)) ||
   (!state.alone && SEARCH_ALONE[state.stage]) || SAID[state.stage] || ended(state);
 

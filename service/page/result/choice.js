@@ -3,6 +3,10 @@
 import { amount, wordsOf } from "../common/amounts.js";
 import { isCounted, shortUnit } from "../common/objectives.js";
 
+/** The sentence about the tour of a link whose front the service no longer keeps; `noun` is what the front called it. */
+export const choiceKept = ({ one }) =>
+  `The service no longer keeps this front. This is the ${one} that was chosen; a new plan may differ.`;
+
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
 export function choiceOf(front, tour, objectives, { one }) {
   const kept = tour.kept == null ? "" : ` Keeps ${Math.round(100 * tour.kept)} % of the legs.`;

@@ -1,7 +1,8 @@
 /** The buttons that copy what is on the screen, or save it as a file. */
 
+import { chosenOf, placeIn } from "./chosen.js";
 import { areLocated, csvOfVisits, fillSheet, gpxOf, routesOf } from "./driver.js";
-import { csv, curl, download } from "./exports.js";
+import { alone, csv, curl, download } from "./exports.js";
 import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
@@ -9,7 +10,9 @@ import { python } from "./python.js";
 const ALONE = "This link opens the front without its maps: the request is too long for an address.";
 const COPIED = "Copied"; // a button's text, for a moment after it was last pressed
 const MOMENT = 1500; // ms
-const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png", "stops-csv", "gpx", "print"];
+const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png", "stops-csv", "tour-json", "gpx", "print"];
+
+const KEPT_BY_SERVICE = ["json", "csv", "geojson"]; // what is made of the whole front
 
 const element = (id) => document.getElementById(id);
 
@@ -38,6 +41,7 @@ export class ExportButtons {
     on("csv", ({ objectives }) => download("front.csv", "text/csv", csv(this.#shown, objectives)));
     on("geojson", ({ driven }) => this.#saveGeojson(driven));
     on("stops-csv", (shown) => download("stops.csv", "text/csv", csvOfVisits(this.#routes(shown))));
+    on("tour-json", (shown) => download("tour.json", "application/json", JSON.stringify(alone(this.#shown, this.#item(shown)))));
     on("gpx", (shown) => this.#saveGpx(this.#routes(shown)));
     on("print", (shown) => (fillSheet(element("sheet"), this.#routes(shown)), print()));
     on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
@@ -49,8 +53,15 @@ export class ExportButtons {
     this.#shown = answer;
     say("");
     for (const id of OF_FRONT) element(id).disabled = !answer;
+    if (answer?.kept) for (const id of KEPT_BY_SERVICE) element(id).disabled = true;
     if (answer?.stops?.every(({ location }) => location)) return;
     element("geojson").disabled = element("gpx").disabled = true;
+  }
+
+  /** The selected tour or plan as the service has it: tours of a rest are drawn among the stops before. */
+  #item({ selected: { item } }) {
+    const { front } = this.#shown;
+    return front[placeIn(front, item)] ?? item;
   }
 
   #routes({ selected, asked }) {
@@ -62,11 +73,13 @@ export class ExportButtons {
     download("tour.gpx", "application/gpx+xml", gpxOf(routes));
   }
 
-  async #copyLink({ asked, example, objectives, balance }, button) {
-    const wanted = asked && { request: asked, objectives };
-    const { hash, whole } = await fragment(this.#shown.id, balance, wanted, example);
+  async #copyLink(shown, button) {
+    const { asked, example, objectives, balance } = shown;
+    const chosen = chosenOf(this.#shown, this.#item(shown), Boolean(asked));
+    const carried = { request: example ? undefined : (asked ?? undefined), objectives, chosen };
+    const { hash, whole } = await fragment(this.#shown.id, balance, carried, example);
     history.replaceState(null, "", hash);
-    say(whole || !asked ? "" : ALONE);
+    say(whole || !carried.request ? "" : ALONE);
     await copy(location.href, button);
   }
 

@@ -1,4 +1,4 @@
-/** Write a request as a curl command, and a front as CSV. */
+/** Write a request as a curl command, a front as CSV, and one tour or plan alone as JSON. */
 
 import { kindNamed } from "../common/kinds.js";
 import { unnamed } from "../common/objectives.js";
@@ -7,6 +7,12 @@ import { unnamed } from "../common/objectives.js";
 export function curl({ path, body }) {
   const address = new URL(path, document.baseURI).href;
   return `curl ${address} -H 'Content-Type: application/json' -d @- <<'END'\n${JSON.stringify(body)}\nEND\n`;
+}
+
+/** One tour or plan as an answer whose front holds nothing else, with the stops that it visits. */
+export function alone({ id, kind, closed, objectives, places, stops }, item) {
+  const visited = new Set(item.routes ? item.routes.flatMap((route) => route.stops) : item.stops);
+  return { id, kind, closed, objectives, places, stops: stops?.filter((stop) => visited.has(stop.id)), front: [item] };
 }
 
 /**

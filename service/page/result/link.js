@@ -1,18 +1,26 @@
-/** Links to a stored front with the selected tour and what was asked for: `#front=ID&balance=B&asked=...`. */
+/** Write and read links to a front: `#front=ID&balance=B&asked=...`, with the request and the selected tour. */
 
 const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
 
 /**
- * The link's fragment, with the file of the example, or with the request, deflated and in base64 for
- * addresses. `whole` says whether the request was short enough to be in it.
+ * The fragment of a link to a front.
+ *
+ * @param {string} id of the front
+ * @param {number | undefined} balance of the selected tour
+ * @param {{ request?: object, objectives: object[], chosen: object }} asked the request, unless it is that of the
+ *   example or not known; the names of the objectives; and the selected tour or plan, as of `chosenOf`
+ * @param {string | null} example the file of the example
+ * @returns {Promise<{ hash: string, whole: boolean }>} `whole` says whether the request was short enough; the
+ *   selected tour is left out only if it alone is too long
  */
 export async function fragment(id, balance, asked, example = null) {
   const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${Number(balance.toFixed(6))}`}`;
-  if (example) return { hash: `${front}&example=${encodeURIComponent(example)}`, whole: true };
-  if (!asked) return { hash: front, whole: false };
+  const { request, ...alone } = asked;
   const text = await packed(asked);
   const whole = text.length <= MOST;
-  return { hash: whole ? `${front}&asked=${text}` : front, whole };
+  const shorter = whole || !request ? text : await packed(alone);
+  const carried = shorter.length <= MOST ? `&asked=${shorter}` : "";
+  return { hash: `${front}${carried}${example ? `&example=${encodeURIComponent(example)}` : ""}`, whole };
 }
 
 /** `{ id, balance, asked, example }` of a fragment, null where it names no front; the others may be missing. */
@@ -22,7 +30,7 @@ export async function linked(hash) {
   if (!id) return null;
   const text = members.get("asked");
   const balance = Number(members.get("balance") ?? NaN);
-  const asked = text ? await unpacked(text) : null;
+  const asked = text && text.length <= MOST ? await unpacked(text) : null;
   return { id, balance: balance >= 0 && balance <= 1 ? balance : undefined, asked, example: members.get("example") };
 }
 

@@ -2,7 +2,8 @@
 
 import { FrontChart } from "../chart/chart.js";
 import { figure, wordsOf } from "../common/amounts.js";
-import { choiceOf } from "./choice.js";
+import { choiceKept, choiceOf } from "./choice.js";
+import { placeIn } from "./chosen.js";
 import { compare } from "./comparison.js";
 import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
@@ -37,6 +38,8 @@ export class Result {
   #closed = true;
   #before = null; // the tour that was replanned, and whether it was closed
   #balance = MIDDLE; // the balance that the viewer chose
+  #linked = null; // the tour or plan of the link that was opened, until the viewer chooses another
+  #kept = false; // whether a link carried what is shown, and the service no longer keeps its front
   #selected = null;
   #previewed = null; // pointed at on the chart
   #pinned = null;
@@ -54,7 +57,7 @@ export class Result {
     const onPreview = (index) => this.#preview(index);
     const told = { onSelect, onPreview, onBudget: (index) => this.#choose(index) };
     this.#chart = new FrontChart(element("front-chart"), element("front-labels"), told);
-    this.#several = new SeveralObjectives({ onSelect: (index) => this.#select(index), onPreview });
+    this.#several = new SeveralObjectives({ onSelect, onPreview });
     this.#growth = new Growth(element("growth"), element("growth-help"));
     this.#slider = new BalanceSlider(element("balance"), element("balance-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
@@ -88,6 +91,8 @@ export class Result {
     this.#front = [];
     this.#id = null;
     this.#balance = MIDDLE;
+    this.#linked = null;
+    this.#keep({ kept: false });
     this.#selected = this.#pinned = this.#previewed = this.#before = null;
     this.#chart.show([], [], this.#kind.noun);
     this.#legend("alone", false);
@@ -101,8 +106,9 @@ export class Result {
   }
 
   /** Shows the front of the network alone, if it is known, and the best front so far. */
-  show({ stage, alone, answer, growth }) {
+  show({ stage, alone, answer, growth, again = false }) {
     this.#kind = kindNamed(answer);
+    this.#keep({ kept: stage === "kept", again });
     this.#front = answer.front;
     this.#id = ["done", "cancelled"].includes(stage) ? answer.id : null;
     this.#previewed = null;
@@ -114,7 +120,13 @@ export class Result {
     element("uncovered").textContent = unreached(answer.uncovered);
     element("tour-title").textContent = this.#kind.movers ? "Selected plan" : "Tour";
     if (this.#front.length) this.#select(this.#wanted);
-    showFigures(element("figures"), alone, answer);
+    showFigures(element("figures"), alone, this.#kept ? null : answer);
+  }
+
+  /** Notes whether a link carried what is shown, and offers to plan it `again`. */
+  #keep({ kept, again = false }) {
+    this.#kept = kept;
+    element("plan-again").hidden = !(kept && again);
   }
 
   /** Shows a front of two objectives on its chart. */
@@ -123,12 +135,14 @@ export class Result {
     const improved = answer.front === alone?.front ? [] : answer.front;
     this.#chart.show(alone?.front ?? [], improved, this.#kind.noun);
     this.#legend("alone", alone !== null);
-    this.#legend("improved", improved.length > 0);
+    this.#legend("improved", improved.length > 0 && !this.#kept);
     this.#slider.show(answer.front, this.#kind.noun);
   }
 
   /** The tour to select in a front that is shown. */
   get #wanted() {
+    const linked = this.#linked ? placeIn(this.#front, this.#linked) : -1;
+    if (linked >= 0) return linked;
     if (this.#objectives.length > 2) return this.#several.middle;
     return this.#chart.budget.index ?? nearest(this.#front, this.#balance);
   }
@@ -158,9 +172,10 @@ export class Result {
   /** Rings a clicked place that is not a stop yet; null removes the rings. */
   wait = (plane, place) => this.#maps.wait(plane, place);
 
-  /** The balance to select in the next front. */
-  want(balance) {
+  /** The tour or plan to select in the next front, or if it is not there, the balance. */
+  want(balance, linked = null) {
     this.#balance = balance ?? MIDDLE;
+    this.#linked = linked;
   }
 
   /** What is exported: a picture, the selected tour or plan with its balance, and whether its lines can follow the streets. */
@@ -181,8 +196,13 @@ export class Result {
     const lines = [this.#pinned ?? this.#before, this.#selected].filter(Boolean);
     const tours = lines.map((item) => ({ item, cities: this.#round(item), dashed: item !== this.#selected }));
     const maps = this.#maps.pictures(tours);
-    const choice = choiceOf(this.#front, this.#selected, this.#objectives, this.#kind.noun);
+    const choice = this.#said(this.#selected);
     return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, maps };
+  }
+
+  /** The sentence about a tour or plan. */
+  #said(item) {
+    return this.#kept ? choiceKept(this.#kind.noun) : choiceOf(this.#front, item, this.#objectives, this.#kind.noun);
   }
 
   /** The cities of a tour, back to its start if it is closed; none for a plan. */
@@ -201,7 +221,8 @@ export class Result {
   }
 
   #choose(index) {
-    this.#balance = this.#front[index].balance;
+    this.#balance = this.#front[index].balance ?? MIDDLE;
+    this.#linked = null;
     this.#select(index);
   }
 
@@ -253,7 +274,7 @@ export class Result {
     const measures = shown ? measuresOf(shown, this.#objectives, this.#asked) : [];
     compare(element("comparison"), this.#objectives, shown, this.#pinned, measures);
     showTourFigures(element("tour-figures"), shown);
-    element("choice").textContent = shown ? choiceOf(this.#front, shown, this.#objectives, this.#kind.noun) : "";
+    element("choice").textContent = shown ? this.#said(shown) : "";
     for (const objective of [0, 1]) {
       const said = shown ? figure(shown.lengths[objective], this.#objectives[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
