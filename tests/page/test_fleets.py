@@ -63,7 +63,7 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         expect(page.get_by_label(re.compile(r"A front of \d+ plans: driving from"))).to_be_visible()
         plan = select_last(page)
         routes = plan["routes"]
-        expect(page.locator("#choice")).to_contain_text("less longest route")
+        expect(page.locator("#choice")).to_contain_text("for a longest route ")
         rows = page.locator("#fleet-legend tbody tr")
         shown = [row.inner_text().split() for row in rows.all()]
         assert shown == [

@@ -2,7 +2,7 @@
 
 import { SECONDS, duration } from "./durations.js";
 import { counted, difference, length } from "./numbers.js";
-import { isCounted, isTime, shortUnit } from "./objectives.js";
+import { isCounted, isLongest, isTime, shortUnit } from "./objectives.js";
 
 /** A value for a column, or a tick of an axis, whose title has the unit. */
 export function figure(value, objective) {
@@ -27,8 +27,11 @@ export function change(value, beside, objective) {
 }
 
 /** The words that compare an objective. */
-export const wordsOf = (objective) =>
-  isCounted(objective) ? { least: "fewest", less: "fewer", more: "more", much: "many" } : { least: "least", less: "less", more: "more", much: "much" };
+export function wordsOf(objective) {
+  if (isCounted(objective)) return { least: "fewest", less: "fewer", more: "more", much: "many" };
+  if (isLongest(objective)) return { least: "shortest", less: "shorter", more: "longer", much: "long" };
+  return { least: "least", less: "less", more: "more", much: "much" };
+}
 
 /** The distances between ticks that suit an objective, as a list; null if any do. */
 export function stepsOf(objective) {

@@ -16,13 +16,16 @@ export const UNNAMED = [unnamed(0), unnamed(1)];
 export function namesIn({ objectives, scale }) {
   const named = objectives?.length >= 2 && objectives.every((each) => each?.name && typeof each.name === "string");
   if (!named) return scale?.length > 2 ? scale.map((_, axis) => unnamed(axis)) : UNNAMED;
-  return objectives.map(({ name, unit, measure }) => ({ name, unit: typeof unit === "string" ? unit : "", ...(measure && { measure }) }));
+  return objectives.map(({ name, unit, measure, over }) => ({ name, unit: typeof unit === "string" ? unit : "", ...(measure && { measure }), ...(over === "max" && { over }) }));
 }
 
 export const titled = ({ name }) => name[0].toUpperCase() + name.slice(1);
 
 /** Whether this is the number of vehicles. */
 export const isCounted = ({ measure }) => measure === "vehicles";
+
+/** Whether this is the longest of a plan's routes: it is shorter or longer, where sums are less or more. */
+export const isLongest = ({ over, measure }) => over === "max" || measure === "longest";
 
 /** Whether this is a measure of plans that is a time in a known unit. */
 export const isTime = ({ measure, unit }) => TIMES.includes(measure) && SECONDS.has(unit);

@@ -146,8 +146,8 @@ export class Maps {
   }
 
   /**
-   * The maps that are drawn, for a picture: with tours, each `{ item, cities, dashed }`, of which the
-   * last is selected; or with the plan that is selected alone.
+   * The maps that are drawn, for a picture: with tours, each `{ item, cities, dashed }`, the last
+   * one selected; or with the plan that is selected alone.
    */
   pictures(tours) {
     const { item } = tours.at(-1);

@@ -56,7 +56,24 @@ function cellOf(member, row, part) {
 function ofCell(detail, cell) {
   return IN_CELLS.reduce((said, [pattern, instead]) => said.replace(pattern, instead), detail)
     .replace(/^\w+\/\d+\/\w+(\/\d+)*/, cell.getAttribute("aria-label"))
-    .replace(/\b(stop|vehicle)s\/(\d+)/g, (_, item, at) => `${item} ${counted(at)}`);
+    .replace(PATH, itemNamed);
+}
+
+// What the page calls an item of a request, where a sentence of the service says its place, as "stops/3/window/0".
+const ITEMS = {
+  stops: "stop", coordinates: "stop", vehicles: "vehicle", shipments: "shipment", robots: "robot",
+  places: "place", relations: "relation", initial_tours: "tour to begin with", cost_layers: "further cost",
+  remove: "a stop to drop", done: "a visited stop", add: "a new stop", tour: "a stop of the tour",
+};
+const UNCOUNTED = ["remove", "done", "add", "tour"]; // named one by one in one field, where their places say nothing
+const PATH = new RegExp(`\\b(${Object.keys(ITEMS).join("|")})/(\\d+)((?:/\\w+)*)`, "g");
+
+/** An item as people name it: by its name on the page, or counted from 1; and the member of it that a sentence is about. */
+function itemNamed(_, list, at, rest) {
+  const members = rest.split("/").filter((part) => part && !/^\d+$/.test(part)).map((part) => part.replaceAll("_", " "));
+  const name = document.querySelector(`#${list} [data-row="${at}"][data-column="name"]`)?.value;
+  const item = UNCOUNTED.includes(list) ? ITEMS[list] : `${ITEMS[list]} ${name || counted(at)}`;
+  return members.length ? `${members.join(" ")} of ${item}` : item;
 }
 
 function mark(name, row, part) {
@@ -97,6 +114,9 @@ const SAID = [
   [/^objectives\/1\/measure (\w+) needs/, (_, measure) => `the second objective, ${measure}, needs`],
   [/\bneeds stops with due\b/, () => "needs stops that are due: write times into their column Due"],
   [/\bneeds vehicles with max_overtime\b/, () => "needs vehicles that may be late: fill their column Most overtime"],
+  [/^((?:remove|done|tour)\/\d+ .*), got (\d+)$/, (_, said, got) => `${said}, got ${counted(got)}`],
+  [/^remove\/\d+ must be a stop that is not done/, () => "a stop to drop must not be visited yet"],
+  [/^(remove|done|tour)\/\d+ must not be \1\/\d+ again/, (_, list) => `${list}/0 must not be given twice`],
   [/^departure is required.*/, () => "say when tours leave: travel changes over the day, or visits take time"],
   [/^clock is required.*/, () => "one objective must be a time: measure it by road, or in straight lines at a speed"],
   [/^objectives\/([0-3])\/unit must be s\b.*?, got/, (_, axis) => `the ${NTH[axis]} objective must be in s, as tours leave at a time of day; its unit is`],
@@ -106,26 +126,38 @@ const SAID = [
   [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or add it on the map"],
 ];
 
-// The same of sentences about the cells of tables.
-const IN_CELLS = [
+// The same within sentences.
+const WITHIN = [
+  [/\bobjectives\/([0-3])\/from \w+$/, (_, axis) => `the ${NTH[axis]} objective, which is measured between places`],
   [/needs the name of the objective that is time, in clock/, "needs times: choose below what windows, shifts and service are"],
-  [/must be a valid (integer|number|array)\b/, (_, type) => `must be ${{ integer: "a whole number", number: "a number", array: "a list" }[type]}`],
   [/must be the id of a type of vehicles/, "must be the name of a vehicle"],
   [/must be the id of a stop/, "must be the name of a stop"],
+];
+
+// The same of sentences about the cells of tables.
+const IN_CELLS = [
+  ...WITHIN,
+  [/must be a valid (integer|number|array)\b/, (_, type) => `must be ${{ integer: "a whole number", number: "a number", array: "a list" }[type]}`],
 ];
 
 /** Replaces names of members in the sentence of a fault by their labels on the page. */
 function inWords(fault, field) {
   const label = document.querySelector(`label[for="${field}"]`)?.textContent;
-  const detail = SAID.reduce((said, [pattern, instead]) => said.replace(pattern, instead), fault);
+  const detail = [...SAID, ...WITHIN].reduce((said, [pattern, instead]) => said.replace(pattern, instead), fault);
   return detail
     .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
     .replace(/^objectives\/([0-3])\/speed\b/, (_, axis) => `the speed of the ${NTH[axis]} objective`)
-    .replace(/^objectives\/([0-3])(\/measure)?\b/, (_, axis) => `the ${NTH[axis]} objective`)
-    .replace(/^(coordinates|stops)\/(\d+)\b/, (_, member, city) => `stop ${Number(city) + 1}`)
-    .replace(/^(vehicle|shipment|robot)s\/(\d+)\b/, (_, item, at) => `${item} ${Number(at) + 1}`)
+    .replace(/^objectives\/([0-3])\/measure\b/, (_, axis) => `the ${NTH[axis]} objective`)
+    .replace(/\bmatrices\/(\d)\/(\d+)(?:\/(\d+))?/g, (_, axis, from, to) => costsOf(axis, from, to))
+    .replace(/\bobjectives\/([0-3])\/(?:matrix|coordinates)\/(\d+)(?:\/(\d+))?/g, (said, axis, from, to) => (said.includes("matrix") ? costsOf(axis, from, to) : `the place of stop ${counted(from)} under the ${NTH[axis]} objective`))
+    .replace(/\bobjectives\/([0-3])\/([a-z_]+)(?:\/\w+)*/g, (_, axis, member) => `${member.replaceAll("_", " ")} of the ${NTH[axis]} objective`)
+    .replace(/\bobjectives\/([0-3])/g, (_, axis) => `the ${NTH[axis]} objective`)
+    .replace(PATH, itemNamed)
     .replace(new RegExp(`^${field}\\b`), label ?? field);
 }
+
+const costsOf = (axis, from, to) =>
+  `the costs of the ${NTH[axis]} objective from stop ${counted(from)}${to === undefined ? "" : ` to stop ${counted(to)}`}`;
 
 function sentence(detail) {
   return `${detail[0].toUpperCase()}${detail.slice(1)}${detail.endsWith(".") ? "" : "."}`;
