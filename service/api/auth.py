@@ -1,6 +1,6 @@
 """Authentication by API keys, and a rate limit for each caller.
 
-Without keys everybody may call, and all are one caller: whoever knows the id of a front can read
+Without keys everybody may call, and all are one caller: anyone who knows the id of a front can read
 it. Each address then has its own rate and its own latest front.
 """
 

@@ -201,7 +201,7 @@ class RecordWorker:
 
 
 class _Threads(TaskPool):  # type: ignore[misc]  # Celery has no types
-    """Celery's pool of threads, each of which waits for a record.
+    """Celery's pool of threads; each thread waits for a record.
 
     It wakes Celery's event loop after each record, to fetch the next message at once.
     """

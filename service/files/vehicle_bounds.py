@@ -35,7 +35,7 @@ def check_servers(
             able = vehicles if name is None else [by_id[name]]
             if not _any_has(able, stops[row]["skills"]):
                 whose = "one vehicle" if name is None else f"vehicle {quoted(name)}"
-                demand = f"must be skills of which {whose} has all"
+                demand = f"must be skills that {whose} has, all of them"
                 raise visits.refusal(row, at, demand, visits.text(row, at))
 
 

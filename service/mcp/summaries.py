@@ -76,7 +76,7 @@ def _summary(front: FrontOfAnyKind) -> str:
         return f"{count}, {front.status}"
     ends = zip(front.labels, front.lengths.min(axis=0), front.lengths.max(axis=0), strict=True)
     ranges = ", ".join(f"{shown(label)} {low:.6g} to {high:.6g}" for label, low, high in ends)
-    return f"{count}, none of which is better than another in everything: {ranges}"
+    return f"{count}, and none is better than another in everything: {ranges}"
 
 
 def _representatives(front: FrontOfAnyKind) -> list[Named]:

@@ -191,8 +191,8 @@ class DayFields(StrictModel):
     """The fields of a request for tours whose costs change over the day."""
 
     departure: Departure | None = optional(
-        "when a tour begins, in seconds of the day: a time, or the earliest and the latest one, of"
-        " which each tour has its best"
+        "when a tour begins, in seconds of the day: a time, or the earliest and the latest one;"
+        " each tour then begins at its best time between them"
     )
     clock: Text | None = optional(
         "the name of the objective whose costs are seconds of travel; by default the first one that"

@@ -115,7 +115,7 @@ class SearchFields(StrictModel):
     )
 
     def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
-        """Return the options for the planner of a front under so many objectives.
+        """Return the options for the planner of a front under this number of objectives.
 
         Raises:
             Refusal: The reference point is not of as many.
@@ -198,7 +198,7 @@ class PlanFields(SearchFields):
         return unit
 
     def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
-        """Return the options for the planner of a front under so many objectives."""
+        """Return the options for the planner of a front under this number of objectives."""
         given = "repairs" in self.model_fields_set
         return replace(
             super().options(objectives),
@@ -231,6 +231,6 @@ class PlanRequest(PlanFields):
         return RouteEnds(closed=False, start=self.start, end=self.end)
 
     def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
-        """Return the options for the planner of a front under so many objectives."""
+        """Return the options for the planner of a front under this number of objectives."""
         first = np.array(self.initial_tours) if self.initial_tours else None
         return replace(super().options(objectives), start=self.start or 0, initial_tours=first)

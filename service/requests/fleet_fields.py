@@ -65,7 +65,7 @@ class FleetStopItem(NamedStop):
         " loads again, no earlier",
     )
     skills: Skills = Field(
-        default_factory=list, description="the skills of which its vehicle must have all"
+        default_factory=list, description="the skills that its vehicle must have, all of them"
     )
     vehicle: Text | None = optional("the id of the type of vehicles that must visit it")
     prize: Cost | None = optional(
@@ -239,7 +239,7 @@ class FleetObjectiveItem(ObjectiveItem):
 
 
 def _spans(one: list[float] | None, several: list[list[float]], part: str) -> list[Span]:
-    """Return the windows or shifts of which one or several were given; always, without any.
+    """Return the windows or shifts, whether one or several were given; always, without any.
 
     Raises:
         Refusal: Both were given, or they overlap or are not in order.

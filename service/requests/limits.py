@@ -65,7 +65,7 @@ class Limits:
         }
 
     def most_cities(self, kind: Kind, objectives: int = OBJECTIVES) -> int:
-        """Return the most cities of an instance of a kind, under so many objectives."""
+        """Return the most cities of an instance of a kind, under this number of objectives."""
         most = self.cities if objectives == OBJECTIVES else min(self.cities, self.several_cities)
         return most if kind == "coordinates" else min(most, self.matrix_cities)
 

@@ -107,7 +107,7 @@ class TourQuery(BaseModel):
         return _within(points, budgets, known.preferred(self.prefer, budgets))
 
     def _check_for(self, objectives: int) -> None:
-        """Raise a refusal where the way to choose is not for fronts of so many objectives."""
+        """Raise a refusal where the way to choose does not suit this number of objectives."""
         given = self.model_fields_set.intersection(_OF_TWO)
         if objectives > OBJECTIVES and given:
             demand = "is for fronts of two objectives; choose by weights, at_most or knee"

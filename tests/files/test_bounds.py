@@ -96,11 +96,11 @@ def test_skills_are_left_out_with_a_note_where_no_vehicle_has_a_column_of_them()
 
 REFUSED = [
     ("Kim\n", "Kin\n", f"{ORDERS}: row 6, column 'Driver' must be the id of a vehicle of {VANS}"),
-    ('tail lift"', 'crane"', f"{ORDERS}: row 4, column 'Requires' must be skills of which one"),
+    ('tail lift"', 'crane"', f"{ORDERS}: row 4, column 'Requires' must be skills that one"),
     (
         "fridge,,,\n",
         "fridge,,,Kim\n",
-        "column 'Requires' must be skills of which vehicle 'Kim' has",
+        "column 'Requires' must be skills that vehicle 'Kim' has",
     ),
     (
         "14:00,16:00",

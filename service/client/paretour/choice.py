@@ -50,8 +50,8 @@ def choose(
         choice: Any other choice.
 
     Raises:
-        ValueError: Not exactly one way is given, it is not for so many objectives or names none of
-            them, no tour is within the budgets, or the front is empty.
+        ValueError: Not exactly one way is given, it does not suit the number of objectives or names
+            none of them, no tour is within the budgets, or the front is empty.
     """
     [(name, wanted)] = the_way({"angle": angle, **choice}).items()
     if not len(lengths):

@@ -160,7 +160,7 @@ class VehicleRequest(TypedDict, total=False):
 
 
 class FleetObjectiveRequest(ObjectiveRequest, total=False):
-    """An objective: costs, of which the sum or the longest route counts; or another measure."""
+    """An objective: the sum of costs, those of the longest route, or another measure."""
 
     over: Literal["sum", "max"]
     measure: Literal["vehicles", "unassigned", "overtime", "lateness"]
