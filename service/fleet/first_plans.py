@@ -275,8 +275,9 @@ def _one_route(fleet: Fleet) -> Plan:
     """
     rules = fleet.rules
     vehicle = max(range(len(rules.vehicles)), key=lambda index: rules.vehicles[index].capacity)
+    units = np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
     with np.errstate(over="ignore"):
-        costs = (fleet.costs / fleet.scale[:, np.newaxis, np.newaxis]).sum(axis=0)
+        costs = (fleet.costs / units[:, np.newaxis, np.newaxis]).sum(axis=0)
     deliveries = {each.pickup: each.delivery for each in rules.shipments}
     left = [stop for stop in rules.clients if stop not in deliveries.values()]
     position, stops = rules.vehicles[vehicle].start, list[int]()

@@ -94,8 +94,13 @@ class MixedSweep:
         return Step(goal, self._start(goal, weights), iterations, moves)
 
     def _whole_weights(self, weights: Array) -> tuple[int, int, int]:
-        """Return the weights of distance, duration and prizes in PyVRP's units."""
+        """Return the weights of distance, duration and prizes in PyVRP's units.
+
+        Where there is only one, it is 1: the scale of costs leaves no room for more.
+        """
         rules, translation = self._rules, self._translation
+        if not rules.weighs:
+            return *translation.sum_weights, 0
         pairs = list(zip(rules.over, rules.layers, strict=True))
         found = np.zeros(3)
         for (over, layer), weight in zip(pairs, weights, strict=True):

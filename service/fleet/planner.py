@@ -38,7 +38,7 @@ _NO_LIMIT = 2**62
 _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
-_BRIEF = 0.25  # seconds for them without a time limit
+_BRIEF = 0.25  # seconds for them without a time limit, and to find what is in the way after it
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
@@ -276,7 +276,8 @@ class _Search:
             raise Cancelled
         if not plans:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
-            raise no_plan(self._fleet, sentence, self._stop)
+            until = time.monotonic() + _BRIEF
+            raise no_plan(self._fleet, sentence, lambda: self._stop() or time.monotonic() > until)
         front = _front(
             self._fleet, self._options, plans, terminated, self._began, self._constructed
         )

@@ -44,6 +44,8 @@ SECOND_OBJECTIVES: tuple[Over | Measure, ...] = (
     "unassigned",
     "overtime",
     "lateness",
+    "imbalance",
+    "load_distance",
 )
 
 

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
+from service.fleet.evaluation import plan_lengths, violations
+from service.fleet.plans import Plan, Route
 from service.jobs.task_runner import TaskRunner
 from service.requests.parser import parse_task
-from service.requests.task import TaskSource
+from service.requests.task import TaskSource, UnmeasuredFleet
 from tests.fuzz.fleets import bounded_fleet, extreme_fleet
 from tests.helpers.fleet_requests import LIMITS
 
@@ -68,7 +70,7 @@ def test_bounds_of_any_size_are_kept_or_refused(seed: int) -> None:
 
 
 def check(source: TaskSource) -> None:
-    """Check that a fleet gets a front of finite lengths, or is refused with a reason."""
+    """Check that a fleet gets a front of feasible plans, or is refused with a reason."""
     try:
         task = parse_task(source, LIMITS, {})
         document = TaskRunner({}, LIMITS).run(task, lambda: False, lambda *_: None)
@@ -77,3 +79,20 @@ def check(source: TaskSource) -> None:
     front = json.loads(document.json())["front"]
     assert front
     assert np.isfinite([plan["lengths"] for plan in front]).all()
+    subject = task.subject
+    assert isinstance(subject, UnmeasuredFleet)
+    fleet = subject.fleet()
+    for plan in front:
+        found = Plan(tuple(route_of(subject, each) for each in plan["routes"]))
+        assert violations(fleet, found) == []
+        assert np.allclose(plan_lengths(fleet, found), plan["lengths"], rtol=1e-12)
+
+
+def route_of(subject: UnmeasuredFleet, route: dict[str, Any]) -> Route:
+    """Return a route of an answer, whose stops have their numbers as ids."""
+    names = [(name.id, name.shift) for name in subject.vehicles]
+    number = names.index((route["vehicle"], route.get("shift")))
+    vehicle = subject.rules.vehicles[number]
+    stops = tuple(map(int, route["stops"]))
+    first = 0 if vehicle.start is None else 1
+    return Route(number, stops[first : len(stops) - (vehicle.end is not None)])

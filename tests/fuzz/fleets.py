@@ -3,8 +3,9 @@
 import json
 import random
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
+from service.fleet.rules import Measure
 from service.requests.task import TaskSource
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
 
@@ -49,9 +50,13 @@ def _add_bounds(rng: random.Random, request: dict[str, Any], number: Number) -> 
         trips = rng.choice([{"max_stops": rng.choice((1, 4))}, {"reload": [0], "max_trips": 2}])
         bounds = {"skills": ["cold"], "initial_load": [rng.choice((0, 5))], **trips, **times}
         vehicle |= {name: bounds[name] for name in bounds if rng.random() < 1 / 2}
+    measures = rng.sample(get_args(Measure), 2)
     if request.get("clock") != "b" and rng.random() < 2 / 3:
-        names = ("vehicles", "unassigned", "overtime", "lateness")
-        request["objectives"][1] = {"name": "b", "measure": rng.choice(names)}
+        request["objectives"][1] = {"name": "b", "measure": measures[0]}
+    if rng.random() < 1 / 2:
+        costs = {**request["objectives"][0], "over": rng.choice(["sum", "max"])}
+        third = rng.choice([costs, {"measure": measures[1]}])
+        request["objectives"].append({**third, "name": "c"})
 
 
 def _spans(number: Number) -> list[list[float]]:
