@@ -27,9 +27,9 @@ _LEAST_ITERATIONS = 50
 _SEARCHES = 16  # in a round, for which there should be time
 _UNLIMITED = 0.25  # share of the searches without one of the limits
 _STRICTEST = 0.25  # share of them that allow no overtime, or no lateness
+_HALVINGS = 7  # other limits on these are spread over as many orders of magnitude, of base 2
 _ANY_START = 0.25  # share of them that start from any solution
-_MOVES = 10  # for each iteration of PyVRP, which takes about as long
-_FEWER_MOVES = 2  # if PyVRP knows all objectives
+_MOVES = 2  # for each iteration of PyVRP, which takes several times as long
 _BEYOND = 1e3  # how much worse a start is that exceeds a limit by the width of the front
 
 
@@ -55,8 +55,6 @@ class MixedSweep:
         self._archive = archive
         self._random = random
         self._left = left
-        unseen = {"overtime", "lateness", "imbalance", "load_distance"}
-        self._moves = _FEWER_MOVES if unseen.isdisjoint(self._rules.over) else _MOVES
 
     def steps(self) -> Iterator[Step]:
         """Yield searches for the least costs until there is a solution, and then all others."""
@@ -90,7 +88,7 @@ class MixedSweep:
             overtime=self._time_limit("overtime"),
             lateness=self._time_limit("lateness"),
         )
-        moves = Moves(weights, self._moves * iterations)
+        moves = Moves(weights, _MOVES * iterations)
         return Step(goal, self._start(goal, weights), iterations, moves)
 
     def _whole_weights(self, weights: Array) -> tuple[int, int, int]:
@@ -143,7 +141,8 @@ class MixedSweep:
         if kind < _UNLIMITED + _STRICTEST:
             return 0.0
         objective = self._rules.over.index(measure)
-        return max(point[objective] for point in self._archive.points) * self._random.random() ** 2
+        greatest = max(point[objective] for point in self._archive.points)
+        return float(greatest * 0.5 ** self._random.uniform(0, _HALVINGS))
 
     def _start(self, goal: Goal, weights: Array) -> pyvrp.Solution:
         """Return the solution that is best under these weights and limits, or sometimes any."""

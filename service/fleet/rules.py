@@ -149,6 +149,11 @@ class Rules:
         spans = (*windows, *released, *due, *(vehicle.way for vehicle in self.vehicles))
         return tuple(span for span in spans if span != ALWAYS)
 
+    @cached_property
+    def reloads(self) -> bool:
+        """Whether some vehicles may load again on their way."""
+        return any(vehicle.reload for vehicle in self.vehicles)
+
     def servers(self, stop: int) -> frozenset[int]:
         """Return the types of vehicles that may visit a stop: by its skills, and if it names some.
 

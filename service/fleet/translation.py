@@ -8,6 +8,7 @@ PyVRP breaks no rule.
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from math import inf
 
@@ -91,15 +92,13 @@ class Translation:
         # PyVRP refuses a window that closes before its load is released.
         too_late |= any(visit.release > visit.windows[0][1] for visit in rules.visits)
         changed = self.fleet.forbids or self.squeezed.changed
-        trips = any(vehicle.reload for vehicle in rules.vehicles)
-        trips |= any(vehicle.breaks for vehicle in rules.vehicles)
+        trips = rules.reloads or any(vehicle.breaks for vehicle in rules.vehicles)
         loose = self._slack > 0 or rules.limits_times
         return loose or changed or too_late or trips or self._has_choice
 
     def plan(self, solution: pyvrp.Solution) -> Plan:
         """Return the plan of a solution."""
-        reloads = any(vehicle.reload for vehicle in self.fleet.rules.vehicles)
-        stops_of = self._with_trips if reloads else self._visited
+        stops_of = self._with_trips if self.fleet.rules.reloads else self._visited
         routes = (
             Route(route.vehicle_type(), stops_of(route.vehicle_type(), _visits(route)))
             for route in solution.routes()
@@ -186,7 +185,8 @@ class Translation:
 
     def data(self, goal: Goal) -> pyvrp.ProblemData:
         """Return PyVRP's data for a goal."""
-        unlimited = Goal(weights=goal.weights, prizes=goal.prizes, lateness=goal.lateness)
+        limit = UNBOUNDED if goal.limit == UNBOUNDED else 0
+        unlimited = replace(goal, limit=limit, vehicles=None, overtime=inf)
         if self._unlimited is None or self._unlimited[0] != unlimited:
             self._unlimited = unlimited, self._unlimited_data(unlimited)
         return self._unlimited[1].replace(vehicle_types=self._vehicles(goal))
@@ -252,7 +252,7 @@ class Translation:
             service_duration=service,
             tw_early=early,
             tw_late=late,
-            release_time=self._early(visit.release),
+            release_time=0 if self._opens_later(goal) else self._early(visit.release),
             prize=self._prize(stop, goal),
             required=visit.prize is None and group is None,
             group=group,
@@ -294,10 +294,11 @@ class Translation:
             self._depot(vehicle.end),
             fixed_cost=fixed if count else _MOST_EXTRA,
             tw_early=early,
+            # PyVRP knows no breaks: its routes end earlier, so that there is time for them.
             tw_late=max(
                 early,
                 self._late(
-                    vehicle.shift[1] + min(vehicle.max_overtime, goal.overtime) - _rest(vehicle)
+                    vehicle.shift[1] + min(vehicle.max_overtime, goal.overtime) - vehicle.rest
                 ),
             ),
             shift_duration=longest_duration,
@@ -307,7 +308,7 @@ class Translation:
             start_late=self._latest_departure(vehicle),
             initial_load=self._loads.initial[index].tolist(),
             reload_depots=[self._depot(stop) for stop in vehicle.reload],
-            max_reloads=_most_reloads(vehicle),
+            max_reloads=_MANY if vehicle.max_trips is None else vehicle.max_trips - 1,
         )
 
     def _latest_departure(self, vehicle: VehicleType) -> int | None:
@@ -349,10 +350,22 @@ class Translation:
         """Return the earliest and latest begin of a visit in a window, and how long it takes."""
         visit = self.fleet.rules.visits[stop]
         opens, closes = visit.windows[number]
+        if visit.release and self._opens_later(goal):
+            opens = max(opens, visit.release + self.fleet.nearest_loading[stop])
         early, late = self._early(opens), self._late(min(closes, visit.due + goal.lateness))
         least_late = max(least_late, self._early(visit.release))
         service = int(round_up(visit.service * self._time_scale))
         return early, max(early, late, least_late), service
+
+    def _opens_later(self, goal: Goal) -> bool:
+        """Return whether windows open later in place of releases, which are checked afterwards.
+
+        The local search of PyVRP 0.14 may never end if routes have a limit on their time and load
+        again what is released later.
+        """
+        rules = self.fleet.rules
+        limited = goal.limit < UNBOUNDED and rules.swept == rules.clock
+        return rules.reloads and (limited or any(each.longest < inf for each in rules.vehicles))
 
     def _early(self, time: float) -> int:
         return int(round_up(self._scaled_time(time)))
@@ -378,20 +391,3 @@ def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
 def _longest(routes: list[pyvrp.Route], most: int) -> list[pyvrp.Route]:
     """Return the routes with the most visits."""
     return sorted(routes, key=len, reverse=True)[:most]
-
-
-def _rest(vehicle: VehicleType) -> float:
-    """Return how long the breaks take that a route to the end of the shift has.
-
-    PyVRP knows no breaks: its routes end earlier by this much, so that there is time for them.
-    """
-    begin, end = vehicle.way
-    total = sum(length for _, _, length in vehicle.breaks)
-    needed = (each for each in vehicle.breaks if begin < each[0] and each[1] <= end - total)
-    return sum(length for _, _, length in needed)
-
-
-def _most_reloads(vehicle: VehicleType) -> int:
-    if not vehicle.reload:
-        return 0
-    return _MANY if vehicle.max_trips is None else vehicle.max_trips - 1

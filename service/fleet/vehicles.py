@@ -87,3 +87,11 @@ class VehicleType:
     def way(self) -> Span:
         """The earliest departure, and the latest end with overtime."""
         return self.shift[0], self.shift[1] + self.max_overtime
+
+    @property
+    def rest(self) -> float:
+        """How long the breaks take that a route to the end of the shift has."""
+        begin, end = self.way
+        total = sum(length for _, _, length in self.breaks)
+        needed = (each for each in self.breaks if begin < each[0] and each[1] <= end - total)
+        return sum(length for _, _, length in needed)

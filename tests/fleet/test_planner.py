@@ -1,5 +1,7 @@
 """Fronts of plans against brute force, and what every front promises."""
 
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import islice
@@ -24,7 +26,7 @@ from service.fleet.rules import Over, Rules
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
 from service.fleet.translation import Translation
-from service.fleet.vehicles import Shipment, VehicleType, Visit
+from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.front import Progress
 from service.pareto import nondominated
 from tests.helpers.actors import Shuffler, info_of
@@ -351,3 +353,49 @@ def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
         plan_fleet(fleet, options)
     with pytest.raises(Cancelled):
         plan_fleet(fleet, options, shuffler(), stop=lambda: True)
+
+
+def crowded(seed: int) -> Fleet:
+    """Return a fleet with windows and releases whose vans rest, load again and have a limit."""
+    random = np.random.default_rng([100, seed])
+    places = np.concatenate(([[50.0, 50.0]], random.uniform(0, 100, (100, 2))))
+    costs = np.linalg.norm(places[:, np.newaxis] - places, axis=2)
+
+    def visit() -> Visit:
+        begin = float(random.integers(60, 400))
+        windowed, released = random.random(2) < (0.5, 0.1)
+        return Visit(
+            demand=(int(random.integers(1, 10)),),
+            service=3.0,
+            windows=((begin, begin + 120.0),) if windowed else (ALWAYS,),
+            release=begin - 60.0 if released else 0.0,
+        )
+
+    van = VehicleType(
+        start=0,
+        end=0,
+        count=5,
+        capacity=(90,),
+        shift=(0.0, 540.0),
+        longest=280.0,
+        reload=(0,),
+        max_trips=2,
+        max_overtime=60.0,
+        breaks=((120.0, 420.0, 30.0),),
+    )
+    visits = (Visit(), *(visit() for _ in range(100)))
+    rules = Rules(visits=visits, vehicles=(van,), over=("sum", "max"), clock=1)
+    return Fleet(rules=rules, costs=np.stack([costs, costs]))
+
+
+def test_a_search_ends_where_vans_in_limited_time_load_again_what_is_released() -> None:
+    """PyVRP's local search did not, so another process waits for it."""
+    code = (
+        "from service.errors import Refusal\n"
+        "from service.fleet.planner import FleetOptions, plan_fleet\n"
+        "from tests.fleet.test_planner import crowded\n"
+        "for seed in range(6):\n"
+        "    try: plan_fleet(crowded(seed), FleetOptions(time_limit=1.5, seed=seed))\n"
+        "    except Refusal: pass\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=90)
