@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.accessibility import unfold
 from tests.helpers.browsing import (
@@ -182,3 +182,29 @@ def luminance(colour: list[float]) -> float:
     share = np.array(colour) / 255
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+@pytest.mark.parametrize(
+    ("unit", "least", "most", "title", "tick"),
+    [
+        ("s", 2700, 3301, "Driving", "45 min"),
+        ("s", 5400, 9000, "Driving", "1:30 h"),
+        ("min", 60, 71, "Driving", "1:00 h"),
+        ("h", 25, 26, "Driving", "25:00 h"),
+        ("s", 2700, 3300, "Driving, s", "2,700"),
+        ("m", 2700, 9000, "Driving, m", "2,700"),
+        ("", 2700, 9000, "Driving", "2,700"),
+    ],
+)
+def test_long_ranges_of_times_are_in_hours_and_minutes_on_the_chart(
+    planned: Page, unit: str, least: float, most: float, title: str, tick: str
+) -> None:
+    written = planned.evaluate(
+        """async ([unit, least, range]) => {
+          const { axisOf } = await import("./page/common/amounts.js");
+          const { title, said } = axisOf({ name: "driving", unit }, range);
+          return [title, said(least)];
+        }""",
+        [unit, least, most - least],
+    )
+    assert written == [title, tick]

@@ -2,7 +2,7 @@
 
 import uPlot from "./uplot.js";
 import { colour, onSchemeChange } from "../common/colours.js";
-import { figure, stepsOf } from "../common/amounts.js";
+import { axisOf, figure } from "../common/amounts.js";
 import { counted } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
 import { Budget } from "./budget.js";
@@ -22,6 +22,7 @@ export class FrontChart {
   #marked = {};
   #objectives = UNNAMED;
   #steps; // between the ticks of each axis, if any suit
+  #said = [String, String]; // writes a tick of each axis
 
   /**
    * @param {HTMLElement} names holds the names of both ends and the knee, over the chart
@@ -33,7 +34,7 @@ export class FrontChart {
     this.#element = element;
     this.#labels = new Labels(names, onSelect, onPreview);
     const hooks = { draw: [() => this.#chart && this.#place()] }; // the scales are known from then on
-    this.#chart = new uPlot({ ...options(element, (value, axis) => figure(value, this.#objectives[axis])), hooks }, [[], [], []], element);
+    this.#chart = new uPlot({ ...options(element, (value, axis) => this.#said[axis](value)), hooks }, [[], [], []], element);
     this.#steps = this.#chart.axes.map(({ incrs }) => incrs);
     this.#budget = new Budget(this.#chart, onBudget);
     for (const name of ["pinned", "selected", "previewed"]) {
@@ -52,10 +53,7 @@ export class FrontChart {
 
   name(objectives) {
     this.#objectives = objectives;
-    objectives.forEach((objective, axis) => {
-      const steps = stepsOf(objective);
-      Object.assign(this.#chart.axes[axis], { label: withUnit(objective), incrs: steps ? () => steps : this.#steps[axis] });
-    });
+    this.#write(this.#front);
     this.#labels.show(this.#front, objectives);
     this.#budget.name(objectives);
     this.#place();
@@ -70,11 +68,21 @@ export class FrontChart {
   show(alone, improved, noun) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
+    this.#write([...alone, ...improved]);
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#budget.show(this.#front);
     this.#element.classList.toggle("empty", !this.#front.length);
     this.#element.setAttribute("aria-label", described(this.#front, this.#objectives, noun));
     this.#place();
+  }
+
+  /** Chooses how the axes of a chart of these points are written. */
+  #write(points) {
+    this.#objectives.forEach((objective, axis) => {
+      const { title, steps, said } = axisOf(objective, rangeOf(points, axis));
+      this.#said[axis] = said;
+      Object.assign(this.#chart.axes[axis], { label: title, incrs: steps ? () => steps : this.#steps[axis] });
+    });
   }
 
   /** Marks a point as "selected", "pinned" or "previewed"; null removes the mark. */
@@ -126,6 +134,11 @@ export class FrontChart {
 const NONE = "No front yet: bring stops, then press Plan";
 
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
+
+function rangeOf(points, axis) {
+  const lengths = points.map((item) => item.lengths[axis]);
+  return points.length ? Math.max(...lengths) - Math.min(...lengths) : 0;
+}
 
 const columns = (front) => [
   front.map((item) => item.lengths[0]),

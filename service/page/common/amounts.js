@@ -1,8 +1,8 @@
 /** Put lengths of objectives and measures of plans into words: vehicles are counted, and times are hours and minutes. */
 
-import { SECONDS, duration } from "./durations.js";
+import { SECONDS, duration, durationOnAxis } from "./durations.js";
 import { counted, difference, length } from "./numbers.js";
-import { isCounted, isLongest, isTime, shortUnit } from "./objectives.js";
+import { isCounted, isLongest, isTime, shortUnit, titled, withUnit } from "./objectives.js";
 
 /** A value for a column, or a tick of an axis, whose title has the unit. */
 export function figure(value, objective) {
@@ -33,13 +33,25 @@ export function wordsOf(objective) {
   return { least: "least", less: "less", more: "more", much: "much" };
 }
 
-/** The distances between ticks that suit an objective, as a list; null if any do. */
-export function stepsOf(objective) {
+/**
+ * How an axis over this range of an objective is written: its `title`, a tick as `said`, and the distances between
+ * ticks that suit it as `steps`, null if any do. A long range of times is in hours and minutes.
+ */
+export function axisOf(objective, range) {
+  const unit = SECONDS.get(objective.unit);
+  if (isTime(objective) || !unit || range * unit <= LONG) {
+    return { title: withUnit(objective), steps: stepsOf(objective), said: (value) => figure(value, objective) };
+  }
+  const steps = STEPS.filter((step) => step >= MINUTE).map((step) => step / unit);
+  return { title: titled(objective), steps, said: (value) => durationOnAxis(value * unit) };
+}
+
+function stepsOf(objective) {
   if (isCounted(objective)) return [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 10000, 100000];
   if (!isTime(objective)) return null;
   const unit = SECONDS.get(objective.unit);
   return STEPS.map((step) => step / unit).filter((step) => step >= 1 || step === 0.5);
 }
 
-const DAY = 86400;
+const [MINUTE, LONG, DAY] = [60, 600, 86400]; // seconds
 const STEPS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, DAY, ...[2, 5, 10, 50, 100, 1000].map((days) => days * DAY)];

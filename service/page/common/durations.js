@@ -13,4 +13,12 @@ export function duration(seconds) {
   return whole < HOUR ? `${minutes} min` : parts(Math.floor(minutes / MINUTE), "h", minutes % MINUTE, "min");
 }
 
+/** The same for the ticks of an axis, to the minute, such as "45 min" or "1:30 h". */
+export function durationOnAxis(seconds) {
+  const minutes = Math.round(Math.abs(seconds) / MINUTE);
+  const sign = seconds < 0 && minutes ? "−" : "";
+  if (minutes < MINUTE) return `${sign}${minutes} min`;
+  return `${sign}${Math.floor(minutes / MINUTE)}:${String(minutes % MINUTE).padStart(2, "0")} h`;
+}
+
 const parts = (large, unit, small, smaller) => `${large} ${unit}${small ? ` ${small} ${smaller}` : ""}`;
