@@ -177,3 +177,67 @@ def test_what_cannot_be_is_refused_where_it_stands(
     response = replan(client, front, **changes)
     assert response.status_code == 422
     assert [error["pointer"] for error in response.json()["errors"]] == [pointer], response.text
+
+
+def test_a_fleet_under_three_objectives_is_replanned_chosen_from_and_drawn(
+    client: httpx.Client,
+) -> None:
+    """Its total has the costs of its longest route; no objective has the second's own."""
+    total = {**TIME, "name": "total", "over": "sum"}
+    objectives = [total, TIME, {"name": "vans", "measure": "vehicles"}]
+    answer = client.post("/fleet", json={**request(), "objectives": objectives}).json()
+    assert [len(plan["lengths"]) for plan in answer["front"]] == [3] * len(answer["front"])
+    assert all(len(plan["losses"]) == 3 and "balance" not in plan for plan in answer["front"])
+    first, *_ = answer["front"][full_plan(answer)]["routes"]
+    way = {"route": 0, "done": first["stops"][1:2]}
+    new = {"id": "new", "location": [24.93, 60.16]}
+    changes = {"plan": full_plan(answer), "routes": [way], "add": [new]}
+    response = replan(client, answer, **changes)
+    assert response.status_code == 200, response.text
+    rest = response.json()
+    assert [each["name"] for each in rest["objectives"]] == ["total", "time", "vans"]
+    assert all(plan["lengths"][2] == len(plan["routes"]) for plan in rest["front"])
+    drawn = client.get(f"/front/{rest['id']}", headers={"Accept": "application/geo+json"}).json()
+    assert len(drawn["features"][0]["properties"]["losses"]) == 3
+
+
+@pytest.mark.parametrize(
+    ("objectives", "pointer", "sentence"),
+    [
+        (
+            [DISTANCE, TIME, {**DISTANCE, "name": "c", "speed": 5}],
+            "/objectives/2",
+            "two kinds at most",
+        ),
+        ([DISTANCE, TIME, {**TIME, "name": "c"}], "/objectives/2/over", "objectives/1 is max"),
+        (
+            [DISTANCE, *({"name": name, "measure": "vehicles"} for name in "ab")],
+            "/objectives/2/measure",
+            "another than that of objectives/1",
+        ),
+        (
+            [{**DISTANCE, "over": "max"}, {"name": "b", "measure": "vehicles"}],
+            "/objectives/1/measure",
+            "needs a first objective over sum",
+        ),
+        (
+            [{"name": "a", "measure": "vehicles"}, DISTANCE],
+            "/objectives/0/measure",
+            "must not be given for the first objective",
+        ),
+        ([DISTANCE, TIME, DISTANCE, TIME], "/objectives", "3 items or fewer"),
+    ],
+)
+def test_objectives_that_do_not_fit_each_other_are_refused_where_they_stand(
+    client: httpx.Client, objectives: list[dict[str, Any]], pointer: str, sentence: str
+) -> None:
+    body = {**request(), "objectives": objectives}
+    body["vehicles"][0].pop("shift")
+    for stop in body["stops"]:
+        stop.pop("service", None)
+    del body["clock"]
+    response = client.post("/fleet", json=body)
+    assert response.status_code == 422, response.text
+    problem = response.json()
+    assert problem["errors"][0]["pointer"] == pointer, problem
+    assert sentence in problem["detail"]
