@@ -6,68 +6,39 @@ visits only guide: overtime and lateness of a plan are sums.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import count
 
-import numpy as np
 import pyvrp
 
-from service.fleet.archive import SolutionArchive
 from service.fleet.goal import Goal
 from service.fleet.solver import Step
-from service.fleet.translation import Translation
+from service.fleet.sweep import Searches
 
-_FIRST_ITERATIONS = 100
-_MOST_DOUBLINGS = 10
-_LEAST_ITERATIONS = 50
-_SHARE = 16  # searches for which there should be time in each round
+_SEARCHES = 16  # in a round, for which there should be time
 _LIMITS = 7  # on overtime or lateness, in each round
 _CLOSER = 0.5  # each limit is this share of the one before
 
 
-class MeasureSweep:
-    """The searches for a front. Each must be run into the archive before the next is requested.
+class MeasureSweep(Searches):
+    """The searches for a front whose second objective is one of these measures."""
 
-    Args:
-        translation: The translation of the fleet, whose second objective is a measure.
-        archive: The solutions of all searches; it may hold some already.
-        random: Chooses limits.
-        left: Estimates the number of iterations for which there is time.
-    """
-
-    def __init__(
-        self,
-        translation: Translation,
-        archive: SolutionArchive,
-        random: np.random.Generator,
-        left: Callable[[], float],
-    ) -> None:
-        self._translation = translation
-        self._rules = translation.fleet.rules
-        self._archive = archive
-        self._random = random
-        self._left = left
-        self._free = Goal(weights=translation.sum_weights)
+    @property
+    def _free(self) -> Goal:
+        """The goal without a limit."""
+        return Goal(weights=self._translation.sum_weights)
 
     def steps(self) -> Iterator[Step]:
         """Yield searches for the least costs until there is a solution, and then under limits."""
-        iterations = _FIRST_ITERATIONS
-        yield Step(self._free, self._cheapest(), iterations)
-        while not len(self._archive):
-            iterations *= 2
-            yield Step(self._free, None, iterations)
+        yield from self._until_found(self._free, self._cheapest())
         for number in count():
-            grown = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
-            iterations = max(_LEAST_ITERATIONS, int(min(grown, self._left() / _SHARE)))
+            iterations = self._iterations(number, _SEARCHES)
             yield Step(self._free, self._cheapest(), iterations)
             if "vehicles" in self._rules.over:
                 yield from self._under_numbers(number, iterations)
             else:
                 yield from self._under_times(iterations)
-
-    def _cheapest(self) -> pyvrp.Solution | None:
-        return self._archive.solutions[0] if len(self._archive) else None
 
     def _under_numbers(self, round_number: int, iterations: int) -> Iterator[Step]:
         """Yield searches with the vehicles of each solution, and with one fewer than the fewest."""

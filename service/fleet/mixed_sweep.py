@@ -6,24 +6,19 @@ front is visited again and again. Each search is followed by moves, which are me
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import count
 
 import numpy as np
 import pyvrp
 
-from service.fleet.archive import SolutionArchive
 from service.fleet.fleet import Array
 from service.fleet.goal import Goal
 from service.fleet.moves import Moves
 from service.fleet.scales import UNBOUNDED
 from service.fleet.solver import Step
-from service.fleet.sweep import least_limit, whole_weight
-from service.fleet.translation import Translation
+from service.fleet.sweep import Searches, least_limit, whole_weight
 
-_FIRST_ITERATIONS = 100
-_MOST_DOUBLINGS = 10
-_LEAST_ITERATIONS = 50
 _SEARCHES = 16  # in a round, for which there should be time
 _UNLIMITED = 0.25  # share of the searches without one of the limits
 _STRICTEST = 0.25  # share of them that allow no overtime, or no lateness
@@ -33,41 +28,16 @@ _MOVES = 2  # for each iteration of PyVRP, which takes several times as long
 _BEYOND = 1e3  # how much worse a start is that exceeds a limit by the width of the front
 
 
-class MixedSweep:
-    """The searches for a front. Each must be run into the archive before the next is requested.
-
-    Args:
-        translation: The translation of the fleet.
-        archive: The solutions of all searches; it may hold some already.
-        random: Chooses weights and limits.
-        left: Estimates the number of iterations for which there is time.
-    """
-
-    def __init__(
-        self,
-        translation: Translation,
-        archive: SolutionArchive,
-        random: np.random.Generator,
-        left: Callable[[], float],
-    ) -> None:
-        self._translation = translation
-        self._rules = translation.fleet.rules
-        self._archive = archive
-        self._random = random
-        self._left = left
+class MixedSweep(Searches):
+    """The searches for a front under any two or three objectives."""
 
     def steps(self) -> Iterator[Step]:
         """Yield searches for the least costs until there is a solution, and then all others."""
         prizes = int("unassigned" in self._rules.over)
         free = Goal(weights=self._translation.sum_weights, prizes=prizes)
-        iterations = _FIRST_ITERATIONS
-        yield Step(free, self._archive.solutions[0] if len(self._archive) else None, iterations)
-        while not len(self._archive):
-            iterations *= 2
-            yield Step(free, None, iterations)
+        yield from self._until_found(free, self._cheapest())
         for number in count():
-            grown = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
-            iterations = max(_LEAST_ITERATIONS, int(min(grown, self._left() / _SEARCHES)))
+            iterations = self._iterations(number, _SEARCHES)
             for _ in range(_SEARCHES):
                 weights = self._random.exponential(size=len(self._rules.over)) / self._widths()
                 yield self._search(weights, iterations)

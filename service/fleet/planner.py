@@ -26,7 +26,7 @@ from service.fleet.plans import FleetFront, Plan
 from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
-from service.fleet.sweep import Sweep
+from service.fleet.sweep import Searches, Sweep
 from service.fleet.translation import Translation
 from service.front import Progress, ReportOf, Termination
 from service.pareto import nondominated
@@ -322,7 +322,7 @@ class _Search:
         return self._pause + _CHECKING * checked + selected
 
 
-def _sweep_of(rules: Rules) -> type[Sweep] | type[MeasureSweep] | type[MixedSweep]:
+def _sweep_of(rules: Rules) -> type[Searches]:
     """Return the searches for the objectives of a fleet."""
     second, *more = rules.over[1:]
     if more or second in ("imbalance", "load_distance"):

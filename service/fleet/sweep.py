@@ -5,6 +5,7 @@ are searched under weights, which are the normals of the edges of the front's hu
 1979). Weights reach supported points only.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from itertools import count, pairwise
 
@@ -19,24 +20,25 @@ from service.fleet.solver import Step
 from service.fleet.translation import Translation
 
 FEW_STOPS = 12  # up to this number of stops, the sweep looks for every point
-_FIRST_ITERATIONS = 100
+FIRST_ITERATIONS = 100
+LEAST_ITERATIONS = 50  # for a limit in one round
 _FREE_SHARE = 0.25  # share of all iterations for the least sum without a limit, the first search
 _MOST_DOUBLINGS = 10
 _ROUGH_LIMITS, _ROUGH_ITERATIONS = 7, 50  # in the first round
 _LIMITS = 24  # in each further round
-_LEAST_ITERATIONS, _MOST_ITERATIONS = 50, 3000  # for a limit in one round
+_MOST_ITERATIONS = 3000  # for a limit in one round
 _IDLE_ROUNDS = 3  # rounds without a new solution, after which a sweep of few stops has converged
 _ROUNDED = 3  # units by which a route to one stop is rounded up: two legs and a service
 _UNKNOWN = 0.1  # share of the greatest sum that an unknown sum exceeds it by, at least
 
 
-class Sweep:
+class Searches(ABC):
     """The searches for a front. Each must be run into the archive before the next is requested.
 
     Args:
         translation: The translation of the fleet.
         archive: The solutions of all searches; it may hold some already.
-        random: Chooses limits.
+        random: Chooses weights and limits.
         left: Estimates the number of iterations for which there is time.
     """
 
@@ -47,11 +49,50 @@ class Sweep:
         random: np.random.Generator,
         left: Callable[[], float],
     ) -> None:
-        rules = translation.fleet.rules
         self._translation = translation
+        self._rules = translation.fleet.rules
         self._archive = archive
         self._random = random
         self._left = left
+
+    @abstractmethod
+    def steps(self) -> Iterator[Step]:
+        """Yield the searches."""
+
+    def _until_found(self, goal: Goal, start: pyvrp.Solution | None) -> Iterator[Step]:
+        """Yield a search, and longer ones until there is a solution."""
+        iterations = FIRST_ITERATIONS
+        yield Step(goal, start, iterations)
+        while not len(self._archive):
+            iterations *= 2
+            yield Step(goal, None, iterations)
+
+    def _grown(self, round_number: int) -> int:
+        """Return the iterations of a search in a round: each round has twice those before."""
+        return FIRST_ITERATIONS * 2 ** min(round_number, _MOST_DOUBLINGS)
+
+    def _iterations(self, round_number: int, searches: int) -> int:
+        """Return the iterations of each of the searches of a round for which there is time."""
+        share = self._left() / searches
+        return max(LEAST_ITERATIONS, int(min(self._grown(round_number), share)))
+
+    def _cheapest(self) -> pyvrp.Solution | None:
+        """Return the solution of the least first length, or None."""
+        return self._archive.solutions[0] if len(self._archive) else None
+
+
+class Sweep(Searches):
+    """The searches for a sum against a maximum, another sum, or the prizes of what is left out."""
+
+    def __init__(
+        self,
+        translation: Translation,
+        archive: SolutionArchive,
+        random: np.random.Generator,
+        left: Callable[[], float],
+    ) -> None:
+        super().__init__(translation, archive, random, left)
+        rules = self._rules
         self._two_sums = rules.maximum is None
         self._maximum = 0 if rules.maximum is None else rules.maximum
         self._limit_scale = translation.scales[self._maximum]
@@ -81,11 +122,7 @@ class Sweep:
         both = self._two_sums and not self._weighs_prizes
         weights = (1, 1) if both else self._translation.sum_weights
         free = Goal(weights=weights, prizes=int(self._weighs_prizes))
-        iterations = _FIRST_ITERATIONS
-        yield Step(free, self._least_sum(), iterations)
-        while not len(self._archive):
-            iterations *= 2
-            yield Step(free, None, iterations)
+        yield from self._until_found(free, self._least_sum())
         if not self._two_sums and not self._few:
             yield Step(free, self._least_sum(), int(_FREE_SHARE * self._left()))
 
@@ -97,7 +134,7 @@ class Sweep:
 
     def _round(self, number: int) -> Iterator[Step]:
         """Yield the searches of a round; for few stops or two sums they get longer every round."""
-        iterations = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
+        iterations = self._grown(number)
         if self._two_sums:
             return self._hull_weights(iterations)
         if self._few:
@@ -105,7 +142,7 @@ class Sweep:
         if number == 0:
             return self._wide_limits(_ROUGH_LIMITS, _ROUGH_ITERATIONS, lambda: 0.5)
         share = int(min(self._left() / _LIMITS, _MOST_ITERATIONS))
-        iterations = max(_LEAST_ITERATIONS, share)
+        iterations = max(LEAST_ITERATIONS, share)
         return self._wide_limits(_LIMITS, iterations, lambda: self._random.uniform(0.3, 0.7))
 
     def _every_limit(self, iterations: int) -> Iterator[Step]:
