@@ -1,4 +1,4 @@
-"""Paretour: Pareto fronts of tours under two objectives."""
+"""Paretour: Pareto fronts of tours under two to four objectives."""
 
 
 def installed_version() -> str:

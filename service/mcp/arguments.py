@@ -64,7 +64,9 @@ class FleetObjective(Objective):
 
     over: str | None = Field(default=None, description="sum, or max for the longest route")
     measure: str | None = Field(
-        default=None, description="vehicles, unassigned, overtime or lateness, in place of costs"
+        default=None,
+        description="vehicles, unassigned, overtime, lateness, imbalance or load_distance, in place"
+        " of costs",
     )
 
 
@@ -125,11 +127,13 @@ class PlanFile(Arguments):
 
 
 class PlanFleet(Arguments):
-    """Stops, vehicles and two objectives."""
+    """Stops, vehicles and two or three objectives."""
 
     stops: list[FleetStop]
     vehicles: list[Vehicle]
-    objectives: list[FleetObjective] = Field(description="two")
+    objectives: list[FleetObjective] = Field(
+        description="two or three; the first is a sum of costs"
+    )
     shipments: list[dict[str, Any]] | None = Field(
         default=None, description="each with pickup and delivery, which are stops by index or id"
     )
