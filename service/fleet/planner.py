@@ -7,16 +7,17 @@ from functools import partial
 from math import inf
 
 import numpy as np
+import pyvrp
 
 from service.construction.first_tours import SHARE, Constructor
 from service.errors import Cancelled, Refusal
-from service.fleet.archive import SolutionArchive
+from service.fleet.archive import KeptPlans, SolutionArchive
 from service.fleet.conflicts import no_plan
 from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
 from service.fleet.first_plans import Cutter, network_sequences, plain_plans
 from service.fleet.fleet import Array, Fleet, default_reference_point
-from service.fleet.goal import FREE
+from service.fleet.goal import FREE, Goal
 from service.fleet.left_out import with_all_stops
 from service.fleet.measure_sweep import MeasureSweep
 from service.fleet.mixed_sweep import MixedSweep
@@ -208,6 +209,8 @@ class _Search:
         give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
         self.archive = SolutionArchive(self._translation)
+        driven = options.driven
+        self._kept = None if driven is None else KeptPlans(self._translation, driven)
         self._constructed = 0
         self._iterations = 0
         self._checked = self._began
@@ -242,12 +245,17 @@ class _Search:
         """
         plan = _completed(self._fleet, driven)
         if plan is not None:
-            self.archive.offer(self._translation.solution(plan), FREE)
+            self._offer(self._translation.solution(plan), FREE)
+
+    def _offer(self, solution: pyvrp.Solution, goal: Goal) -> None:
+        self.archive.offer(solution, goal)
+        if self._kept is not None:
+            self._kept.offer(solution)
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or `stop` returns True."""
         options, archive = self._options, self.archive
-        solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
+        solver = Solver(self._translation, options.seed, self._offer, self._ended, self._deadline)
         random = np.random.default_rng(options.seed)
         mover = Mover(self._translation, archive, random)
         sweep = _sweep_of(self._fleet.rules)
@@ -281,7 +289,26 @@ class _Search:
         front = _front(
             self._fleet, self._options, plans, terminated, self._began, self._constructed
         )
-        return replace(front, found=max(front.found, len(archive)))
+        return self._with_kept(replace(front, found=max(front.found, len(archive))))
+
+    def _with_kept(self, front: FleetFront) -> FleetFront:
+        """Return a front of which one plan keeps most of the driven one, if such a plan is short.
+
+        It takes the place of the plan nearest to it if there are as many as asked for.
+        """
+        if self._kept is None or any(map(self._kept.keeps, front.plans)):
+            return front
+        plan = self._kept.nearest(np.array(self.archive.points))
+        if plan is None:
+            return front
+        point, plans, points = points_of(self._fleet, [plan]), list(front.plans), front.points
+        if len(plans) == self._options.size:
+            place = int((np.abs(points - point) / front.scale).sum(axis=1).argmin())
+            del plans[place]
+            points = np.delete(points, place, axis=0)
+        place = int(np.searchsorted(points[:, 0], point[0, 0]))
+        plans.insert(place, plan)
+        return replace(front, plans=plans, points=np.insert(points, place, point, axis=0))
 
     def _left(self) -> float:
         """Return the number of iterations left, estimated from the time of earlier ones."""

@@ -21,7 +21,7 @@ from service.fleet.mixed_sweep import MixedSweep
 from service.fleet.moves import Mover
 from service.fleet.necessary import least_lengths
 from service.fleet.planner import FleetOptions, plan_fleet
-from service.fleet.plans import FleetFront
+from service.fleet.plans import FleetFront, kept_share
 from service.fleet.rules import Over, Rules
 from service.fleet.solver import Solver
 from service.fleet.sweep import Searches, Sweep
@@ -351,6 +351,28 @@ def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
         plan_fleet(fleet, options)
     with pytest.raises(Cancelled):
         plan_fleet(fleet, options, shuffler(), stop=lambda: True)
+
+
+@pytest.mark.parametrize("size", [1, 100])
+@pytest.mark.parametrize("over", [("sum", "max"), ("sum", "vehicles")])
+def test_a_plan_that_keeps_most_of_the_driven_one_is_in_its_front(
+    over: tuple[Over, Over], size: int
+) -> None:
+    """The driven plan is hardly longer than the best: such plans are many, and few keep it."""
+    fleet = deliveries(24, over, seed=3)
+    long = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=1500))
+    driven = long.plans[len(long.plans) // 2]
+    options = FleetOptions(time_limit=inf, iterations=800, driven=driven, size=size)
+    front = plan_fleet(fleet, options)
+    assert len(front.plans) <= size
+    assert (np.diff(front.points[:, 0]) >= 0).all()
+    kept = max(kept_share(driven, plan) for plan in front.plans)
+    lengths = np.array(plan_lengths(fleet, driven))
+    near = (lengths <= 1.05 * front.points).all(axis=1).any()
+    assert kept >= 0.9 or not near
+    for plan, point in zip(front.plans, front.points, strict=True):
+        assert violations(fleet, plan) == []
+        assert plan_lengths(fleet, plan) == tuple(point)
 
 
 def crowded(seed: int) -> Fleet:
