@@ -11,7 +11,7 @@ from paretour.bars import Display
 from paretour.kinds import parse_any
 
 from service.errors import Cancelled, Refusal
-from service.jobs.compiled_code import load_from_cache, warm_up
+from service.jobs.compiled_code import warm_up
 from service.jobs.parts import Compiling, Part, parts_of
 from service.kinds.front_document import FrontDocument
 from service.library.interrupts import interrupt_flag, until_done
@@ -96,10 +96,8 @@ class LocalPlanner:
         return Planned(task, document, interrupted())
 
     def _load(self, task: Task, display: Display) -> None:
-        """Load what a task needs; compile what is not in the cache, and show how far that is."""
+        """Compile what a task needs, or load it, and show how far that is."""
         missing = parts_of(task) - self.loaded
-        self.loaded.update(part for part in Part if part in missing and load_from_cache(part))
-        missing -= self.loaded
         if not missing:
             return
         with display.loading() as say:

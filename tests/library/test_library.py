@@ -15,10 +15,7 @@ import numpy as np
 import paretour
 import psutil
 import pytest
-from paretour.bars import Silent
-from paretour.requests import front_plan
 
-from service.library.local_planner import LocalPlanner, load_default_planner
 from tests.helpers.command import ROOT
 
 CITIES = np.random.default_rng(1).random((12, 4))
@@ -43,19 +40,6 @@ def test_a_front_has_the_lengths_of_its_tours() -> None:
             tour.lengths
         )
     assert (front.status, front.id) == ("done", "")
-
-
-def test_compiled_code_is_loaded_without_waiting_for_a_process_that_compiles() -> None:
-    class Locked(Silent):
-        """Another process compiles, and holds the lock meanwhile."""
-
-        def loading(self) -> Any:
-            raise AssertionError("this would wait")
-
-    planner = load_default_planner()
-    request = front_plan({"coordinates": CITIES, "time_limit": 0.1})
-    planner.plan(request, Silent())
-    assert len(LocalPlanner(planner.runner).plan(request, Locked()).front()) > 0
 
 
 def test_a_front_of_matrices_is_that_of_named_objectives() -> None:
