@@ -146,9 +146,9 @@ def test_what_does_not_fit_is_refused(
     assert [each["pointer"] for each in refused["errors"]] == [pointer]
 
 
-def test_other_endpoints_take_two(client: httpx.Client) -> None:
+def test_fleets_take_three(client: httpx.Client) -> None:
     stops = [{"id": "a"}, {"id": "b"}]
-    objectives = [{"name": str(k), "matrix": [[0, 1], [1, 0]], "over": "sum"} for k in range(3)]
+    objectives = [{"name": str(k), "matrix": [[0, 1], [1, 0]], "over": "sum"} for k in range(4)]
     fleet = {"stops": stops, "objectives": objectives, "vehicles": [{"id": "van"}]}
     refused = problem(client.post("/fleet", json=fleet), 422, "invalid-request")
     assert refused["errors"][0]["pointer"] == "/objectives"
