@@ -41,7 +41,7 @@ class SolutionArchive:
     def __init__(self, translation: Translation) -> None:
         rules = translation.fleet.rules
         self._translation = translation
-        swept = rules.swept is not None and all(each.longest == inf for each in rules.vehicles)
+        swept = rules.swept is not None and not rules.has_longest
         self._any_distance = swept and translation.duration in (None, 1 - (rules.swept or 0))
         self._any_time = swept and not self._any_distance and not rules.spans
         # Their limits in a search are no rules.
@@ -200,8 +200,8 @@ class KeptPlans:
             return
         left = ~np.all(self._points >= point, axis=1)
         self._points = np.vstack((self._points[left], point))
-        self._plans = [*(each for each, is_left in zip(self._plans, left, strict=True) if is_left)]
-        self._plans.append(plan)
+        kept = (each for each, is_left in zip(self._plans, left, strict=True) if is_left)
+        self._plans = [*kept, plan]
 
     def nearest(self, points: Array) -> Plan | None:
         """Return the plan that is the least longer than a front; None if all are much longer.

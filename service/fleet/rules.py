@@ -174,10 +174,15 @@ class Rules:
         needed = set(visit.skills)
         return frozenset(each for each in named if needed <= set(self.vehicles[each].skills))
 
+    @cached_property
+    def has_longest(self) -> bool:
+        """Whether the length of some route is bounded."""
+        return any(vehicle.longest < inf for vehicle in self.vehicles)
+
     @property
     def has_bounds(self) -> bool:
         """Whether anything bounds a time or the length of a route."""
-        return bool(self.spans) or any(vehicle.longest < inf for vehicle in self.vehicles)
+        return bool(self.spans) or self.has_longest
 
 
 def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:

@@ -365,7 +365,7 @@ class Translation:
         """
         rules = self.fleet.rules
         limited = goal.limit < UNBOUNDED and rules.swept == rules.clock
-        return rules.reloads and (limited or any(each.longest < inf for each in rules.vehicles))
+        return rules.reloads and (limited or rules.has_longest)
 
     def _early(self, time: float) -> int:
         return int(round_up(self._scaled_time(time)))
