@@ -226,7 +226,8 @@ def test_a_job_that_fails_says_why(engine: Engine) -> None:
 
 def test_a_job_whose_worker_is_killed_ends_with_a_front(engine: Engine) -> None:
     with engine.serve() as served:
-        path = later(served.client, {**LONG, "time_limit": 1})
+        # Long enough to be killed while it runs, on a busy machine too.
+        path = later(served.client, {**LONG, "time_limit": 6})
         until_found(served.client, path)
         served.kill(id_of(path))
         found = ended(served.client, path)
