@@ -201,6 +201,16 @@ class PathItem(BaseModel):
         description="x and y of each cell's middle in the frame of the map, in metres, if its"
         " origin is known",
     )
+    yaws: list[float] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="with points: the direction in radians in which the robot leaves each cell, and"
+        " at the last cell the one in which it arrives",
+    )
+    visits: list[list[int]] = Field(
+        default_factory=list,
+        description="for each place of the tour in order, back to the first if it is closed: the"
+        " index of its cell in cells, and the place; all other cells are on the way",
+    )
 
 
 class UncoveredRegionItem(BaseModel):

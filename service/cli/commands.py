@@ -86,6 +86,7 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     unrounded: options.Unrounded = False,
     area: options.Area,
     cost_layers: options.CostLayers = None,
+    path: options.PathFile = None,
     as_json: options.AsJson = False,
     service: options.Service,
 ) -> None:
@@ -95,7 +96,8 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     from service.cli.plans import plan_tour
 
     of_search = {**vars(search), **vars(network), **vars(ends)}
-    members = {**of_search, **vars(area), "augment": augment}
+    paths = None if path is None else True
+    members = {**of_search, **vars(area), "augment": augment, "paths": paths}
     run_tour(
         partial(
             plan_tour,
@@ -107,6 +109,7 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
         backend_for(service),
         choice,
         as_json,
+        path,
     )
 
 
@@ -170,6 +173,7 @@ def coverage(  # noqa: PLR0913  a group of options, or one, each
     cost_layers: options.CostLayers = None,
     robots: options.Robots = None,
     paths: options.Paths = None,
+    path_folder: options.PathFolder = None,
     search: options.Search,
     size: options.Size = None,
     network: options.Network,
@@ -182,7 +186,7 @@ def coverage(  # noqa: PLR0913  a group of options, or one, each
     from service.cli.fronts import run_front
     from service.cli.plans import plan_map
 
-    if output.plot is not None:  # the picture shows the paths of tours
+    if path_folder is not None or output.plot is not None:  # the picture shows the paths of tours
         paths = True
     of_search = {**vars(search), **vars(network), **vars(ends)}
     members = {**of_search, **vars(area), "paths": paths, "size": size}
@@ -190,6 +194,7 @@ def coverage(  # noqa: PLR0913  a group of options, or one, each
         partial(plan_map, file, cost_layers or (), members, robots or ()),
         backend_for(service),
         output,
+        path_folder,
     )
 
 

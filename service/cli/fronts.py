@@ -36,6 +36,7 @@ from service.cli.output import (
     tour_summary,
     uncovered_summary,
 )
+from service.cli.paths import check_path_file, check_path_folder, write_path, write_paths
 from service.cli.terminal_chart import LABELS, draw_front
 from service.objectives import OBJECTIVES
 
@@ -53,10 +54,14 @@ _MOVERS: Mapping[str, Movers | None] = {
 }
 
 
-def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> None:
-    """Plan a front, print it and draw it."""
+def run_front(
+    build_plan: BuildPlan, backend: Backend, output: OutputFormat, path_folder: Path | None = None
+) -> None:
+    """Plan a front, print it and draw it; write its paths into a folder."""
     with exit_on_error():
         _check_output(output)
+        if path_folder is not None:
+            check_path_folder(path_folder)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
         movers = _MOVERS[kind_of(front.document)]
@@ -64,14 +69,24 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         _print(front, movers, ids, output)
         if output.plot is not None:
             _draw(front, plan, output.plot, noun)
+        if path_folder is not None:
+            write_paths(front, path_folder)
     _print_line(front_summary(front, noun))
     if line := uncovered_summary(front):
         _print_line(line)
 
 
-def run_tour(build_plan: BuildPlan, backend: Backend, choice: Ways, as_json: bool = False) -> None:
-    """Plan a front and print one of its tours."""
+def run_tour(
+    build_plan: BuildPlan,
+    backend: Backend,
+    choice: Ways,
+    as_json: bool = False,
+    path_file: Path | None = None,
+) -> None:
+    """Plan a front and print one of its tours; write its path into a file."""
     with exit_on_error():
+        if path_file is not None:
+            check_path_file(path_file)
         with _usage_errors():
             ways = ways_of(choice)
             the_way(ways)
@@ -81,6 +96,8 @@ def run_tour(build_plan: BuildPlan, backend: Backend, choice: Ways, as_json: boo
             raise unexpected("answer/kind", "of tours", front.document["kind"])
         with _usage_errors():
             tour = front.choose(**ways)
+        if path_file is not None:
+            write_path(tour.path, path_file)
     if as_json:
         print_data(tour_as_json(tour))
     else:

@@ -102,6 +102,23 @@ Paths = Annotated[
     bool | None,
     Option("--paths", help="With --json, add the path of each tour, in cells and metres."),
 ]
+PathFile = Annotated[
+    Path | None,
+    Option(
+        "--path",
+        metavar="FILE",
+        help="Also write its path over the map, in metres: .json as nav_msgs/Path, .csv as x, y,"
+        " yaw and place.",
+    ),
+]
+PathFolder = Annotated[
+    Path | None,
+    Option(
+        metavar="FOLDER",
+        help="Also write the path of each tour, or of each robot of each plan, into this folder, in"
+        " both formats of `paretour tour --path`. It is made if it does not exist.",
+    ),
+]
 FrontId = Annotated[str, Argument(metavar="FRONT", help="The id of a front of the service.")]
 Changes = Annotated[
     Path | None,

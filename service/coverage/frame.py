@@ -46,6 +46,22 @@ class MapFrame:
         points = np.stack((x + cosine * right - sine * up, y + sine * right + cosine * up), axis=1)
         return points.round(_DIGITS - math.floor(math.log10(self.cell_size)))
 
+    def yaws(self, cells: Cells) -> Array:
+        """Return the direction in radians, shape (n,), in which a path leaves each of its cells.
+
+        At its last cell it keeps the direction in which it arrived. A path of one cell looks along
+        the rows of the grid. Directions are from -pi to pi, counterclockwise from the x axis.
+
+        Args:
+            cells: Rows and columns, shape (n, 2), each beside the one before.
+        """
+        steps = np.diff(cells, axis=0)
+        if not len(steps):
+            steps = np.array([[0, 1]])
+        steps = np.vstack((steps, steps[-1:]))[: len(cells)]
+        yaws = self.origin[2] + np.arctan2(-steps[:, 0], steps[:, 1])
+        return np.angle(np.exp(1j * yaws)).round(_DIGITS)
+
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return the row and column of the cell at a point. It may lie outside the grid.
 
@@ -67,9 +83,12 @@ class CoveragePath:
     Args:
         cells: Rows and columns, shape (m, 2). The path of a closed tour ends at its first cell.
         metres: The length.
+        visits: The index in `cells` and the place, shape (k, 2), for each place in the order of the
+            tour, back to the first if it is closed. All other cells are on the way.
         frame: The frame of the map, if it is known.
     """
 
     cells: Cells
     metres: float
+    visits: Cells
     frame: MapFrame | None = None

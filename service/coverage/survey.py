@@ -113,7 +113,9 @@ class Survey:
             _check(stop)
             parts = [paths[step][1:] for step in pairwise(way.tolist())]
             metres = float(self.instance.matrices[0, way[:-1], way[1:]].sum())
-            yield CoveragePath(np.concatenate([self.places[way[:1]], *parts]), metres, self.frame)
+            along = np.concatenate([self.places[way[:1]], *parts])
+            visits = np.stack((np.cumsum([0, *map(len, parts)]), way), axis=1)
+            yield CoveragePath(along, metres, visits, self.frame)
 
     def _paths_of_steps(
         self, steps: list[tuple[int, int]], stop: Callable[[], bool]

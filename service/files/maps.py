@@ -68,7 +68,7 @@ def _grid(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> 
 
 def _interpretation(source: Source) -> dict[str, Any]:
     """Return what a map.yaml says about the picture that came with it."""
-    from paretour.ros_maps import parse_ros_map
+    from paretour.ros.maps import parse_ros_map
 
     try:
         members, _ = parse_ros_map(source.file.data)  # the file that it names is not read

@@ -238,8 +238,12 @@ def encode_path(path: CoveragePath) -> bytes:
     """Return a path as JSON, written in parts: a list takes ten times the memory of its text."""
     parts = [path.cells[i : i + PATH_PART] for i in range(0, len(path.cells), PATH_PART)]
     members = [b'"cells":', *_encode_rows(parts), b',"metres":', to_json(path.metres)]
+    members += [b',"visits":', to_json(path.visits.tolist())]
     if path.frame is not None:
         members += [b',"points":', *_encode_rows(map(path.frame.points, parts))]
+        yaws = path.frame.yaws(path.cells)
+        yaw_parts = (yaws[i : i + PATH_PART] for i in range(0, len(yaws), PATH_PART))
+        members += [b',"yaws":', *_encode_rows(yaw_parts)]
     return b"".join((b"{", *members, b"}"))
 
 

@@ -91,8 +91,48 @@ def test_paths_in_the_frame_of_the_map_keep_to_free_cells(client: httpx.Client) 
         assert {cell_at(x, y) for x, y in path["points"]} == {"."}
         expected = [point_of(*cell) for cell in path["cells"]]
         np.testing.assert_allclose(path["points"], expected, atol=1e-6 * SIDE)
+        moves = np.diff([complex(*point) for point in path["points"]])
+        towards = np.append(moves, moves[-1]) / np.abs(np.append(moves, moves[-1]))
+        np.testing.assert_allclose(np.exp(1j * np.array(path["yaws"])), towards, atol=1e-5)
         walked = np.hypot(*np.diff(path["points"], axis=0).T).sum()
         assert walked == pytest.approx(path["metres"]) == pytest.approx(item["lengths"][0])
+
+
+def visited(path: dict[str, Any], places: list[list[int]]) -> list[int]:
+    """The places of the visits of a path, whose cells must be theirs, in order along the path."""
+    indexes = [index for index, _ in path["visits"]]
+    assert (indexes[0], indexes[-1]) == (0, len(path["cells"]) - 1)
+    assert indexes == sorted(indexes)
+    assert [path["cells"][index] for index in indexes] == [
+        places[place] for _, place in path["visits"]
+    ]
+    return [place for _, place in path["visits"]]
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_a_path_tells_its_places_from_the_cells_on_the_way(
+    client: httpx.Client, closed: bool
+) -> None:
+    answer = with_picture(client, {**OF_PICTURE, "closed": closed})
+    assert answer.status_code == 200, answer.text
+    for item in answer.json()["front"]:
+        back = item["tour"][:1] if closed else []
+        assert visited(item["path"], answer.json()["places"]) == item["tour"] + back
+
+
+def test_the_routes_of_robots_tell_their_places_and_directions(client: httpx.Client) -> None:
+    robots = [{"id": "a"}, {"id": "b", "start": 1}]
+    request = {k: v for k, v in OF_PICTURE.items() if k != "cost_layer"}
+    answer = with_picture(client, {**request, "robots": robots})
+    assert answer.status_code == 200, answer.text
+    for plan in answer.json()["front"]:
+        for route in plan["routes"]:
+            path = route["path"]
+            assert visited(path, answer.json()["places"]) == route["tour"]
+            moves = np.diff([complex(*point) for point in path["points"]])
+            np.testing.assert_allclose(
+                np.exp(1j * np.array(path["yaws"]))[:-1], moves / np.abs(moves), atol=1e-5
+            )
 
 
 def test_a_message_is_planned_as_the_picture_of_the_same_map(client: httpx.Client) -> None:
@@ -143,7 +183,7 @@ def test_unknown_cells_are_free_where_that_is_asked_for(client: httpx.Client) ->
 def test_a_picture_without_an_origin_has_paths_without_points(client: httpx.Client) -> None:
     request = {name: value for name, value in OF_PICTURE.items() if name != "origin"}
     [item, *_] = with_picture(client, request).json()["front"]
-    assert set(item["path"]) == {"cells", "metres"}
+    assert set(item["path"]) == {"cells", "metres", "visits"}
 
 
 def test_a_stored_tour_has_its_points(client: httpx.Client) -> None:

@@ -11,7 +11,11 @@ from hatchling.builders.wheel import WheelBuilder
 
 ROOT = Path(__file__).parents[2]
 CLIENT = ROOT / "service/client"
-MODULES = {f"paretour/{path.name}" for path in (CLIENT / "paretour").iterdir() if path.is_file()}
+MODULES = {
+    f"{path.relative_to(CLIENT)}"
+    for path in (CLIENT / "paretour").rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+}
 RECORD_IMPORTS = """
 import builtins, sys
 imported, real = set(), builtins.__import__

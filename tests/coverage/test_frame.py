@@ -41,6 +41,24 @@ def test_the_middle_of_a_cell_is_where_it_is_and_in_that_cell(
     assert frame.cell(x, y) == cell
 
 
+STEPS = st.tuples(st.integers(-1, 1), st.integers(-1, 1)).filter(any)
+
+
+@given(yaw=YAWS, steps=st.lists(STEPS, max_size=20))
+def test_a_robot_leaves_each_cell_towards_the_next_and_keeps_its_last_direction(
+    yaw: float, steps: list[tuple[int, int]]
+) -> None:
+    frame = MapFrame(origin=(3.0, -2.0, yaw), cell_size=0.5, rows=60)
+    cells = 30 + np.cumsum([(0, 0), *steps], axis=0)
+    yaws = frame.yaws(cells)
+    assert yaws.shape == (len(cells),)
+    assert (np.abs(yaws) < math.pi + 1e-6).all()
+    moves = np.diff([point_of((row, column), frame) for row, column in cells.tolist()])
+    moves = moves if len(moves) else np.exp([1j * yaw])
+    towards = np.append(moves, moves[-1])[: len(cells)]
+    np.testing.assert_allclose(np.exp(1j * yaws), towards / np.abs(towards), atol=1e-5)
+
+
 def test_the_map_of_turtlebot_has_its_robot_where_it_starts() -> None:
     # ROBOTIS-GIT/turtlebot3: turtlebot3_navigation2/map has 384 x 384 cells of 0.05 m from
     # (-10, -10); its simulation starts at (-2, -0.5), the corner of four cells.

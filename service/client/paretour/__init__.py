@@ -47,11 +47,11 @@ from paretour.members import (
 )
 from paretour.plans import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.ros_maps import read_ros_map
+from paretour.ros.maps import read_ros_map
+from paretour.ros.paths import Path
 from paretour.sync import Client, Job
 from paretour.values import (
     Front,
-    Path,
     Progress,
     Tour,
     Uncovered,

@@ -12,9 +12,9 @@ from paretour.choice import Choice, choose
 from paretour.display import counted, numbers
 from paretour.expect import Read, count, each, floats, indexes, members, number, text
 from paretour.fronts import Array, Item, StoredFront
+from paretour.ros.paths import Path
 from paretour.values import (
     PAIR,
-    Path,
     Uncovered,
     objectives_of,
     parse_path,

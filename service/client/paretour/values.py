@@ -22,6 +22,7 @@ from paretour.expect import (
     text,
 )
 from paretour.fronts import Array, Objective, StoredFront
+from paretour.ros.paths import Path
 
 T = TypeVar("T")
 FINAL_STATUSES = ("done", "cancelled", "failed")
@@ -45,23 +46,6 @@ class Progress:
             hypervolume=event.read("hypervolume", number),
             points=event.read("points", count),
         )
-
-
-@dataclass(frozen=True, eq=False)
-class Path:
-    """The way of a tour over a map, and its length.
-
-    Attributes:
-        cells: Rows and columns, shape (m, 2), from the first place back to it; for an open route,
-            to the last place.
-        metres: The length.
-        points: x and y of the middle of each cell in the frame of the map, in metres, shape (m, 2);
-            None if the origin of the map is not known.
-    """
-
-    cells: NDArray[np.int64]
-    metres: float
-    points: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -337,8 +321,13 @@ def parse_path(value: Any, where: str) -> Path:
     """Read the path of a tour or route."""
     path = members(value, where)
     cells = path.read("cells", indexes(None, PAIR))
-    points = path.maybe("points", floats(len(cells), PAIR))
-    return Path(cells, path.read("metres", number), points)
+    return Path(
+        cells,
+        path.read("metres", number),
+        points=path.maybe("points", floats(len(cells), PAIR)),
+        yaws=path.maybe("yaws", floats(len(cells))),
+        visits=path.maybe("visits", indexes(None, PAIR)),
+    )
 
 
 def _maybe_stacked(
