@@ -6,11 +6,13 @@ import { alone, csv, curl, download } from "./exports.js";
 import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
+import { csvOfPaths, drivenPaths, navPathsOf } from "./robot_paths.js";
 
 const ALONE = "This link opens the front without its maps: the request is too long for an address.";
+const NO_POSES = "Its path has no poses: its map has no origin. A map.yaml has one.";
 const COPIED = "Copied"; // a button's text, for a moment after it was last pressed
 const MOMENT = 1500; // ms
-const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png", "stops-csv", "tour-json", "gpx", "print"];
+const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png", "stops-csv", "tour-json", "gpx", "print", "path-json", "path-csv"];
 
 const KEPT_BY_SERVICE = ["json", "csv", "geojson"]; // what is made of the whole front
 
@@ -44,6 +46,8 @@ export class ExportButtons {
     on("tour-json", (shown) => download("tour.json", "application/json", JSON.stringify(alone(this.#shown, this.#item(shown)))));
     on("gpx", (shown) => this.#saveGpx(this.#routes(shown)));
     on("print", (shown) => (fillSheet(element("sheet"), this.#routes(shown)), print()));
+    on("path-json", (shown) => this.#savePaths(shown, "path.json", "application/json", navPathsOf));
+    on("path-csv", (shown) => this.#savePaths(shown, "path.csv", "text/csv", csvOfPaths));
     on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
     on("png", async ({ picture }) => download("front.png", "image/png", await pngOf(svgOf(picture))));
   }
@@ -53,6 +57,7 @@ export class ExportButtons {
     this.#shown = answer;
     say("");
     for (const id of OF_FRONT) element(id).disabled = !answer;
+    element("paths").hidden = !answer?.places;
     if (answer?.kept) for (const id of KEPT_BY_SERVICE) element(id).disabled = true;
     if (answer?.stops?.every(({ location }) => location)) return;
     element("geojson").disabled = element("gpx").disabled = true;
@@ -71,6 +76,12 @@ export class ExportButtons {
   #saveGpx(routes) {
     if (!areLocated(routes)) return say("Not all of its stops have places.");
     download("tour.gpx", "application/gpx+xml", gpxOf(routes));
+  }
+
+  #savePaths(shown, name, type, written) {
+    const paths = drivenPaths(this.#item(shown));
+    say(paths ? "" : NO_POSES);
+    if (paths) download(name, type, written(paths));
   }
 
   async #copyLink(shown, button) {

@@ -1,1 +1,1 @@
-"""What goes from robots of ROS to the service, and from it to them: maps, and paths."""
+"""Read maps of ROS as requests, and write paths for robots of ROS."""
