@@ -119,7 +119,7 @@ export class GridMap {
   #fit() {
     if (!this.#grid || !this.#element.clientWidth) return;
     this.#map.invalidateSize({ pan: false });
-    this.#map.fitBounds(this.#bounds, fitting(this.#map, 8));
+    this.#map.fitBounds(this.#bounds, fitting(8));
   }
 
   get #bounds() {

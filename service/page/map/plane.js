@@ -13,12 +13,14 @@ import { TourLine } from "./tourline.js";
 const { L } = globalThis;
 const NARROW = 240; // pixels, as a map on a phone
 const CROWD = 300; // stops
+const MOVED = 3; // pixels from the centre of a map to where it was, of a map that somebody moved
 const POINTED = 6; // pixels from a stop within which it is pointed at
 const [MOVING, STILL] = [1500, 150]; // stops drawn of a way that changes, and milliseconds until all are
 
 export class Plane {
   #map;
   #frame = Frame.around([]);
+  #view; // to which the map was fitted
   #stops = new Dots();
   #pointed = null; // the city under the pointer
   #rests = {}; // timers until the whole way is drawn, by its name
@@ -205,13 +207,17 @@ export class Plane {
     onHover(city);
   }
 
+  /** Fits the map to another size, unless somebody looks at a part of it. */
   #resize() {
+    const { zoom, center } = this.#view;
+    const whole = zoom === this.#map.getZoom() && this.#map.latLngToContainerPoint(center).distanceTo(this.#map.getSize().divideBy(2)) < MOVED;
     this.#map.invalidateSize({ pan: false });
-    this.#fit();
+    if (whole) this.#fit();
   }
 
   #fit() {
-    this.#map.fitBounds(this.#frame.bounds, fitting(this.#map, 20));
+    this.#map.fitBounds(this.#frame.bounds, fitting(20));
+    this.#view = { zoom: this.#map.getZoom(), center: this.#map.getCenter() };
   }
 }
 
