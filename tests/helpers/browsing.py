@@ -161,6 +161,11 @@ def copied(page: Page, name: str) -> str:
     return text
 
 
+def to_three_digits(value: float) -> str:
+    """Return a length as the page says it."""
+    return f"{float(f'{value:.3g}'):,.6g}"
+
+
 def tours_of_front(page: Page) -> int:
     """Return how many tours the front has that is shown, by what the slider says."""
     said = page.get_by_role("slider", name="Balance").get_attribute("aria-valuetext") or ""

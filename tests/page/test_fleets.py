@@ -4,6 +4,7 @@ import json
 import re
 from xml.etree import ElementTree
 
+import pytest
 from playwright.sync_api import Browser, expect
 
 from service.api.app import Edge
@@ -65,16 +66,12 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         routes = plan["routes"]
         expect(page.locator("#choice")).to_contain_text("for a longest route ")
         rows = page.locator("#fleet-legend tbody tr")
-        shown = [row.inner_text().split() for row in rows.all()]
-        assert shown == [
-            [
-                "van",
-                str(number),
-                str(len(route["stops"]) - 2),
-                *map("{:,.6g}".format, route["lengths"]),
-            ]
-            for number, route in enumerate(routes, start=1)
-        ]
+        shown = [row.inner_text().split("\t") for row in rows.all()]
+        for number, (route, [name, stops_of, *times]) in enumerate(
+            zip(routes, shown, strict=True), 1
+        ):
+            assert (name, stops_of) == (f"van {number}", str(len(route["stops"]) - 2))
+            assert [seconds(said) for said in times] == pytest.approx(route["lengths"], abs=60)
         assert set(COLOURS[: len(routes)]) <= set(
             page.locator("#plane-1 canvas.routes").evaluate(DRAWN)
         )
@@ -158,3 +155,9 @@ def test_routes_follow_the_streets_of_a_routing_engine(browser: Browser) -> None
             assert len(straight["features"]) == len(collection["features"])
             assert straight != collection
             expect(page.locator("#link-help")).to_contain_text("straight from stop to stop")
+
+
+def seconds(said: str) -> float:
+    """Return a time such as "1 h 5 min" in seconds."""
+    units = {"h": 3600, "min": 60, "s": 1}
+    return sum(int(number) * units[unit] for number, unit in re.findall(r"(\d+) (h|min|s)", said))

@@ -185,26 +185,29 @@ def luminance(colour: list[float]) -> float:
 
 
 @pytest.mark.parametrize(
-    ("unit", "least", "most", "title", "tick"),
+    ("unit", "value", "step", "title", "tick"),
     [
-        ("s", 2700, 3301, "Driving", "45 min"),
-        ("s", 5400, 9000, "Driving", "1:30 h"),
-        ("min", 60, 71, "Driving", "1:00 h"),
-        ("h", 25, 26, "Driving", "25:00 h"),
-        ("s", 2700, 3300, "Driving, s", "2,700"),
-        ("m", 2700, 9000, "Driving, m", "2,700"),
-        ("", 2700, 9000, "Driving", "2,700"),
+        ("s", 2700, 300, "Driving", "45 min"),
+        ("s", 5400, 900, "Driving", "1:30 h"),
+        ("s", 1950, 30, "Driving", "32:30 min"),
+        ("s", 5430, 30, "Driving", "1:30:30 h"),
+        ("s", 15, 5, "Driving", "15 s"),
+        ("min", 60, 1, "Driving", "1:00 h"),
+        ("h", 25, 1, "Driving", "25:00 h"),
+        ("m", 2700, 100, "Driving, m", "2,700"),
+        ("m", 9576.97, 0.01, "Driving, m", "9,576.97"),
+        ("", 2700, 100, "Driving", "2,700"),
     ],
 )
-def test_long_ranges_of_times_are_in_hours_and_minutes_on_the_chart(
-    planned: Page, unit: str, least: float, most: float, title: str, tick: str
+def test_times_are_in_hours_and_minutes_on_the_chart(
+    planned: Page, unit: str, value: float, step: float, title: str, tick: str
 ) -> None:
     written = planned.evaluate(
-        """async ([unit, least, range]) => {
-          const { axisOf } = await import("./page/common/amounts.js");
-          const { title, said } = axisOf({ name: "driving", unit }, range);
-          return [title, said(least)];
+        """async ([unit, value, step]) => {
+          const { axisOf } = await import("./page/common/axes.js");
+          const { title, said } = axisOf({ name: "driving", unit });
+          return [title, said(value, step)];
         }""",
-        [unit, least, most - least],
+        [unit, value, step],
     )
     assert written == [title, tick]

@@ -24,6 +24,7 @@ from tests.helpers.browsing import (
     plan_by_network_alone,
     saved,
     select_last,
+    to_three_digits,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -78,7 +79,7 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
             [
                 route["robot"],
                 str(len(route["tour"]) - 2),
-                *map("{:,.6g}".format, route["lengths"]),
+                *map(to_three_digits, route["lengths"]),
             ]
             for route in plan["routes"]
         ]

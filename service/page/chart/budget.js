@@ -1,4 +1,4 @@
-/** Budget lines on the chart: a limit on one objective, which is dragged or moved by keys. */
+/** Budget lines across the chart: a limit on one objective, whose labelled handle is dragged or moved by keys. */
 
 import { amount, wordsOf } from "../common/amounts.js";
 import { UNNAMED, isCounted } from "../common/objectives.js";
@@ -15,6 +15,7 @@ export class Budget {
   #onBudget;
   #front = [];
   #objectives = UNNAMED;
+  #grasped = 0; // pixels from the pointer to the line that it drags
   #limit = null; // { axis, most }; there is at most one budget
 
   /**
@@ -76,31 +77,51 @@ export class Budget {
   #put(line, axis) {
     const limited = this.#limit?.axis === axis;
     const most = limited ? this.#limit.most : this.#ends(axis)[1];
-    const at = this.#plot.valToPos(most, axis ? "y" : "x");
-    line.style.translate = axis ? `0 ${at}px` : `${at}px 0`;
+    const objective = this.#objectives[axis];
+    line.firstChild.textContent = limited ? `${objective.name} ≤ ${amount(most, objective)}` : `limit ${objective.name}`;
     line.classList.toggle("limited", limited);
-    const { clientWidth, clientHeight } = this.#plot.over;
-    line.style.setProperty("--reach", `${axis ? clientWidth : clientHeight}px`);
+    this.#move(line, axis, this.#plot.valToPos(most, axis ? "y" : "x"));
     const [least, all] = this.#ends(axis);
     for (const [name, value] of Object.entries({ valuemin: least, valuemax: all, valuenow: most })) line.setAttribute(`aria-${name}`, value);
     line.setAttribute("aria-valuetext", limited ? `at most ${amount(most, this.#objectives[axis])}` : "no limit");
   }
 
+  /** Puts a handle in the middle of its line, or as near as the chart has room. */
+  #move(line, axis, at) {
+    const { clientWidth, clientHeight } = this.#plot.over;
+    const [along, across] = axis ? [clientHeight, clientWidth] : [clientWidth, clientHeight];
+    const half = (axis ? line.offsetHeight : line.offsetWidth) / 2;
+    const middle = Math.max(half, Math.min(at, along - half));
+    line.style.translate = axis ? `0 ${middle - half}px` : `${middle - half}px 0`;
+    line.style.setProperty("--at", `${at - middle + half}px`);
+    line.style.setProperty("--reach", `${across}px`);
+  }
+
   #made(axis) {
-    const line = Object.assign(document.createElement("div"), { className: `budget ${axis ? "second" : "first"}`, tabIndex: 0, title: "Drag: at most so much" });
+    const line = Object.assign(document.createElement("div"), { className: `budget ${axis ? "second" : "first"}`, tabIndex: 0, title: "Drag it to set a limit" });
+    line.append(document.createElement("span"));
     line.setAttribute("role", "slider");
     line.setAttribute("aria-orientation", axis ? "vertical" : "horizontal");
-    line.addEventListener("pointerdown", (event) => line.setPointerCapture(event.pointerId));
+    line.addEventListener("pointerdown", (event) => this.#grasp(line, axis, event));
     line.addEventListener("pointermove", (event) => line.hasPointerCapture(event.pointerId) && this.#drag(axis, event));
     line.addEventListener("click", (event) => event.stopPropagation());
     line.addEventListener("keydown", (event) => this.#step(axis, event));
     return line;
   }
 
+  #grasp(line, axis, event) {
+    line.setPointerCapture(event.pointerId);
+    this.#grasped = this.#plot.valToPos(Number(line.getAttribute("aria-valuenow")), axis ? "y" : "x") - this.#placeOf(axis, event);
+  }
+
+  /** Moves a line as far as the pointer moved since it grasped the handle. */
   #drag(axis, event) {
+    this.#set(axis, this.#plot.posToVal(this.#placeOf(axis, event) + this.#grasped, axis ? "y" : "x"));
+  }
+
+  #placeOf(axis, { clientX, clientY }) {
     const box = this.#plot.over.getBoundingClientRect();
-    const place = axis ? event.clientY - box.top : event.clientX - box.left;
-    this.#set(axis, this.#plot.posToVal(place, axis ? "y" : "x"));
+    return axis ? clientY - box.top : clientX - box.left;
   }
 
   /** From tour to tour; Home is the tightest budget, End and Escape none. */

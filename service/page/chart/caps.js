@@ -1,7 +1,7 @@
 /** Limits on three or more objectives: a slider each, whose track shows what is left within the other limits. */
 
-import { length } from "../common/numbers.js";
-import { shortUnit, titled } from "../common/objectives.js";
+import { amount } from "../common/amounts.js";
+import { titled } from "../common/objectives.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
 
@@ -130,15 +130,14 @@ export class Caps {
       const share = (value) => `${(100 * (value - least)) / (most - least || 1)}%`;
       slider.style.setProperty("--from", share(left[0]));
       slider.style.setProperty("--to", share(left.at(-1)));
-      const amount = Number.isFinite(this.#limits[axis]) ? `at most ${this.#amount(axis, limit)}` : "no limit";
-      said.textContent = amount;
+      const atMost = Number.isFinite(this.#limits[axis]) ? `at most ${this.#amount(axis, limit)}` : "no limit";
+      said.textContent = atMost;
       const range = `${this.#amount(axis, left[0])} to ${this.#amount(axis, left.at(-1))} within the other limits`;
-      slider.setAttribute("aria-valuetext", `${amount}; ${range}`);
+      slider.setAttribute("aria-valuetext", `${atMost}; ${range}`);
     });
   }
 
   #amount(axis, value) {
-    const unit = shortUnit(this.#objectives[axis]);
-    return `${length(Number(value.toPrecision(4)))}${unit && ` ${unit}`}`;
+    return amount(value, this.#objectives[axis]);
   }
 }

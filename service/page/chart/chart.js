@@ -2,7 +2,8 @@
 
 import uPlot from "./uplot.js";
 import { colour, onSchemeChange } from "../common/colours.js";
-import { axisOf, figure } from "../common/amounts.js";
+import { figure } from "../common/amounts.js";
+import { axisOf } from "../common/axes.js";
 import { counted } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
 import { Budget } from "./budget.js";
@@ -11,6 +12,10 @@ import { drawnNearest } from "../result/tours.js";
 
 const FONT = "12px system-ui, sans-serif";
 const REACH = 40; // pixels within which a click selects a point
+const [TOP, RIGHT, ACROSS, UP, TITLE] = [28, 30, 24, 64, 18]; // pixels beside the plot: for the handles, the ticks and the titles
+const BELOW = 30; // pixels over and under the points, for the names of tours
+const BESIDE = 0.06; // of the range: room beside the points
+const WIDER = 1; // of the front's range: how far other points may lie beyond it and be seen
 
 export class FrontChart {
   #element;
@@ -23,6 +28,7 @@ export class FrontChart {
   #objectives = UNNAMED;
   #steps; // between the ticks of each axis, if any suit
   #said = [String, String]; // writes a tick of each axis
+  #ranges = [null, null]; // the least and the greatest length that is seen
 
   /**
    * @param {HTMLElement} names holds the names of both ends and the knee, over the chart
@@ -34,7 +40,8 @@ export class FrontChart {
     this.#element = element;
     this.#labels = new Labels(names, onSelect, onPreview);
     const hooks = { draw: [() => this.#chart && this.#place()] }; // the scales are known from then on
-    this.#chart = new uPlot({ ...options(element, (value, axis) => this.#said[axis](value)), hooks }, [[], [], []], element);
+    const told = { said: (value, axis, step) => this.#said[axis](value, step), range: (axis) => this.#ranges[axis] };
+    this.#chart = new uPlot({ ...options(element, told), hooks }, [[], [], []], element);
     this.#steps = this.#chart.axes.map(({ incrs }) => incrs);
     this.#budget = new Budget(this.#chart, onBudget);
     for (const name of ["pinned", "selected", "previewed"]) {
@@ -53,7 +60,7 @@ export class FrontChart {
 
   name(objectives) {
     this.#objectives = objectives;
-    this.#write(this.#front);
+    this.#write();
     this.#labels.show(this.#front, objectives);
     this.#budget.name(objectives);
     this.#place();
@@ -68,7 +75,8 @@ export class FrontChart {
   show(alone, improved, noun) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
-    this.#write([...alone, ...improved]);
+    this.#ranges = [0, 1].map((axis) => rangeOf(this.#front, alone, axis));
+    this.#write();
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#budget.show(this.#front);
     this.#element.classList.toggle("empty", !this.#front.length);
@@ -76,10 +84,15 @@ export class FrontChart {
     this.#place();
   }
 
-  /** Chooses how the axes of a chart of these points are written. */
-  #write(points) {
+  /** Whether all of these points are in view, where the front takes half of the chart or more. */
+  sees(points) {
+    return points.every((item) => this.#ranges.every((range, axis) => item.lengths[axis] <= range[1]));
+  }
+
+  /** Chooses how the axes are written. */
+  #write() {
     this.#objectives.forEach((objective, axis) => {
-      const { title, steps, said } = axisOf(objective, rangeOf(points, axis));
+      const { title, steps, said } = axisOf(objective);
       this.#said[axis] = said;
       Object.assign(this.#chart.axes[axis], { label: title, incrs: steps ? () => steps : this.#steps[axis] });
     });
@@ -128,6 +141,7 @@ export class FrontChart {
 
   #resize() {
     this.#chart.setSize(size(this.#element));
+    this.#chart.setData(this.#chart.data); // the names need as many pixels as before
   }
 }
 
@@ -135,9 +149,13 @@ const NONE = "No front yet: bring stops, then press Plan";
 
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
 
-function rangeOf(points, axis) {
-  const lengths = points.map((item) => item.lengths[axis]);
-  return points.length ? Math.max(...lengths) - Math.min(...lengths) : 0;
+/** The least and the greatest length of a front, and of other points that do not lie far beyond it; null of no front. */
+function rangeOf(front, others, axis) {
+  const lengths = front.map((item) => item.lengths[axis]);
+  if (!front.length) return null;
+  const [least, most] = [Math.min(...lengths), Math.max(...lengths)];
+  const near = others.map((item) => item.lengths[axis]).filter((value) => value <= most + WIDER * (most - least));
+  return [least, Math.max(most, ...near)];
 }
 
 const columns = (front) => [
@@ -145,21 +163,21 @@ const columns = (front) => [
   front.map((item) => item.lengths[1]),
 ];
 
-/** The chart's options; `said` returns a value of the first or second objective in words. */
-function options(element, said) {
+/** The chart's options; `said` returns a value of the first or second objective in words, `range` what is seen of it. */
+function options(element, { said, range }) {
   return {
     ...size(element),
     legend: { show: false },
     cursor: { show: false },
-    padding: [24, 28, 0, 0],
-    scales: { x: { time: false, range: roomy }, y: { range: roomy } },
-    axes: [axis(0, 28, apart(said), said), axis(1, 64, 40, said)],
+    padding: [TOP, RIGHT, 0, 0],
+    scales: { x: { time: false, range: () => roomy(range(0), BESIDE) }, y: { range: (chart) => roomy(range(1), roomUp(chart)) } },
+    axes: [axis(0, ACROSS, apart(said), said), axis(1, UP, 40, said)],
     series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],
   };
 }
 
 /** Pixels from one label of the first axis to the next, so that long ones do not touch. */
-const apart = (said) => (_chart, axis, _least, most) => 7 * Math.max(4, said(Math.trunc(most), axis).length) + 16;
+const apart = (said) => (_chart, axis, least, most) => 7 * Math.max(4, said(most, axis, (most - least) / 5).length) + 16;
 
 /** A staircase from each point to the next, around the area that the front dominates. */
 function line(name, width, points) {
@@ -177,19 +195,27 @@ function axis(at, room, space, said) {
     label: withUnit(UNNAMED[at]),
     size: room,
     space,
-    labelSize: 18,
+    labelSize: TITLE,
     font: FONT,
     labelFont: FONT,
     stroke: () => colour("quiet"),
     grid: { stroke: () => colour("line"), width: 1 },
     ticks: { show: false },
-    values: (_, ticks) => ticks.map((tick) => said(tick, at)),
+    values: (_chart, ticks, _axis, _space, step) => ticks.map((tick) => said(tick, at, step)),
   };
 }
 
-function roomy(_, least, most) {
-  if (least == null) return [0, 1];
-  const room = 0.06 * (most - least || Math.abs(most) || 1);
+/** The share of the second lengths' range that is as high as a name. */
+function roomUp({ height }) {
+  const plot = height - TOP - ACROSS - TITLE;
+  return BELOW / Math.max(plot - 2 * BELOW, BELOW);
+}
+
+/** A range with a share of it on either side; without a range, from 0 to 1. */
+function roomy(range, share) {
+  if (!range) return [0, 1];
+  const [least, most] = range;
+  const room = share * (most - least || Math.abs(most) || 1);
   return [least - room, most + room];
 }
 

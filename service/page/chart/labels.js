@@ -2,12 +2,10 @@
 
 import { wordsOf } from "../common/amounts.js";
 
-const APART = 48; // pixels between the knee and an end, under which their names would touch
 const BESIDE = 6; // pixels from a point to its name
 
 export class Labels {
   #element;
-  #places;
   #buttons;
   #indices = [];
 
@@ -37,26 +35,29 @@ export class Labels {
 
   /** Puts the names beside their points; `place` returns the pixels of a tour's point. */
   place(front, place) {
-    this.#places = this.#indices.map((index) => place(front[index].lengths));
-    this.#buttons.forEach((button, which) => {
-      button.hidden = !this.#places.length || (which === 1 && !this.#apart());
-      if (!button.hidden) this.#put(button, this.#places[which]);
-    });
+    const places = this.#indices.map((index) => place(front[index].lengths));
+    this.#buttons.forEach((button) => (button.hidden = !places.length));
+    if (!places.length) return;
+    const boxes = this.#buttons.map((button, which) => this.#boxOf(button, which, places[which]));
+    const [first, knee, last] = boxes;
+    this.#buttons[1].hidden = this.#isEnd || touch(knee, first) || touch(knee, last);
+    this.#buttons.forEach((button, which) => (button.style.translate = `${boxes[which].left}px ${boxes[which].top}px`));
   }
 
-  /** The knee's name is below its point, where no tour can be; the names of the ends are above. */
-  #put(button, [x, y]) {
-    const { offsetWidth: width, offsetHeight: height } = button;
-    const below = button.classList.contains("knee");
-    const left = below ? x - width : Math.min(x - BESIDE, this.#element.clientWidth - width);
-    button.style.translate = `${Math.max(0, left)}px ${below ? y + BESIDE : Math.max(0, y - height - BESIDE)}px`;
+  get #isEnd() {
+    const [first, knee, last] = this.#indices;
+    return knee === first || knee === last;
   }
 
-  #apart() {
-    const [first, knee, last] = this.#places;
-    return [first, last].every((end) => Math.hypot(end[0] - knee[0], end[1] - knee[1]) > APART);
+  /** The name of the first tour is above it, the others are below and to the left, where no tour of a front can be. */
+  #boxOf({ offsetWidth: width, offsetHeight: height }, which, [x, y]) {
+    const left = Math.max(0, which ? x - width : Math.min(x - BESIDE, this.#element.clientWidth - width));
+    const top = which ? y + BESIDE : Math.max(0, y - height - BESIDE);
+    return { left, top, right: left + width, bottom: top + height };
   }
 }
+
+const touch = (one, other) => one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
 
 /** The tour with the least sum of both lengths, each scaled to 0 to 1 over the front. */
 export function kneeOf(front) {

@@ -1,10 +1,10 @@
 /** The plane of two of three or more objectives: a dot for each tour, coloured by another objective. */
 
-import { length } from "../common/numbers.js";
+import { compared, figure } from "../common/amounts.js";
 import { titled, withUnit } from "../common/objectives.js";
 
 const SVG = "http://www.w3.org/2000/svg";
-const MARGIN = { left: 64, right: 16, top: 12, bottom: 40 };
+const MARGIN = { left: 64, right: 16, top: 28, bottom: 40 };
 const REACH = 40; // pixels within which a click selects a dot
 const SHADES = 5; // of the colour, from the least to the greatest
 const CHOICES = [["across", "Across"], ["up", "Up"], ["shade", "Colour"]];
@@ -104,7 +104,7 @@ export class Scatter {
     const [across, up] = this.#axes;
     const bottom = height - MARGIN.bottom;
     const line = made("path", { class: "axes", d: `M${MARGIN.left} ${MARGIN.top}V${bottom}H${width - MARGIN.right}` });
-    const [[left, right], [low, high]] = [across, up].map((axis) => this.#ends[axis].map((value) => length(Number(value.toPrecision(4)))));
+    const [[left, right], [low, high]] = [across, up].map((axis) => this.#ends[axis].map((value) => compared(value, this.#objectives[axis])));
     const said = (x, y, anchor, text) => Object.assign(made("text", { x, y, "text-anchor": anchor }), { textContent: text });
     return [
       line,
@@ -113,7 +113,7 @@ export class Scatter {
       said((MARGIN.left + width) / 2, bottom + 32, "middle", withUnit(this.#objectives[across])),
       said(MARGIN.left - 6, bottom, "end", low),
       said(MARGIN.left - 6, MARGIN.top + 10, "end", high),
-      said(MARGIN.left + 6, MARGIN.top + 10, "start", withUnit(this.#objectives[up])),
+      said(0, 12, "start", withUnit(this.#objectives[up])),
     ];
   }
 
@@ -149,7 +149,7 @@ export class Scatter {
   #described({ one, many }) {
     const count = this.#front.length;
     if (!count) return "No tours yet";
-    const ranges = this.#objectives.map(({ name }, axis) => `${name} from ${this.#ends[axis].map((value) => length(value)).join(" to ")}`);
+    const ranges = this.#objectives.map((objective, axis) => `${objective.name} from ${this.#ends[axis].map((value) => figure(value, objective)).join(" to ")}`);
     return `A front of ${count} ${count === 1 ? one : many}: ${ranges.join(", ")}`;
   }
 }

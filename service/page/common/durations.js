@@ -13,12 +13,15 @@ export function duration(seconds) {
   return whole < HOUR ? `${minutes} min` : parts(Math.floor(minutes / MINUTE), "h", minutes % MINUTE, "min");
 }
 
-/** The same for the ticks of an axis, to the minute, such as "45 min" or "1:30 h". */
-export function durationOnAxis(seconds) {
-  const minutes = Math.round(Math.abs(seconds) / MINUTE);
-  const sign = seconds < 0 && minutes ? "−" : "";
-  if (minutes < MINUTE) return `${sign}${minutes} min`;
-  return `${sign}${Math.floor(minutes / MINUTE)}:${String(minutes % MINUTE).padStart(2, "0")} h`;
+/** The same for the ticks of an axis that are a step apart, such as "45 min", "1:30 h" or "7:30 min". */
+export function durationOnAxis(seconds, step) {
+  const whole = Math.round(Math.abs(seconds));
+  const sign = seconds < 0 && whole ? "−" : "";
+  if (step < MINUTE && whole < MINUTE) return `${sign}${step < 1 ? Math.abs(seconds) : whole} s`;
+  const minutes = step < MINUTE ? Math.floor(whole / MINUTE) : Math.round(whole / MINUTE);
+  const said = minutes < MINUTE ? `${minutes}` : `${Math.floor(minutes / MINUTE)}:${two(minutes % MINUTE)}`;
+  return `${sign}${said}${step < MINUTE ? `:${two(whole % MINUTE)}` : ""} ${minutes < MINUTE ? "min" : "h"}`;
 }
 
+const two = (value) => String(value).padStart(2, "0");
 const parts = (large, unit, small, smaller) => `${large} ${unit}${small ? ` ${small} ${smaller}` : ""}`;

@@ -7,6 +7,16 @@ export function length(value) {
   return size && (size < 1e-3 || size >= 1e9) ? value.toPrecision(4) : LENGTH.format(value);
 }
 
+/** A value to three significant digits. */
+export const rounded = (value) => Number(value.toPrecision(3));
+
+/** A value on an axis, to as many digits as tell it from those a step away. */
+export function tick(value, step) {
+  const decimals = Math.max(0, 1 - Math.floor(Math.log10(step)));
+  if (decimals > 6 || Math.abs(value) >= 1e9) return length(value);
+  return value.toLocaleString("en", { maximumFractionDigits: decimals });
+}
+
 export const degrees = (angle) => `${angle.toFixed(1)}°`;
 export const share = (value) => `${(100 * value).toFixed(2)} %`;
 

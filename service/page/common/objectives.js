@@ -27,8 +27,8 @@ export const isCounted = ({ measure }) => measure === "vehicles";
 /** Whether this is the longest of a plan's routes: it is shorter or longer, where sums are less or more. */
 export const isLongest = ({ over, measure }) => over === "max" || measure === "longest";
 
-/** Whether this is a measure of plans that is a time in a known unit. */
-export const isTime = ({ measure, unit }) => TIMES.includes(measure) && SECONDS.has(unit);
+/** Whether this is a time in a known unit. */
+export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || TIMES.includes(measure));
 
 /** The unit, if it is short enough to stand beside a number. */
 export const shortUnit = ({ unit }) => (unit && unit.length < 10 ? unit : "");

@@ -1,13 +1,13 @@
 /** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, and its lengths. */
 
-import { figure } from "../common/amounts.js";
+import { compared } from "../common/amounts.js";
 import { withUnit } from "../common/objectives.js";
 import { stylesOf, swatch } from "./route_styles.js";
 import { visits } from "./routes_of_plan.js";
 
 /** Fills a table with the routes of a plan, and the plan itself in the last row. */
 export function showLegend(table, plan, movers, asked, objectives, names) {
-  const said = ({ lengths }) => lengths.map((value, axis) => figure(value, objectives[axis]));
+  const said = ({ lengths }) => lengths.map((value, axis) => compared(value, objectives[axis]));
   const styles = stylesOf(plan.routes, asked.robots);
   const counts = plan.routes.map((route) => visits(route, movers, asked));
   const rows = plan.routes.map((route, at) => {

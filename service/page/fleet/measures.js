@@ -1,6 +1,6 @@
 /** The measures of a plan, as rows of a table. */
 
-import { withUnit } from "../common/objectives.js";
+import { titled, withUnit } from "../common/objectives.js";
 import { clockUnit, unitOfRoutes } from "./units.js";
 
 const NAMES = {
@@ -18,11 +18,13 @@ const NAMES = {
 };
 
 /**
- * The measures of a plan that are not objectives, each `{ name, objective, value }`, whose `value`
+ * The measures of a plan that do not stand there as objectives, each `{ name, objective, value }`, whose `value`
  * takes a plan; none if it has none.
  */
-export function measuresOf({ measures = {} }, objectives, request) {
-  const shown = Object.keys(NAMES).filter((name) => name in measures && objectives.every(({ measure }) => measure !== name));
+export function measuresOf({ measures = {}, lengths }, objectives, request) {
+  const same = (each, axis, name) => titled(each) === NAMES[name] && lengths[axis] === measures[name];
+  const named = (name) => objectives.some((each, axis) => each.measure === name || same(each, axis, name));
+  const shown = Object.keys(NAMES).filter((name) => name in measures && !named(name));
   return shown.map((measure) => {
     const unit = unitsOf(objectives, request)[measure] ?? "";
     const objective = { name: NAMES[measure], unit, measure };

@@ -57,7 +57,7 @@ function step(from, to, axis, objectives, word) {
   const [before, after] = [from.lengths[axis], to.lengths[axis]];
   const by = Math.abs(after - before);
   if (isCounted(objective)) return `${Math.round(by)} ${word} ${Math.round(by) === 1 && name === "vehicles" ? "vehicle" : name}`;
-  const said = amount(by, objective, 3);
+  const said = amount(by, objective);
   if (isLongest(objective)) return objective.measure || before === 0 ? `a ${name} ${word} by ${said}` : `a ${name} ${percent((100 * by) / before)} ${word} (${said})`;
   if (objective.measure || before === 0) return `${said} ${word} ${name}`;
   return `${percent((100 * by) / before)} ${word} ${name}${shortUnit(objective) && ` (${said})`}`;

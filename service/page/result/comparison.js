@@ -1,6 +1,6 @@
 /** Compare the lengths of the selected tour, and the measures of a plan, with those of the pinned one. */
 
-import { change, figure } from "../common/amounts.js";
+import { change, compared } from "../common/amounts.js";
 import { withUnit } from "../common/objectives.js";
 
 /** Fills a table with the lengths, and with measures, each `{ name, objective, value }`, whose `value` takes a plan. */
@@ -8,7 +8,7 @@ export function compare(table, objectives, selected, pinned, measures = []) {
   const lengths = objectives.map((objective, axis) => ({ name: withUnit(objective), objective, value: (item) => item.lengths[axis] }));
   table.classList.toggle("alone", !pinned);
   const filled = ({ name, objective, value }) => {
-    const said = (item) => (item ? figure(value(item), objective) : "–");
+    const said = (item) => (item ? compared(value(item), objective) : "–");
     const beside = selected && pinned ? change(value(selected), value(pinned), objective) : "";
     return row(name, [said(selected), said(pinned), beside]);
   };

@@ -1,8 +1,7 @@
 /** One picture of what is on the screen, as SVG or PNG: the front, and the selected tour or plan on its maps. */
 
 import { colour } from "../common/colours.js";
-import { figure } from "../common/amounts.js";
-import { isCounted, withUnit } from "../common/objectives.js";
+import { axisOf, ticksOf } from "../common/axes.js";
 import { mapPanel } from "./picture_map.js";
 import { SIDE, dot, round, text } from "./picture_parts.js";
 
@@ -39,7 +38,7 @@ function chart(front, selected, objectives) {
   const places = front.map(place);
   // The plane of the first two of several objectives has no staircase: tours above it may be better under the others.
   const steps = objectives.length > 2 ? "" : places.map(([x, y], at) => (at ? `H${x}V${y}` : `M${x} ${y}`)).join("");
-  const axes = scales.map((scale, axis) => axisOf(scale, axis, objectives[axis])).join("");
+  const axes = scales.map((scale, axis) => drawnAxis(scale, axis, objectives[axis])).join("");
   const dots = places.map((at) => dot(at, 2.5, "improved")).join("");
   return `${axes}<path d="${steps}" fill="none" stroke="${colour("improved")}" stroke-width="1.5"/>${dots}${dot(place(selected), 6, "selected")}`;
 }
@@ -51,15 +50,13 @@ function scaleOf(values, axis) {
   return { least, most, at: (value) => round(from + ((value - least) / (most - least || 1)) * (to - from)) };
 }
 
-function axisOf({ least, most, at }, axis, objective) {
-  const even = Array.from({ length: TICKS + 1 }, (_, tick) => least + ((most - least) * tick) / TICKS);
-  const values = isCounted(objective) ? [...new Set(even.map(Math.round))] : even;
-  const title = withUnit(objective);
-  const said = (value) => figure(Number(value.toPrecision(4)), objective);
+function drawnAxis({ least, most, at }, axis, objective) {
+  const { title, said, ...suited } = axisOf(objective);
+  const { values, step } = ticksOf(suited, least, most, TICKS);
   if (axis) {
-    const ticks = values.map((value) => text(MARGIN.left - 8, at(value) + 4, said(value), { size: 11, anchor: "end" }));
+    const ticks = values.map((value) => text(MARGIN.left - 8, at(value) + 4, said(value, step), { size: 11, anchor: "end" }));
     return ticks.join("") + text(MARGIN.left, MARGIN.top - 18, title, { size: 12 });
   }
-  const ticks = values.map((value) => text(at(value), SIDE - MARGIN.bottom + 18, said(value), { size: 11, anchor: "middle" }));
+  const ticks = values.map((value) => text(at(value), SIDE - MARGIN.bottom + 18, said(value, step), { size: 11, anchor: "middle" }));
   return ticks.join("") + text(SIDE / 2, SIDE - 10, title, { size: 12, anchor: "middle" });
 }

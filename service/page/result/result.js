@@ -1,7 +1,7 @@
 /** Show a front: chart, slider, figures and maps, which select a tour together. */
 
 import { FrontChart } from "../chart/chart.js";
-import { figure, wordsOf } from "../common/amounts.js";
+import { compared, wordsOf } from "../common/amounts.js";
 import { choiceKept, choiceOf } from "./choice.js";
 import { placeIn } from "./chosen.js";
 import { compare } from "./comparison.js";
@@ -134,7 +134,7 @@ export class Result {
     // Until the search has found something, the best front so far is the network's.
     const improved = answer.front === alone?.front ? [] : answer.front;
     this.#chart.show(alone?.front ?? [], improved, this.#kind.noun);
-    this.#legend("alone", alone !== null);
+    this.#legend("alone", alone !== null && this.#chart.sees(alone.front));
     this.#legend("improved", improved.length > 0 && !this.#kept);
     this.#slider.show(answer.front, this.#kind.noun);
   }
@@ -276,7 +276,7 @@ export class Result {
     showTourFigures(element("tour-figures"), shown);
     element("choice").textContent = shown ? this.#said(shown) : "";
     for (const objective of [0, 1]) {
-      const said = shown ? figure(shown.lengths[objective], this.#objectives[objective]) : "";
+      const said = shown ? compared(shown.lengths[objective], this.#objectives[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
     }
     this.#order();

@@ -1,0 +1,141 @@
+"""The composition of the page: what is seen without scrolling, no holes, and no collisions."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_page,
+    wait_for_next_frame,
+    wait_until_planned,
+)
+
+EXAMPLES = [
+    "Helsinki deliveries",
+    "Helsinki, three costs",
+    "Helsinki, rush hour",
+    "City deliveries",
+    "Warehouse cleaning",
+    "Helsinki, six vans",
+    "Warehouse, three robots",
+]
+DESK, TABLET = (1440, 900), (1024, 768)  # windows: width and height in pixels
+FILLED = 0.85  # of the place of front, numbers and map: the share that cards cover
+DRAWN = (0.8, 0.4)  # of a map's sides: how far a tour reaches, along the longer and the shorter one
+AT_ONCE = "#choice, .front .chart, .slider, .caps, #plan, #status"  # seen without scrolling
+
+pytestmark = needs_chromium
+
+# Whatever is visible of these elements, as left, top, right and bottom in the page.
+BOXES = """selector => [...document.querySelectorAll(selector)]
+  .filter(each => each.checkVisibility())
+  .map(each => each.getBoundingClientRect())
+  .map(({ left, top, right, bottom }) => [left, top + scrollY, right, bottom + scrollY])"""
+# The share of the first screen's results that cards cover, as points every ten pixels see it.
+COVERED = """() => {
+  const boxes = [".front", ".numbers", ".maps"]
+    .map(name => document.querySelector(name).getBoundingClientRect());
+  const [left, top] = ["left", "top"].map(side => Math.min(...boxes.map(box => box[side])));
+  const [right, bottom] = ["right", "bottom"].map(side => Math.max(...boxes.map(box => box[side])));
+  let [all, covered] = [0, 0];
+  for (let x = left + 5; x < right; x += 10)
+    for (let y = top + 5; y < Math.min(bottom, innerHeight); y += 10) {
+      all += 1;
+      covered += Boolean(document.elementFromPoint(x, y)?.closest(".card, #handling"));
+    }
+  return covered / all;
+}"""
+# The sides of the box in which a canvas has colour, as shares of the map's.
+REACH = """canvas => {
+  const { width, height } = canvas;
+  const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+  let [left, top, right, bottom] = [width, height, 0, 0];
+  for (let at = 3; at < data.length; at += 4) {
+    if (!data[at]) continue;
+    const [x, y] = [((at - 3) / 4) % width, Math.floor((at - 3) / 4 / width)];
+    [left, top] = [Math.min(left, x), Math.min(top, y)];
+    [right, bottom] = [Math.max(right, x), Math.max(bottom, y)];
+  }
+  const map = canvas.closest(".map").getBoundingClientRect();
+  return [(right - left) / map.width, (bottom - top) / map.height];
+}"""
+# The names of tours on the chart below which the line of the front is drawn.
+CROSSED = """() => {
+  const canvas = document.querySelector("#front-chart canvas");
+  const [context, over] = [canvas.getContext("2d"), canvas.getBoundingClientRect()];
+  const hex = getComputedStyle(document.documentElement).getPropertyValue("--improved").trim();
+  const line = [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16));
+  const labels = [...document.querySelectorAll(".label")].filter(each => each.checkVisibility());
+  return labels.filter(each => {
+    const { left, top, width, height } = each.getBoundingClientRect();
+    const { data } = context.getImageData(left - over.left, top - over.top, width, height);
+    return Array.from({ length: data.length / 4 }, (_, at) => data.slice(4 * at, 4 * at + 4))
+      .some(pixel => pixel[3] === 255 && line.every((part, at) => pixel[at] === part));
+  }).map(each => each.textContent);
+}"""
+
+
+@pytest.fixture(scope="module", params=EXAMPLES)
+def example(request: pytest.FixtureRequest, browser: Browser, released: str) -> Iterator[Page]:
+    """The page with an example planned, for tests that only look."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        if request.param != EXAMPLES[0]:
+            page.get_by_label("Example").select_option(request.param)
+            expect(page.locator("#status")).not_to_contain_text("Done")
+            wait_until_planned(page)
+        page.evaluate("document.fonts.ready")
+        yield page
+
+
+def test_a_newcomer_sees_the_choice_and_the_plan_button_at_once(example: Page) -> None:
+    for (width, height), selector in ((DESK, f"{AT_ONCE}, .map"), (TABLET, AT_ONCE)):
+        resize(example, width, height)
+        boxes = example.evaluate(BOXES, selector)
+        assert len(boxes) >= 5
+        assert max(bottom for *_, bottom in boxes) <= height
+    assert example.evaluate(BOXES, ".map")[0][1] < height  # the map begins there
+
+
+def test_cards_leave_no_hole(example: Page) -> None:
+    resize(example, *DESK)
+    assert example.evaluate(COVERED) >= FILLED
+
+
+def test_tours_fill_their_maps(example: Page) -> None:
+    drawn = example.locator(".map canvas:is(.selected, .routes):visible")
+    for width, height in (DESK, TABLET):
+        resize(example, width, height)
+        for canvas in drawn.all():
+            shorter, longer = sorted(canvas.evaluate(REACH))
+            assert longer >= DRAWN[0]
+            assert shorter >= DRAWN[1]
+
+
+def test_nothing_on_the_chart_collides(example: Page) -> None:
+    for width, height in (DESK, TABLET, (375, 812)):
+        resize(example, width, height)
+        boxes = example.evaluate(BOXES, ".label, .budget")
+        assert not [(a, b) for at, a in enumerate(boxes) for b in boxes[:at] if overlap(a, b)]
+        assert example.evaluate(CROSSED) == []
+
+
+def test_nothing_sticks_out_of_its_card(example: Page) -> None:
+    wider = "cards => cards.filter(card => card.scrollWidth > card.clientWidth).length"
+    for width, height in (DESK, TABLET, (375, 812)):
+        resize(example, width, height)
+        assert example.locator(".card").evaluate_all(wider) == 0
+
+
+def resize(page: Page, width: int, height: int) -> None:
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate("scrollTo(0, 0)")
+    wait_for_next_frame(page)
+    wait_for_next_frame(page)
+
+
+def overlap(one: Any, other: Any) -> bool:
+    return all(one[side] < other[side + 2] and other[side] < one[side + 2] for side in (0, 1))
