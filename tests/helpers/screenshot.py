@@ -81,7 +81,7 @@ def write_picture(browser: Browser, address: str) -> None:
     with open_page(browser, address) as page:
         compare_two_tours(page)
         expect(page.locator("#plane-1 canvas.streets")).to_be_visible()
-        picture(page).quantize(COLOURS).save(PICTURE, optimize=True)
+        picture(page, whole=False).quantize(COLOURS).save(PICTURE, optimize=True)
 
 
 def write_states(browser: Browser, address: str, folder: Path) -> None:
@@ -93,10 +93,10 @@ def write_states(browser: Browser, address: str, folder: Path) -> None:
                 picture(page).save(folder / f"{name}-{width}-{scheme}.png")
 
 
-def picture(page: Page) -> Image.Image:
-    """Return the whole page as it looks in the next frame."""
+def picture(page: Page, whole: bool = True) -> Image.Image:
+    """Return the page as it looks in the next frame: the whole, or what is seen at first."""
     wait_for_next_frame(page)
-    return Image.open(BytesIO(page.screenshot(full_page=True))).convert("RGB")
+    return Image.open(BytesIO(page.screenshot(full_page=whole))).convert("RGB")
 
 
 def main() -> None:

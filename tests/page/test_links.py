@@ -148,7 +148,7 @@ def on_screen(page: Page) -> list[str]:
     page.locator("#order").evaluate("details => details.open = true")
     wait_for_next_frame(page)
     lengths = page.locator("#comparison tbody:not(.measures) td:nth-child(2)").all_inner_texts()
-    listed = "#order li" if page.locator("#order").is_visible() else "#fleet-stops li"
+    listed = "#order li" if page.locator("#order").is_visible() else "#fleet-stops > li"
     return [*lengths, *page.locator(listed).all_text_contents()]
 
 

@@ -75,7 +75,7 @@ export class FrontChart {
   show(alone, improved, noun) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
-    this.#ranges = [0, 1].map((axis) => rangeOf(this.#front, alone, axis));
+    this.#ranges = rangesOf(this.#front, alone);
     this.#write();
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#budget.show(this.#front);
@@ -149,13 +149,17 @@ const NONE = "No front yet: bring stops, then press Plan";
 
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
 
-/** The least and the greatest length of a front, and of other points that do not lie far beyond it; null of no front. */
-function rangeOf(front, others, axis) {
-  const lengths = front.map((item) => item.lengths[axis]);
-  if (!front.length) return null;
-  const [least, most] = [Math.min(...lengths), Math.max(...lengths)];
-  const near = others.map((item) => item.lengths[axis]).filter((value) => value <= most + WIDER * (most - least));
-  return [least, Math.max(most, ...near)];
+/** The least and the greatest of both lengths of a front, and of other points that do not lie far beyond it; null of no front. */
+function rangesOf(front, others) {
+  if (!front.length) return [null, null];
+  const ranges = [0, 1].map((axis) => endsOf(front, axis));
+  const near = others.filter(({ lengths }) => ranges.every(([least, most], axis) => lengths[axis] <= most + WIDER * (most - least)));
+  return [0, 1].map((axis) => endsOf([...front, ...near], axis));
+}
+
+function endsOf(points, axis) {
+  const lengths = points.map((item) => item.lengths[axis]);
+  return [Math.min(...lengths), Math.max(...lengths)];
 }
 
 const columns = (front) => [

@@ -2,6 +2,7 @@
 
 import { amount } from "../common/amounts.js";
 import { UNNAMED } from "../common/objectives.js";
+import { visitItem } from "../common/visit_item.js";
 import { nameOf } from "../inputs/names.js";
 import { ChosenVisit } from "./chosen_visit.js";
 import { knownFleet } from "./known_fleet.js";
@@ -79,9 +80,9 @@ export class PlanView {
     this.#lanes.show(lanes, clock);
     this.#chosen.show(plan, lanes, clock);
     showSigns(lanes);
-    const visit = (stop, time) => (clock ? `${stop} ${clock.said(time)}` : stop);
-    const said = (route) => route[this.#movers.through].map((stop, at) => visit(nameOfStop(stop), route.arrivals?.[at])).join(" → ");
-    list("fleet-stops", routes.map((route, at) => `${names[at]}: ${said(route)}`));
+    const visit = (stop, time) => visitItem(nameOfStop(stop), clock?.said(time));
+    const visits = (route) => route[this.#movers.through].map((stop, at) => visit(stop, route.arrivals?.[at]));
+    element("fleet-stops").replaceChildren(...routes.map((route, at) => listed(names[at], visits(route))));
   }
 
   /** The clock of these lanes, which also says how long something takes. */
@@ -109,6 +110,14 @@ function showSigns(lanes) {
 
 /** Stops of a fleet have ids; places of robots are numbered from 1. */
 const nameOfStop = (stop) => (typeof stop === "number" ? nameOf(null, stop) : stop);
+
+/** The numbered stops of one vehicle or robot, below its name. */
+function listed(name, visits) {
+  const [item, stops] = [document.createElement("li"), document.createElement("ol")];
+  stops.append(...visits);
+  item.append(Object.assign(document.createElement("b"), { textContent: name }), stops);
+  return item;
+}
 
 function list(id, texts) {
   element(id).replaceChildren(...texts.map((textContent) => Object.assign(document.createElement("li"), { textContent })));

@@ -15,6 +15,7 @@ import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
 import { hoursOf } from "./hours.js";
 import { counted, length } from "../common/numbers.js";
+import { visitItem } from "../common/visit_item.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
 import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
@@ -306,7 +307,7 @@ export class Result {
     element("order").hidden = Boolean(this.#kind.movers && this.#selected);
     if (!element("order").open || element("order").hidden) return;
     const hours = hoursOf(this.#selected);
-    element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visit(name, hours[at])));
+    element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visitItem(name, hours[at])));
   }
 }
 
@@ -317,13 +318,6 @@ function unreached(uncovered) {
   const described = regions.reduce((sum, region) => sum + region.cells, 0);
   const where = `${described < cells ? "more than " : ""}${counted(regions.length, "region", "regions")}`;
   return `${length(square_metres)} m² in ${where} cannot be reached.`;
-}
-
-/** An item of the order of stops: its name, and when the tour is there if that is known. */
-function visit(name, hour) {
-  const item = Object.assign(document.createElement("li"), { textContent: name });
-  if (hour) item.append(" ", Object.assign(document.createElement("time"), { textContent: hour }));
-  return item;
 }
 
 /** The names of the stops of a tour, in its order. */
