@@ -132,6 +132,8 @@ class Front:
         reached: Over a day, all lengths of each tour up to each of its places, and to its end,
             shape (k, n + 1, m).
         clock: Over a day, the index of the objective that is seconds.
+        leg_paths: Over a map with detours, the number of the path that each leg of each tour takes,
+            shape (k, legs).
     """
 
     tours: NDArray[np.integer]
@@ -150,6 +152,7 @@ class Front:
     departures: Array | None = None
     reached: Array | None = None
     clock: int = 0
+    leg_paths: NDArray[np.int8] | None = None
 
     @property
     def times(self) -> Array | None:

@@ -224,6 +224,10 @@ class Area:
             help="The distance of places in metres: one is visited in each square of this width."
         ),
     ] = None
+    detours: Annotated[
+        bool | None,
+        Option("--detours", help="Paths between places may give up metres for cost."),
+    ] = None
     unknown: Annotated[
         str | None,
         Option(help="free: the robot may go through unknown cells.", show_default="blocked"),

@@ -68,13 +68,14 @@ class Coverage:
         cost_layers: Costs on the grid, shape (layers, rows, columns), one to three layers. Each is
             an objective.
         layers: The caller's names of the layers; empty if there are none.
+        detours: Whether a path between two places may give up metres for what the layers cost.
         second_coordinates: Coordinates of the places in a plane, shape (n, 2).
         robots: The robots that share the places. Each has a start of its own, which replaces
             `start`, `ends` and both poses. Empty if one robot visits all places.
 
     Raises:
         InvalidCoverage: A size is not positive, a cost layer does not fit the grid or has an
-            invalid cost, or both or neither of two alternatives are given.
+            invalid cost, both or neither of two alternatives are given, or detours without layers.
     """
 
     blocked: Mask
@@ -90,6 +91,7 @@ class Coverage:
     second_matrix: Array | None = None
     cost_layers: Array | None = None
     layers: tuple[Objective, ...] = ()
+    detours: bool = False
     second_coordinates: Array | None = None
     robots: tuple[Robot, ...] = ()
 
@@ -162,6 +164,9 @@ class Coverage:
     def _check_layers(self) -> None:
         layers = self.cost_layers
         if layers is None:
+            if self.detours:
+                demand = "must be left out without a cost_layer: other costs are not of paths"
+                raise InvalidCoverage(("detours", demand))
             return
         for index, layer in enumerate(layers):
             part = f"cost_layers/{index}/layer" if self.layers else "cost_layer"

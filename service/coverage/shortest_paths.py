@@ -67,11 +67,17 @@ def cell_numbers(grid: Grid, cells: Cells) -> Cells:
     return (cells[:, 0] + 1) * grid.width + cells[:, 1] + 1
 
 
-def trace_path(grid: Grid, tree: PathTree, cell: int) -> Cells:
-    """Return the rows and columns, shape (m, 2), of the path from the source to a cell."""
+def trace_path(grid: Grid, predecessor: NDArray[np.int32], cell: int) -> Cells:
+    """Return the rows and columns, shape (m, 2), of the path from the source to a cell.
+
+    Args:
+        grid: The grid.
+        predecessor: The cell before each on its path, shape (cells,), as PathTree has it.
+        cell: The number of the cell.
+    """
     path = [cell]
-    while tree.predecessor[path[-1]] >= 0:
-        path.append(int(tree.predecessor[path[-1]]))
+    while predecessor[path[-1]] >= 0:
+        path.append(int(predecessor[path[-1]]))
     return np.stack(np.divmod(np.array(path[::-1]), grid.width), axis=1) - 1
 
 
@@ -104,7 +110,9 @@ def pairwise_paths(
         lengths[i, i + 1 :] = lengths[i + 1 :, i] = tree.length[cells[i + 1 :]]
         costs[0, i, i + 1 :] = costs[0, i + 1 :, i] = tree.cost[cells[i + 1 :]]
         for row, layer in zip(costs[1:], further, strict=True):
-            row[i, i + 1 :] = row[i + 1 :, i] = path_costs(grid, tree, layer, cells[i + 1 :])
+            row[i, i + 1 :] = row[i + 1 :, i] = path_costs(
+                grid, tree.predecessor, layer, cells[i + 1 :]
+            )
         if steps is not None:
             steps[i, i + 1 :] = steps[i + 1 :, i] = count_steps(tree, cells[i + 1 :])
     return lengths, costs
@@ -159,7 +167,7 @@ def find_paths(grid: Grid, source: int, targets: Cells) -> PathTree:
 
 
 @allocating
-def path_costs(grid: Grid, tree: PathTree, layer: Array, cells: Cells) -> Array:
+def path_costs(grid: Grid, predecessor: NDArray[np.int32], layer: Array, cells: Cells) -> Array:
     """Return the cost by a layer, shape (cells of the grid,), of the path to each of n cells.
 
     Shape (n,); 0 if there is no path. O(all steps of the paths).
@@ -167,12 +175,24 @@ def path_costs(grid: Grid, tree: PathTree, layer: Array, cells: Cells) -> Array:
     costs = np.zeros(len(cells))
     for k in range(len(cells)):
         cell = cells[k]
-        before = tree.predecessor[cell]
+        before = predecessor[cell]
         while before >= 0:
             beside = abs(cell - before) in (1, grid.width)
             costs[k] += (1.0 if beside else DIAGONAL) * (layer[cell] + layer[before]) / 2
-            cell, before = before, tree.predecessor[before]
+            cell, before = before, predecessor[before]
     return costs
+
+
+@allocating
+def path_steps(predecessor: NDArray[np.int32], cells: Cells) -> NDArray[np.int32]:
+    """Return the number of steps of the path to each of n cells, shape (n,). O(all steps)."""
+    steps = np.zeros(len(cells), np.int32)
+    for k in range(len(cells)):
+        before = predecessor[cells[k]]
+        while before >= 0:
+            steps[k] += 1
+            before = predecessor[before]
+    return steps
 
 
 @inlined

@@ -4,34 +4,30 @@ The first objective is the length in metres of the shortest path between two pla
 clear of obstacles. The others come from the caller: a matrix, distances between points in a plane,
 or one to three cost layers on the grid. In a cost layer, a step costs its length in metres times
 the mean of the layer at both its ends. Of equally short paths the cheapest by the first layer is
-taken.
+taken. With detours, legs may take other paths, which give up metres for cost.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from itertools import chain, groupby, pairwise
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, groupby, islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
+from service.coverage.detours import find_detours
 from service.coverage.frame import Array, Cells, CoveragePath, MapFrame
 from service.coverage.grid import Uncovered, free_cells, uncovered
+from service.coverage.leg_paths import Indices, LegPaths, Legs, Numbers
 from service.coverage.places import find_places
 from service.coverage.shortest_paths import (
-    Grid,
     cell_numbers,
-    find_paths,
     framed_layer,
     make_grid,
     pairwise_paths,
-    trace_path,
 )
 from service.errors import Cancelled, InvalidCoverage, Refusal
 from service.instance import Instance, RouteEnds
 from service.objectives import Objective
-
-Indices = NDArray[np.integer]
 
 METRES = Objective("distance", "m")
 
@@ -43,9 +39,7 @@ class Survey:
     Attributes:
         places: Rows and columns, shape (n, 2).
         start: The place at which reported tours begin.
-        instance: The costs between places.
-        grid: The free cells and the cost layer.
-        steps: The numbers of steps of the paths between places, shape (n, n).
+        legs: The paths between places.
         frame: The frame of the map, if it is known.
         to_visit: As in Places.
         uncovered: The cells to which no path leads.
@@ -55,31 +49,40 @@ class Survey:
 
     places: Cells
     start: int
-    instance: Instance
-    grid: Grid
-    steps: NDArray[np.int32]
+    legs: LegPaths
     frame: MapFrame | None
     to_visit: int
     uncovered: Uncovered
     robots: tuple[RouteEnds, ...] = ()
     objectives: tuple[Objective, ...] = ()
 
+    @property
+    def instance(self) -> Instance:
+        """The costs between places, by the shortest paths."""
+        return self.legs.instance
+
     def paths(
         self,
         tours: Indices,
         most_cells: int | None = None,
         stop: Callable[[], bool] = lambda: False,
+        leg_paths: Numbers | None = None,
     ) -> Iterator[CoveragePath]:
-        """Yield the path of each tour, shape (k, n). See `paths_of_plans`."""
+        """Yield the path of each tour, shape (k, n). See `paths_of_plans`.
+
+        `leg_paths` are the numbers of the paths that the legs of each tour take, as in Front.
+        """
         returns = tours[:, :1] if self.instance.closed else tours[:, :0]
         ways = np.hstack((tours, returns))
-        return self.paths_of_plans([[way] for way in ways], most_cells, stop)
+        taken = None if leg_paths is None else list(leg_paths)
+        return self.paths_of_plans([[way] for way in ways], most_cells, stop, taken)
 
     def paths_of_plans(
         self,
         plans: Sequence[Sequence[Indices]],
         most_cells: int | None = None,
         stop: Callable[[], bool] = lambda: False,
+        taken: Sequence[Numbers] | None = None,
     ) -> Iterator[CoveragePath]:
         """Yield the path of each way of each plan.
 
@@ -88,13 +91,19 @@ class Survey:
             most_cells: The most cells of all paths together; None sets no limit. It is checked
                 before any path is made.
             stop: Called for each leg and each path; True ends the tracing.
+            taken: For each way, plan after plan, the numbers of the paths that its legs take,
+                shape (m - 1,). By default all take the shortest.
 
         Raises:
             Refusal: The paths have more cells than that.
             Cancelled: `stop` returned True.
         """
-        legs_of = [[(way[:-1], way[1:]) for way in plan] for plan in plans]
-        cells = [sum(1 + int(self.steps[leg].sum()) for leg in legs) for legs in legs_of]
+        ways = list(chain.from_iterable(plans))
+        if taken is None:
+            taken = [np.zeros(len(way) - 1, np.int8) for way in ways]
+        legs_of = [(way[:-1], way[1:]) for way in ways]
+        steps = map(self.legs.count_steps, legs_of, taken)
+        cells = [sum(1 + int(each.sum()) for each in islice(steps, len(plan))) for plan in plans]
         if most_cells is not None and sum(cells) > most_cells:
             fitting = most_cells // max(cells)
             advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
@@ -105,34 +114,32 @@ class Survey:
                 actual=sum(cells),
                 advice=advice,
             )
-        legs = [np.sort(np.stack(each, axis=1)) for each in chain.from_iterable(legs_of)]
-        steps = np.unique(np.concatenate([np.empty((0, 2), np.int64), *legs]), axis=0)
-        paths = dict(self._paths_of_steps(steps.tolist(), stop))
-        assert self.instance.matrices is not None
-        for way in chain.from_iterable(plans):
+        paths = dict(self._paths_of_legs(zip(legs_of, taken, strict=True), stop))
+        for (begin, end), numbers, way in zip(legs_of, taken, ways, strict=True):
             _check(stop)
-            parts = [paths[step][1:] for step in pairwise(way.tolist())]
-            metres = float(self.instance.matrices[0, way[:-1], way[1:]].sum())
+            legs = zip(numbers.tolist(), begin.tolist(), end.tolist(), strict=True)
+            parts = [paths[leg][1:] for leg in legs]
+            metres = float(self.legs.lengths((begin, end), numbers)[:, 0].sum())
             along = np.concatenate([self.places[way[:1]], *parts])
             visits = np.stack((np.cumsum([0, *map(len, parts)]), way), axis=1)
             yield CoveragePath(along, metres, visits, self.frame)
 
-    def _paths_of_steps(
-        self, steps: list[tuple[int, int]], stop: Callable[[], bool]
-    ) -> Iterator[tuple[tuple[int, int], Cells]]:
-        """Yield each step between two places with its cells, in both directions.
+    def _paths_of_legs(
+        self, legs: Iterable[tuple[Legs, Numbers]], stop: Callable[[], bool]
+    ) -> Iterator[tuple[tuple[int, int, int], Cells]]:
+        """Yield each leg with its cells, in both directions: the path's number and two places.
 
-        Steps are sorted, so that those from one place need one search.
+        Legs are sorted, so that those from one place by one path need one search.
         """
-        numbers = cell_numbers(self.grid, self.places)
-        for origin, group in groupby(steps, key=lambda step: step[0]):
-            ends = [end for _, end in group]
-            tree = find_paths(self.grid, numbers[origin], numbers[ends])
-            for end in ends:
+        rows = [np.column_stack((numbers, np.sort(each, axis=0).T)) for each, numbers in legs]
+        different = np.unique(np.concatenate([np.empty((0, 3), np.int64), *rows]), axis=0)
+        for (number, origin), group in groupby(different.tolist(), key=lambda leg: leg[:2]):
+            ends = [end for *_, end in group]
+            traced = self.legs.trace(number, origin, ends)
+            for end, path in zip(ends, traced, strict=True):
                 _check(stop)
-                path = trace_path(self.grid, tree, numbers[end])
-                yield (origin, end), path
-                yield (end, origin), path[::-1]
+                yield (number, origin, end), path
+                yield (number, end, origin), path[::-1]
 
 
 def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Survey:
@@ -163,17 +170,22 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     _check(stop)
     steps = np.zeros((len(cells), len(cells)), np.int32)
     further = [framed_layer(layer) for layer in layers[1:]]
-    lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), stop, steps, further)
+    numbers = cell_numbers(grid, cells)
+    lengths, costs = pairwise_paths(grid, numbers, stop, steps, further)
     _check(stop)
     metres = coverage.cell_size * lengths
     matrices = np.concatenate((metres[np.newaxis], _other_objectives(coverage, metres, costs)))
     instance = Instance(matrices=matrices, **places.ends._asdict())
+    legs = LegPaths(grid=grid, cells=numbers, instance=instance, steps=steps)
+    if coverage.detours:
+        of_metres = np.ones(len(grid.free))
+        by_objective = coverage.cell_size * np.stack((of_metres, grid.layer, *further))
+        legs = replace(legs, further=find_detours(legs, by_objective, stop))
+        _check(stop)
     return Survey(
         cells,
         places.start,
-        instance,
-        grid,
-        steps,
+        legs,
         coverage.frame,
         places.to_visit,
         uncovered(free, cells[0], coverage.cell_size),

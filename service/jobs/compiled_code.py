@@ -22,7 +22,7 @@ from numba import config
 from numba.core.event import Event, Listener, install_listener
 
 from service import jit, own_code
-from service.coverage import shortest_paths
+from service.coverage import detours
 from service.jobs.parts import Compiling, Part
 from service.kinds import fleet
 from service.over_the_day import warm_up as over_the_day
@@ -51,7 +51,7 @@ class _Work(NamedTuple):
 _WORK: Mapping[Part, _Work] = {
     Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 30),
     Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 30),
-    Part.MAPS: _Work(shortest_paths.warm_up, (shortest_paths.warm_up,), 3),
+    Part.MAPS: _Work(detours.warm_up, (detours.warm_up,), 3),
     Part.CHANGES: _Work(insertion.warm_up, (insertion.warm_up,), 1),
     Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 10),
     Part.SEVERAL_OBJECTIVES: _Work(several.warm_up, (several.warm_up,), 25),

@@ -12,8 +12,9 @@ from service.coverage.coverage import Coverage
 from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled, InvalidCoverage, NoTour
-from service.front import Front, reporting
+from service.front import Front, PlanOptions, ReportOf, reporting
 from service.instance import Instance, step_lengths, tour_steps
+from service.kinds.detours import plan_with_detours
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
@@ -62,7 +63,8 @@ def run_coverage(
     planned_at = time.perf_counter()
     paths = None
     if task.paths:
-        paths = unless_cancelled(surveyed.paths(front.tours, limits.path_cells, stop))
+        traced = surveyed.paths(front.tours, limits.path_cells, stop, front.leg_paths)
+        paths = unless_cancelled(traced)
     timings = {
         "survey": 1000 * (surveyed_at - began),
         **front.timings,
@@ -73,7 +75,7 @@ def run_coverage(
         tools.actors[task.actor].info.identity,
         surveyed,
         paths,
-        arrivals=_arrivals(task, surveyed.instance, front),
+        arrivals=_arrivals_on_map(task, surveyed, front),
     )
 
 
@@ -109,15 +111,27 @@ def _plan(
         return encode_front(front, actor.info.identity, surveyed, labels=task.labels)
 
     report_encoded = reporting(report, encoded)
-    planned = partial(plan, actor, instance)
-    if tools.search is not None:
-        planned = partial(plan, actor, instance, search=tools.search)
-    if task.earlier is not None:
-        planned = partial(replan, actor, instance, task.earlier)
+
+    def planned(
+        instance: Instance,
+        options: PlanOptions,
+        stop: Callable[[], bool],
+        report: ReportOf[Front],
+    ) -> Front:
+        if task.earlier is not None:
+            return replan(actor, instance, task.earlier, options, stop, report)
+        if tools.search is not None:
+            return plan(actor, instance, options, stop, report, tools.search)
+        return plan(actor, instance, options, stop, report)
+
     try:
         if day is not None:
-            return plan_over_the_day(planned, day, options, task.earlier, stop, report_encoded)
-        return planned(options, stop, report_encoded)
+            under_means = partial(planned, instance)
+            return plan_over_the_day(under_means, day, options, task.earlier, stop, report_encoded)
+        if surveyed is not None and surveyed.legs.further is not None:
+            legs = surveyed.legs
+            return plan_with_detours(planned, legs, options, task.earlier, stop, report_encoded)
+        return planned(instance, options, stop, report_encoded)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
 
@@ -127,7 +141,10 @@ def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> NDArray
 
     Shape (k, n + 1, m) for closed tours, with the return, and (k, n, m) for open routes. O(k n).
     """
-    steps = step_lengths(instance, *tour_steps(instance, tours))
+    return _cumulated(step_lengths(instance, *tour_steps(instance, tours)))
+
+
+def _cumulated(steps: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.pad(steps.cumsum(axis=1), ((0, 0), (1, 0), (0, 0)))
 
 
@@ -136,6 +153,14 @@ def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float6
     if task.arrivals and front.reached is not None:
         return front.reached if front.closed else front.reached[:, :-1]
     return cumulated_lengths(instance, front.tours) if task.arrivals else None
+
+
+def _arrivals_on_map(task: Task, surveyed: Survey, front: Front) -> NDArray[np.float64] | None:
+    """Return the same on a map, where each leg takes its own path."""
+    if not task.arrivals:
+        return None
+    legs = tour_steps(surveyed.instance, front.tours)
+    return _cumulated(surveyed.legs.lengths(legs, front.leg_paths))
 
 
 def unless_cancelled(paths: Iterable[CoveragePath]) -> list[CoveragePath] | None:

@@ -44,6 +44,7 @@ OF_ONE_ROBOT = (
     "start_pose",
     "end_pose",
     "cost_layers",
+    "detours",
     "initial_tours",
     "preferences",
     "repairs",
@@ -124,6 +125,11 @@ class CoverageRequest(MapRequest):
         default_factory=list,
         description="or: one to three such layers, each an objective with a name",
     )
+    detours: bool = Field(
+        default=False,
+        description="with cost layers: whether a path between two places may give up metres for"
+        " cost; by default it is a shortest one",
+    )
     second_coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
     )
@@ -167,6 +173,7 @@ class CoverageRequest(MapRequest):
             second_matrix=self.second_matrix if self.second_matrix.size else None,
             cost_layers=self._layers(),
             layers=tuple(item.objective for item in self.cost_layers),
+            detours=self.detours,
             second_coordinates=np.array(points, dtype=np.float64) if points else None,
             robots=tuple(robot.robot(self.closed) for robot in self.robots),
         )

@@ -6,7 +6,7 @@ from functools import partial
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
-from service.errors import Refusal
+from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Instance, Kind, least_lengths
 from service.objectives import OBJECTIVES
@@ -131,9 +131,12 @@ def coverage_task(
     """Return the task of a checked request about one robot on a map.
 
     Raises:
-        Refusal: No actor serves it, or the actor cannot do what it asks for.
+        Refusal: No actor serves it, the actor cannot do what it asks for, or it asks for a bound
+            of tours with detours.
     """
     m = coverage.objectives
+    if coverage.detours and request.bound:
+        raise invalid("bound", "must be left out with detours: it would be of the shortest paths")
     name = choose_actor(actors, "matrices", request.requested_actor, m)
     return Task(
         subject=coverage,

@@ -89,13 +89,13 @@ def test_a_path_is_made_of_steps_and_is_as_long_and_as_costly_as_it_says(
     table = {(tail, head): rest for tail, head, *rest in steps(free, layer)}
     for number, cell in zip(numbers, cells, strict=True):
         if np.isfinite(tree.length[number]):
-            path = trace_path(grid, tree, number)
+            path = trace_path(grid, tree.predecessor, number)
             assert (path[0].tolist(), path[-1].tolist()) == (cells[0].tolist(), cell.tolist())
             taken = [table[step] for step in pairwise((path @ [free.shape[1], 1]).tolist())]
             length, cost = np.sum(taken, axis=0) if taken else (0, 0)
             np.testing.assert_allclose(tree.length[number], length)
             np.testing.assert_allclose(tree.cost[number], cost)
-            by_layer = path_costs(grid, tree, framed_layer(layer), numbers)
+            by_layer = path_costs(grid, tree.predecessor, framed_layer(layer), numbers)
             np.testing.assert_allclose(by_layer[numbers == number], cost)
 
 

@@ -1,0 +1,134 @@
+"""Find paths between the places of a map that give up metres for cost.
+
+Each is cheapest under a weighted sum of metres and the cost layers. In a tour that is best under
+some weights, each leg takes the path that is best under the same weights. So a few paths of each
+leg, by weights spread between the objectives, serve all tours.
+
+Only places that are near each other get further paths: tours seldom join others.
+"""
+
+from collections.abc import Callable
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.coverage import shortest_paths
+from service.coverage.cheapest_paths import find_cheapest_paths
+from service.coverage.frame import Array, Cells
+from service.coverage.leg_paths import FurtherPaths, LegPaths
+from service.coverage.shortest_paths import cell_numbers, make_grid, path_costs, path_steps
+from service.preferences import lattice
+
+_NEAREST = 12  # places to which each has further paths
+# The parts into which the lattices of weights divide 1, by the number of objectives: of the paths,
+# and of the weights under which legs choose among these.
+_PARTS = {2: 4, 3: 3, 4: 2}
+_PARTS_OF_CHOICES = {2: 32, 3: 5, 4: 3}
+_LEAST_SHARE = 1e-4  # of a weight that is 0: of equally cheap paths the shortest is taken
+_TINY = float(np.finfo(float).tiny)
+
+
+def find_detours(
+    shortest: LegPaths, layers: Array, stop: Callable[[], bool]
+) -> FurtherPaths | None:
+    """Return the paths between near places that are cheapest under weights between objectives.
+
+    None if no two places are given, or `stop` returned True.
+
+    Args:
+        shortest: The shortest paths.
+        layers: What a cell's length costs by each objective, shape (m, cells of the grid,). Those
+            of metres, the first, are the same everywhere.
+        stop: Called before each search.
+    """
+    instance = shortest.instance
+    assert instance.matrices is not None
+    pairs = _near_pairs(instance.matrices[0])
+    if not len(pairs):
+        return None
+    first, second = pairs.T
+    lengths = [instance.matrices[:, first, second]]
+    steps = [shortest.steps[first, second]]
+    weights: list[Array] = []
+
+    def add(each: Array) -> None:
+        weights.append(each)
+        found = _cheapest(shortest, each @ layers, layers, pairs, stop)
+        lengths.append(found[0])
+        steps.append(found[1])
+
+    corners = np.eye(len(layers))
+    means = layers[:, shortest.grid.free].mean(axis=1)
+    for corner in corners[1:]:
+        add(np.maximum(corner, _LEAST_SHARE) / np.maximum(means, _TINY))
+    totals = np.array(lengths).sum(axis=2)
+    ranges = np.maximum(np.ptp(totals, axis=0), _LEAST_SHARE * totals.max(axis=0))
+    for shares in _lattice(len(layers), _PARTS):
+        if shares.max() < 1 - _LEAST_SHARE:
+            add(shares / np.maximum(ranges, _TINY))
+    if stop():
+        return None
+    found = np.array(lengths)
+    many = _lattice(len(layers), _PARTS_OF_CHOICES) / np.maximum(ranges, _TINY)
+    own = np.concatenate((corners[:1], weights))
+    return FurtherPaths(
+        pairs=pairs,
+        lengths=found,
+        steps=np.array(steps),
+        layers=np.array(weights) @ layers,
+        choices=_choices(found, np.concatenate((own, many))),
+    )
+
+
+def warm_up() -> None:
+    """Compile the searches for paths, or load them from the cache of an earlier process."""
+    shortest_paths.warm_up()
+    grid = make_grid(np.ones((1, 2), np.bool_))
+    cells = cell_numbers(grid, np.array([[0, 0], [0, 1]]))
+    path_steps(find_cheapest_paths(grid, grid.layer, int(cells[0]), cells), cells)
+
+
+def _near_pairs(metres: Array) -> Cells:
+    """Return each place with its nearest ones, shape (p, 2), each pair once, ascending."""
+    nearest = np.argsort(metres, axis=1, kind="stable")[:, : _NEAREST + 1]
+    pairs = np.stack((np.repeat(np.arange(len(metres)), nearest.shape[1]), nearest.ravel()), axis=1)
+    pairs = np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1)
+    return np.unique(pairs, axis=0)
+
+
+def _cheapest(
+    shortest: LegPaths, weighted: Array, layers: Array, pairs: Cells, stop: Callable[[], bool]
+) -> tuple[Array, NDArray[np.int32]]:
+    """Return lengths, shape (m, p), and steps, shape (p,), of the cheapest paths of pairs.
+
+    Args:
+        shortest: The shortest paths.
+        weighted: The layer under which paths are cheapest, shape (cells of the grid,).
+        layers: The layer of each objective.
+        pairs: Places, shape (p, 2), in ascending order.
+        stop: Called before each search; once it returns True, the rest is left out.
+    """
+    grid, cells = shortest.grid, shortest.cells
+    lengths, steps = np.zeros((len(layers), len(pairs))), np.zeros(len(pairs), np.int32)
+    for origin, group in groupby(range(len(pairs)), key=lambda pair: pairs[pair, 0]):
+        if stop():
+            break
+        own = list(group)
+        ends = cells[pairs[own, 1]]
+        before = find_cheapest_paths(grid, weighted, int(cells[origin]), ends)
+        steps[own] = path_steps(before, ends)
+        for row, layer in zip(lengths, layers, strict=True):
+            row[own] = path_costs(grid, before, layer, ends)
+    return lengths, steps
+
+
+def _lattice(objectives: int, parts: dict[int, int]) -> Array:
+    """Return the weights of a lattice, shape (k, m), none of them 0."""
+    return np.maximum(lattice(objectives, parts[objectives]), _LEAST_SHARE)
+
+
+def _choices(lengths: Array, weights: Array) -> NDArray[np.int8]:
+    """Return the path of each pair that is best under each of the weights, shape (w, p)."""
+    best = [np.tensordot(row, lengths, (0, 1)).argmin(axis=0) for row in weights]
+    return np.array(best, np.int8)
