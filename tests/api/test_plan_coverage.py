@@ -158,7 +158,7 @@ def test_places_are_laid_out_by_spacing(client: httpx.Client) -> None:
 def test_one_place_is_a_front_of_one_tour(client: httpx.Client) -> None:
     task = changed(places=PLACES[:1], second_coordinates=[[1, 2]], paths=True)
     [item] = client.post("/coverage", json=task).json()["front"]
-    assert item["path"] == {"cells": [[0, 0]], "metres": 0}
+    assert item["path"] == {"cells": [[0, 0]], "metres": 0, "visits": [[0, 0], [0, 0]]}
 
 
 # Tasks that are well-formed and cannot be covered, which a worker finds out.

@@ -24,6 +24,7 @@ _NAMES = (
     "coverage",
     "curves",
     "day",
+    "detours",
     "fleet",
     "fronts",
     "growth",

@@ -212,6 +212,7 @@ class CoverageRequest(PlanRequest, total=False):
     second_matrix: Costs
     cost_layer: ArrayLike
     cost_layers: Sequence[LayerRequest]
+    detours: bool
     second_coordinates: ArrayLike
     paths: bool
 
