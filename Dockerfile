@@ -8,7 +8,7 @@ COPY service ./service
 COPY models ./models
 COPY export ./export
 RUN python -m venv /opt/paretour \
-    && /opt/paretour/bin/pip install --no-cache-dir -c service/deploy/constraints.txt '.[cluster,tracing]' \
+    && /opt/paretour/bin/pip install --no-cache-dir -c service/deploy/constraints.txt '.[cluster,mcp,tracing]' \
     && mkdir /var/lib/paretour /var/cache/paretour
 # Compile the search into the package: on x86-64, for processors of any name. Outside the source,
 # where the installed package would be shadowed.

@@ -1,8 +1,9 @@
 """`python -m tests.deploy.container`: build the image, and run it as an operator would.
 
 Builds the Dockerfile with Podman, which needs no daemon. The container runs read-only, as the user
-of the image, with no capabilities, within 2 GiB. It plans a front, a fleet and a coverage, and is
-started again. Prints the size of the image, what it is made of, and the seconds until it is ready.
+of the image, with no capabilities, within 2 GiB. It plans a front, a fleet and a coverage, lists
+the tools of agents, and is started again. Prints the size of the image, what it is made of, and the
+seconds until it is ready.
 
 Where no registry of images can be reached, `--debian URL` makes the base image with debootstrap
 from a mirror of Debian. `--mount PATH` shows the build a file or folder of this machine, such as
@@ -52,6 +53,7 @@ def main() -> None:
     with container(options) as name:
         measured["ready, s"] = ready()
         measured["points"] = {path: points(path) for path in PLANS}
+        measured["tools of agents"] = tools()
         began = time.monotonic()
         podman("restart", name)
         measured["ready again, s"] = ready(began)
@@ -100,7 +102,8 @@ def largest(options: Sequence[str]) -> dict[str, int]:
 def container(options: Sequence[str]) -> Iterator[str]:
     """Run the image until the block ends, and yield the container's name."""
     name = f"{IMAGE}-tried"
-    variables = [f"--env=PARETOUR_PORT={PORT}", "--env=PARETOUR_HOST=127.0.0.1"]
+    settings = (f"PARETOUR_PORT={PORT}", "PARETOUR_HOST=127.0.0.1", "PARETOUR_MCP=1")
+    variables = [f"--env={setting}" for setting in settings]
     podman(*options, "-d", f"--name={name}", *HARDENED, *variables, IMAGE)
     try:
         yield name
@@ -132,6 +135,14 @@ def points(path: str) -> int:
     answer = httpx.post(f"{URL}{path}", json=request, timeout=60).raise_for_status()
     found: int = answer.json()["points"]
     return found
+
+
+def tools(url: str = URL) -> list[str]:
+    """Return the names of the tools that a service gives to agents."""
+    message = {"jsonrpc": "2.0", "id": 1, "method": "tools/list"}
+    accepted = {"Accept": "application/json, text/event-stream"}
+    answer = httpx.post(f"{url}/mcp", json=message, headers=accepted).raise_for_status()
+    return [tool["name"] for tool in answer.json()["result"]["tools"]]
 
 
 if __name__ == "__main__":

@@ -21,8 +21,7 @@ ASKED = [
     Requirement(text)
     for texts in (
         PROJECT["dependencies"],
-        PROJECT["optional-dependencies"]["cluster"],
-        PROJECT["optional-dependencies"]["tracing"],
+        *(PROJECT["optional-dependencies"][extra] for extra in ("cluster", "mcp", "tracing")),
     )
     for text in texts
 ]
@@ -36,7 +35,7 @@ def requirements_of(name: str, extras: frozenset[str]) -> Iterator[Requirement]:
 
 
 def installed() -> set[str]:
-    """Return the distributions that `.[cluster,tracing]` installs, by their canonical names."""
+    """Return the distributions that `.[cluster,mcp,tracing]` installs, by their canonical names."""
     found: set[tuple[str, frozenset[str]]] = set()
     outstanding = list(ASKED)
     while outstanding:

@@ -73,7 +73,7 @@ def test_the_volume_of_fronts_belongs_to_the_user() -> None:
 
 def test_nothing_of_the_factory_is_installed() -> None:
     [install] = [argument for name, argument in INSTRUCTIONS if "pip install" in argument]
-    assert " '.[cluster,tracing]' " in install
+    assert " '.[cluster,mcp,tracing]' " in install
 
 
 def test_versions_are_those_of_the_constraints() -> None:
