@@ -121,6 +121,8 @@ def test_nothing_on_the_chart_collides(example: Page) -> None:
         boxes = example.evaluate(BOXES, ".label, .budget")
         assert not [(a, b) for at, a in enumerate(boxes) for b in boxes[:at] if overlap(a, b)]
         assert example.evaluate(CROSSED) == []
+        for axis, *_ in example.evaluate(BOXES, "#front-chart .u-over"):
+            assert all(left >= axis for left, *_ in example.evaluate(BOXES, ".label"))
 
 
 def test_nothing_sticks_out_of_its_card(example: Page) -> None:

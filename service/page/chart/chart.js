@@ -118,10 +118,11 @@ export class FrontChart {
     this.#budget?.place();
     for (const name of Object.keys(this.#markers)) this.#placeMarker(name);
     const { offsetLeft, offsetTop } = this.#chart.over;
-    this.#labels.place(this.#front, (lengths) => {
+    const place = (lengths) => {
       const [x, y] = this.#position(lengths);
       return [x + offsetLeft, y + offsetTop];
-    });
+    };
+    this.#labels.place(this.#front, place, offsetLeft);
   }
 
   #position([first, second]) {

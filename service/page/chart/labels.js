@@ -33,12 +33,12 @@ export class Labels {
     this.#buttons.forEach((button, which) => (button.textContent = said[which]));
   }
 
-  /** Puts the names beside their points; `place` returns the pixels of a tour's point. */
-  place(front, place) {
+  /** Puts the names beside their points; `place` returns the pixels of a tour's point, `axis` are those of the plot's left side. */
+  place(front, place, axis) {
     const places = this.#indices.map((index) => place(front[index].lengths));
     this.#buttons.forEach((button) => (button.hidden = !places.length));
     if (!places.length) return;
-    const boxes = this.#buttons.map((button, which) => this.#boxOf(button, which, places[which]));
+    const boxes = this.#buttons.map((button, which) => this.#boxOf(button, which, places[which], axis));
     const [first, knee, last] = boxes;
     this.#buttons[1].hidden = this.#isEnd || touch(knee, first) || touch(knee, last);
     this.#buttons.forEach((button, which) => (button.style.translate = `${boxes[which].left}px ${boxes[which].top}px`));
@@ -49,10 +49,14 @@ export class Labels {
     return knee === first || knee === last;
   }
 
-  /** The name of the first tour is above it, the others are below and to the left, where no tour of a front can be. */
-  #boxOf({ offsetWidth: width, offsetHeight: height }, which, [x, y]) {
-    const left = Math.max(0, which ? x - width : Math.min(x - BESIDE, this.#element.clientWidth - width));
-    const top = which ? y + BESIDE : Math.max(0, y - height - BESIDE);
+  /**
+   * The name of the first tour is above it, the others are below and to the left, where no tour of a front can be; or
+   * where that is beyond the axis, above and to the right, where the front has no line.
+   */
+  #boxOf({ offsetWidth: width, offsetHeight: height }, which, [x, y], axis) {
+    const below = which > 0 && x - width >= axis;
+    const left = below ? x - width : Math.min(which ? x + BESIDE : x - BESIDE, this.#element.clientWidth - width);
+    const top = below ? y + BESIDE : Math.max(0, y - height - BESIDE);
     return { left, top, right: left + width, bottom: top + height };
   }
 }
