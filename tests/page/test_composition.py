@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from tests.helpers.accessibility import load_axe, violations
 from tests.helpers.browsing import (
     needs_chromium,
     open_page,
@@ -130,6 +131,13 @@ def test_nothing_sticks_out_of_its_card(example: Page) -> None:
     for width, height in (DESK, TABLET, (375, 812)):
         resize(example, width, height)
         assert example.locator(".card").evaluate_all(wider) == 0
+
+
+def test_axe_finds_nothing_on_any_example(example: Page) -> None:
+    load_axe(example)
+    for width, height in (DESK, (375, 812)):
+        resize(example, width, height)
+        assert violations(example) == []
 
 
 def resize(page: Page, width: int, height: int) -> None:
