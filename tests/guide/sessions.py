@@ -72,10 +72,11 @@ def _run(block: Block, folder: Path, reached: str) -> list[str]:
     if block.language != "sh":
         return []
     commands = [line for line in split_commands(block.text) if line.startswith(RUN)]
-    return [_printed(line.replace(REACHED, reached), folder) for line in commands]
+    return [printed_by(line.replace(REACHED, reached), folder) for line in commands]
 
 
-def _printed(command: str, folder: Path) -> str:
+def printed_by(command: str, folder: Path) -> str:
+    """Run a command of a page in a folder, and return what it printed; fail if it fails."""
     if command.startswith("paretour "):
         return _printed_by_paretour(command, folder)
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
