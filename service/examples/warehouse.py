@@ -16,11 +16,12 @@ CROSS_AISLES = ((11.25, 8.0), (21.5, 2.0))
 
 
 def cleaning() -> dict[str, Any]:
-    """Return the request: the map, places 3 m apart, and a cost layer of people."""
+    """Return the request: the map, places 3 m apart, a cost layer of people, and ways round it."""
     return {
         "cell_size": CELL,
         "robot_radius": 0.6,
         "spacing": 3.0,
+        "detours": True,
         "paths": True,
         "time_limit": 1.0,
         "seed": 1,

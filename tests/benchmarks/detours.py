@@ -77,7 +77,9 @@ def office(n: int, seed: int) -> dict[str, Any]:
 def compared(task: dict[str, Any]) -> dict[str, Any]:
     """Both fronts of a task: hypervolumes in their box, least costs, widths and seconds."""
     options = {**task, "paths": True, "time_limit": SECONDS, "seed": 1}
-    fronts = [paretour.plan_coverage(**options, detours=detours) for detours in (False, True)]
+    fronts = [
+        paretour.plan_coverage(**{**options, "detours": detours}) for detours in (False, True)
+    ]
     for front in fronts:
         _check(front, task)
     points = [front.lengths for front in fronts]

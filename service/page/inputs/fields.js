@@ -7,6 +7,7 @@ const FIELDS = [
   { name: "cell_size", label: "Metres a cell", where: "coverage", plans: true },
   { name: "robot_radius", label: "Robot’s radius, m", where: "coverage", plans: true },
   { name: "spacing", label: "Places apart, m", where: "coverage", plans: true },
+  { name: "detours", label: "Longer paths where they cost less", where: "coverage", box: true },
   { name: "time_limit", label: "Seconds of planning", value: "3", plans: true },
   { name: "size", label: "Tours", value: "100", plans: true },
   { name: "start", label: "Start", value: "1", stop: true },
@@ -22,6 +23,7 @@ const OFFERED = 1000; // the most names in a list that a browser opens without d
 export class Fields {
   #form;
   #coverage;
+  #layered = false; // whether the map has layers of costs, which paths may heed
   #plans = false; // whether the request is for plans
   #ids = null; // the ids of the stops, if they have them
   #brought = {}; // the settings that the request before named
@@ -42,7 +44,8 @@ export class Fields {
     const given = texts.filter(([, text]) => text).map(([name, text]) => [name, this.#value(name, text)]);
     if (this.#plans) return Object.fromEntries(given);
     const bound = this.#form.bound.checked ? { bound: true } : {};
-    return { ...Object.fromEntries(given), ...bound, ...this.#ends(given.map(([name]) => name)) };
+    const detours = this.#layered && this.#form.detours.checked ? { detours: true } : {};
+    return { ...Object.fromEntries(given), ...bound, ...detours, ...this.#ends(given.map(([name]) => name)) };
   }
 
   /** Takes the names of stops, and offers them in the fields. */
@@ -67,6 +70,7 @@ export class Fields {
   take(request, { onGrid, movers }) {
     const rest = { ...request };
     this.#coverage.hidden = !onGrid;
+    this.#layered = onGrid && Boolean(request.cost_layer || request.cost_layers);
     this.#show(Boolean(movers));
     this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
     if (!this.#plans) this.#takeRoute(rest);
@@ -96,6 +100,7 @@ export class Fields {
   #show(plans) {
     this.#plans = plans;
     for (const field of FIELDS) this.#form[field.name].parentElement.hidden = plans && !field.plans;
+    this.#form.detours.parentElement.hidden = plans || !this.#layered;
     this.#form.querySelector('label[for="size"]').textContent = plans ? "Plans" : "Tours";
   }
 
@@ -104,14 +109,15 @@ export class Fields {
     return (plans || !this.#plans) && (where !== "coverage" || !this.#coverage.hidden);
   }
 
-  /** Takes the bound and the ends, each an index, an id, or missing; a null start may be anywhere. */
+  /** Takes the bound, the detours and the ends, each an index, an id, or missing; a null start may be anywhere. */
   #takeRoute(rest) {
     this.#form.open.checked = rest.closed === false;
     this.#form.bound.checked = rest.bound === true;
+    this.#form.detours.checked = rest.detours === true;
     const shown = (stop) => (typeof stop === "number" ? nameOf(this.#ids, stop) : (stop ?? ""));
     this.#form.start.value = rest.start === null ? "" : shown(rest.start ?? 0);
     this.#form.end.value = shown(rest.end);
-    for (const name of ["closed", "bound", "start", "end"]) delete rest[name];
+    for (const name of ["closed", "bound", "detours", "start", "end"]) delete rest[name];
   }
 }
 
