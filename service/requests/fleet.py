@@ -10,7 +10,6 @@ from service.errors import invalid
 from service.fleet.fleet import LAYERS
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType
-from service.objectives import OBJECTIVES
 from service.requests.fields import (
     GEOMETRY,
     Geometry,
@@ -123,12 +122,13 @@ class FleetRequest(SearchFields):
     def _layers(self) -> tuple[list[int], tuple[int, ...]]:
         """Return the objectives that bring costs, and which of these costs each objective is of.
 
-        Of three objectives two may have the same costs. Of a measure the costs do not matter.
+        Where three objectives have costs, two may have the same. Of a measure they do not matter.
 
         Raises:
             Refusal: An objective has both costs and a measure, or there are too many costs.
         """
-        shared = len(self.objectives) > OBJECTIVES
+        # Objectives that share costs also share the clock, so only those that must do.
+        shared = sum(item.of_plan is None for item in self.objectives) > LAYERS
         costs: list[int] = []
         layers: list[int] = []
         for index, item in enumerate(self.objectives):

@@ -196,3 +196,17 @@ def test_a_bound_that_cannot_be_met_is_refused_where_it_stands(
     assert response.status_code == 422
     pointers = [error["pointer"] for error in response.json()["errors"]]
     assert any(each.startswith(str(pointer)) for each in pointers), response.text
+
+
+@pytest.mark.parametrize("further", [[], [{"name": "vans", "measure": "vehicles"}]])
+def test_an_objective_beside_the_clock_counts_no_service(
+    client: httpx.Client, further: list[dict[str, Any]]
+) -> None:
+    costs = {"from": "great_circle", "speed": 30, "unit": "s"}
+    objectives = [{**costs, "name": "driving"}, {**costs, "name": "longest", "over": "max"}]
+    asked = request(objectives=[*objectives, *further], clock="longest")
+    answer = client.post("/fleet", json=asked).json()
+    for plan in answer["front"]:
+        assert plan["lengths"][0] == pytest.approx(plan["measures"]["driving"])
+        assert plan["lengths"][1] == pytest.approx(plan["measures"]["longest"])
+        assert plan["measures"]["service"] > 0
