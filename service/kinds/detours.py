@@ -1,4 +1,4 @@
-"""plan_with_detours(...): plan a front over a map on which paths give up metres for cost.
+"""Plan a front over a map on which paths give up metres for cost.
 
 A front is planned for each weight between the objectives by which all legs choose their paths, with
 an equal share of the time that is left. Then the legs of each tour choose again, by many weights.
@@ -33,32 +33,16 @@ _LEAST_SECONDS = 1e-3  # for all searches
 _BY_WEIGHT: tuple[Termination | None, ...] = ("cancelled", "time_limit", "converged", None)
 
 
-def plan_with_detours(
-    planned: PlanOf,
-    legs: LegPaths,
-    options: PlanOptions,
-    earlier: EarlierTours | None = None,
-    stop: Callable[[], bool] = lambda: False,
-    report: ReportOf[Front] = lambda *_: None,
-) -> Front:
-    """Return the best front found within the time limit, with the path that each leg takes.
+class PlanWithDetours:
+    """The planning of one front.
 
     Args:
-        planned: Plans the front of an instance.
         legs: The paths between the places.
         options: The options of the front and the search.
         earlier: What is left of the tours of the front that is replanned, if one is.
         stop: As in plan(...).
         report: As in plan(...).
-
-    Raises:
-        Cancelled, NoTour, Refusal: As in plan(...) and replan(...).
     """
-    return _Planning(legs, options, earlier, stop, report).run(planned)
-
-
-class _Planning:
-    """The planning of one front."""
 
     def __init__(
         self,
@@ -81,7 +65,14 @@ class _Planning:
         self._hypervolume = 0.0
 
     def run(self, planned: PlanOf) -> Front:
-        """Return the front."""
+        """Return the best front found within the time limit, with the path that each leg takes.
+
+        Args:
+            planned: Plans the front of an instance.
+
+        Raises:
+            Cancelled, NoTour, Refusal: As in plan(...) and replan(...).
+        """
         fronts: list[Front] = []
         for instance in self._legs.instances():
             if fronts and self._stop():

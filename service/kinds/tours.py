@@ -14,7 +14,7 @@ from service.coverage.survey import Survey, survey
 from service.errors import Cancelled, InvalidCoverage, NoTour
 from service.front import Front, PlanOptions, ReportOf, reporting
 from service.instance import Instance, step_lengths, tour_steps
-from service.kinds.detours import plan_with_detours
+from service.kinds.detours import PlanWithDetours
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
@@ -130,7 +130,8 @@ def _plan(
             return plan_over_the_day(under_means, day, options, task.earlier, stop, report_encoded)
         if surveyed is not None and surveyed.legs.further is not None:
             legs = surveyed.legs
-            return plan_with_detours(planned, legs, options, task.earlier, stop, report_encoded)
+            planning = PlanWithDetours(legs, options, task.earlier, stop, report_encoded)
+            return planning.run(planned)
         return planned(instance, options, stop, report_encoded)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
