@@ -20,7 +20,10 @@ from service.coverage.leg_paths import FurtherPaths, LegPaths
 from service.coverage.shortest_paths import cell_numbers, make_grid, path_costs, path_steps
 from service.preferences import lattice
 
-_NEAREST = 12  # places to which each has further paths
+# Places to which each has further paths: the most, and the fewest, on a large map. All searches
+# together visit each cell a few times for each of these, however many places there are.
+_NEAREST, _FEWEST = 12, 5
+_MOST_VISITED = 2**22  # cells of the map times places near each
 # The parts into which the lattices of weights divide 1, by the number of objectives: of the paths,
 # and of the weights under which legs choose among these.
 _PARTS = {2: 4, 3: 3, 4: 2}
@@ -44,7 +47,9 @@ def find_detours(
     """
     instance = shortest.instance
     assert instance.matrices is not None
-    pairs = _near_pairs(instance.matrices[0])
+    visited = int(shortest.grid.free.sum())
+    nearest = int(np.clip(_MOST_VISITED // visited, _FEWEST, _NEAREST))
+    pairs = _near_pairs(instance.matrices[0], nearest)
     if not len(pairs):
         return None
     first, second = pairs.T
@@ -89,9 +94,9 @@ def warm_up() -> None:
     path_steps(find_cheapest_paths(grid, grid.layer, int(cells[0]), cells), cells)
 
 
-def _near_pairs(metres: Array) -> Cells:
-    """Return each place with its nearest ones, shape (p, 2), each pair once, ascending."""
-    nearest = np.argsort(metres, axis=1, kind="stable")[:, : _NEAREST + 1]
+def _near_pairs(metres: Array, count: int) -> Cells:
+    """Return each place with this many near ones, shape (p, 2), each pair once, ascending."""
+    nearest = np.argsort(metres, axis=1, kind="stable")[:, : count + 1]
     pairs = np.stack((np.repeat(np.arange(len(metres)), nearest.shape[1]), nearest.ravel()), axis=1)
     pairs = np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1)
     return np.unique(pairs, axis=0)
