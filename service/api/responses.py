@@ -307,6 +307,11 @@ class FileAnswer(BaseModel):
         description="for two EUC_2D files: x and y of each city in both planes. The matrices in the"
         " request are the rounded distances",
     )
+    unknown_cells: list[list[int]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of a map with unknown cells, to draw them: rows of 0, and 1 where it is"
+        " unknown. Whether the robot may go there is in the request's grid",
+    )
     name: str
 
 

@@ -17,7 +17,7 @@ from service.files.reading import (
     reading_of_several,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
-from service.files.stop_tables import Part, part_of, reading_of
+from service.files.stop_tables import Part, numbers_of, part_of, reading_of
 from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
@@ -63,15 +63,22 @@ def read_files(
 def _read_all(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
     files = [source.file for source in sources]
     if any(file.is_picture or file.is_yaml for file in files):
-        from service.files.maps import read_map  # here because it is slow to load
-
-        return read_map(sources)
+        return _read_map(sources)
     if len(sources) == 1:
         return _read(sources[0], wanted)
     if not OBJECTIVES <= len(sources) <= MOST_OBJECTIVES:
         demand = f"there must be one file, or one for each of two to {MOST_OBJECTIVES} objectives"
         raise UnreadableFile(f"{demand}, got {len(files)}")
     return _read_several(sources, wanted, unrounded)
+
+
+def _read_map(sources: Sequence[Source]) -> Reading:
+    """Return the request for a map, in a picture or more, a map.yaml and tables of costs."""
+    from service.files.maps import read_map  # here because it is slow to load
+
+    maps = [each for each in sources if each.file.is_picture or each.file.is_yaml]
+    tables = [each for each in sources if each not in maps]
+    return read_map(maps, [(each, numbers_of(each, _table(each))) for each in tables])
 
 
 def _read_several(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
@@ -114,10 +121,14 @@ def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
         UnreadableFile: The file is not a table; the message names it.
     """
     source = Source(file, bounds)
+    return source, _table(source)
+
+
+def _table(source: Source) -> Table:
     content = _content(source)
     if not isinstance(content, Table):
         raise source.refusal("must be a table, in CSV or XLSX")
-    return source, content
+    return content
 
 
 def _content(source: Source) -> Table | TsplibFile | str:

@@ -105,6 +105,7 @@ class Reading:
     columns: tuple[Column, ...] = ()
     choices: Mapping[str, Sequence[str]] = field(default_factory=dict)
     planes: list[list[float]] | None = None  # rows of x, y, x, y, if distances are to be rounded
+    unknown_cells: list[list[int]] | None = None  # of a map: rows of 0, and 1 where it is unknown
 
     @property
     def document(self) -> Mapping[str, Any]:
@@ -114,7 +115,8 @@ class Reading:
         notes = [asdict(note) for note in self.notes]
         members = {"kind": self.kind, "request": self.request, "notes": notes}
         planes = {} if self.planes is None else {"planes": self.planes}
-        return {**members, **columns, **planes, "name": self.name}
+        unknown = {} if self.unknown_cells is None else {"unknown_cells": self.unknown_cells}
+        return {**members, **columns, **planes, **unknown, "name": self.name}
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Read files that came over HTTP, within the limits of a service, as JSON."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from pydantic_core import to_json
@@ -71,8 +71,7 @@ def read_upload(upload: Upload, limits: Limits, actors: Mapping[str, ActorInfo])
     try:
         reading = read_files(files, bounds_of(limits), wanted=None)
         if reading.kind == "coverage":  # a client that shows the map needs a grid
-            request = with_grid(reading.name, reading.request, limits.cells)
-            reading = replace(reading, request=request)
+            reading = with_grid(reading, limits.cells)
     except FileTooLarge as error:
         raise Refusal("file-too-large", detail=str(error)) from None
     except UnreadableFile as error:

@@ -192,3 +192,21 @@ def test_other_bodies_are_refused(address: str) -> None:
     assert (answer.status_code, answer.json()["code"]) == (415, "not-files")
     answer = httpx.post(f"{address}/files", files=[("map", ("a.csv", b"1"))])
     assert (answer.status_code, answer.json()["code"]) == (422, "invalid-parts")
+
+
+def test_a_map_says_which_cells_are_unknown_and_takes_pictures_of_costs(address: str) -> None:
+    said = b"image: office.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\n"
+    said += b"occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    office = b"P2 4 2 255  254 254 254 205  254 254 0 205\n"
+    dust = b"P2 4 2 255  255 0 51 255  255 255 255 255\n"
+    files = (("dust.pgm", dust), ("office.yaml", said), ("office.pgm", office))
+    answer = sent(address, *files).json()
+    request = answer["request"]
+    assert request["grid"] == [[0, 0, 0, 1], [0, 0, 1, 1]]
+    assert answer["unknown_cells"] == [[0, 0, 0, 1], [0, 0, 0, 1]]
+    layer = [[0, 1, 0.8, 0], [0, 0, 0, 0]]
+    assert request["cost_layers"] == [{"name": "dust", "layer": layer}]
+    planned = httpx.post(f"{address}/coverage", json={**request, "spacing": 0.5}, timeout=60)
+    assert planned.json()["objectives"][1]["name"] == "dust"
+    known = sent(address, ("known.pgm", b"P2 2 1 255  254 0\n")).json()
+    assert "unknown_cells" not in known

@@ -223,6 +223,18 @@ OTHERS = {
     "map.yaml map.pgm": Becomes(
         "coverage", members={"grid": [[0, 1, 1]], "cell_size": 0.05, "origin": [-1, -2, 0]}
     ),
+    "map.yaml map.pgm people-on-map.csv": Becomes(
+        "coverage",
+        members={
+            "grid": [[0, 1, 1]],
+            "cost_layers": [{"name": "people-on-map", "layer": [[0.5, 2, 1]]}],
+        },
+    ),
+    "german-costs-of-map.csv map.pgm": Becomes(
+        "coverage",
+        members={"cost_layers": [{"name": "german-costs-of-map", "layer": [[0.5, 2, 1]]}]},
+        notes="cell-size separator",
+    ),
     "matrix-plain.csv matrix-plain.csv": named(PLAIN, PLAIN),
     "matrix-no-way.csv matrix-plain.csv": named([[0, 1, None], [3, 0, 7], [5, None, 0]], PLAIN),
     "matrix-names.csv matrix-plain.csv": ids("A B C", None),
@@ -259,6 +271,8 @@ REFUSED = {
     "order.sop": "an order of cities",
     "att.TSP": "one objective: name another",
     "map.yaml": "open both together",
+    "costs-of-another-map.csv map.yaml map.pgm": "1 x 3 costs, one for each cell of the map, got 2",
+    "utf8-bom.csv map.yaml map.pgm": "utf8-bom.csv",
     "fleet-elsewhere.csv demand.csv": "column 'start' must be the id of a stop, got 'nowhere'",
     "fleet-vehicles.csv demand.csv": "a column of capacity for each demand of demand.csv, 1, got 2",
     "fleet-half.csv demand.csv": "row 2, column 'count' must be a whole number from 1, got '1.5'",

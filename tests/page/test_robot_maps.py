@@ -212,3 +212,25 @@ def test_a_robots_map_names_its_places_and_marks_both_ends(opened: Page) -> None
     wait_until_planned(opened)
     expect(opened.locator("#grid .ring.end")).to_have_count(0)
     expect(opened.locator("#grid .ring.start")).to_be_visible()
+
+
+def test_costs_beside_a_map_are_its_objective_and_unknown_cells_are_told(opened: Page) -> None:
+    shade = np.where(np.arange(16) > 13, 205, 254).astype(np.uint8)
+    picture = pgm(np.tile(shade, (18, 1)))
+    costs = "\n".join(",".join(["1", "9"] * 8) for _ in range(18)).encode()
+    files = {
+        "office.pgm": picture,
+        "office.yaml": yaml_of(HOW[0], "origin: [0, 0, 0]"),
+        "noise.csv": costs,
+    }
+    opened.get_by_label("Open files").set_input_files(
+        [{"name": name, "mimeType": "", "buffer": data} for name, data in files.items()]
+    )
+    wait_until_read(opened)
+    expect(opened.locator("#shade")).to_have_text("shaded: noise; grey: unknown")
+    body = curl_body(opened, "coverage")
+    assert body["cost_layers"][0]["name"] == "noise"
+    assert "unknownCells" not in body
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    assert shown_front(opened)["objectives"][1]["name"] == "noise"

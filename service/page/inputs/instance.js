@@ -28,7 +28,7 @@ export function described(asked) {
 
 /**
  * The request as the page opens it. Beside coordinates or matrices it may have `rounded`, the `ids` of the
- * stops, and `names`: the user's names of both objectives.
+ * stops, and `names`: the user's names of both objectives. Beside a grid it may have `unknownCells`, to draw them.
  */
 export function askedFor(opened, settings, { rows, whole }) {
   const asked = { ...opened, ...settings };
@@ -36,7 +36,7 @@ export function askedFor(opened, settings, { rows, whole }) {
 }
 
 /** The request to send to the service. */
-export function requestFor({ rounded: whole, ids, names, ...body }) {
+export function requestFor({ rounded: whole, ids, names, unknownCells: _, ...body }) {
   const { path, onGrid } = kindOf(body);
   const form = formOf(body);
   if (onGrid) return { path, body: { ...body, paths: true } };

@@ -41,9 +41,9 @@ export class GridMap {
     onSchemeChange(() => this.#grid && this.#colour());
   }
 
-  /** Shows a grid, rows of 0 and 1, tinted by a layer of costs if there is one. */
-  show({ grid, places, ...costs }) {
-    this.#grid = { grid, costs: shadeOf(costs) };
+  /** Shows a grid, rows of 0 and 1, tinted by a layer of costs if there is one; `unknownCells` are rows of 0 and 1 too. */
+  show({ grid, places, unknownCells: unknown, ...costs }) {
+    this.#grid = { grid, unknown, costs: shadeOf(costs) };
     for (const name of Object.keys(this.#lines)) this.draw(name, null);
     this.drawRoutes([]);
     this.#element.style.aspectRatio = `${grid[0].length} / ${grid.length}`;
@@ -150,17 +150,18 @@ const turns = (cells) =>
   });
 
 /** The address of an image with a pixel for each cell. */
-function drawn({ grid, costs }) {
+function drawn({ grid, unknown, costs }) {
   const [height, width] = [grid.length, grid[0].length];
   const canvas = Object.assign(document.createElement("canvas"), { width, height });
   const context = canvas.getContext("2d");
   const image = context.createImageData(width, height);
-  const [free, blocked, dear] = ["card", "blocked", "dear"].map(rgb);
+  const [free, blocked, unexplored, dear] = ["card", "blocked", "unknown", "dear"].map(rgb);
   const dearest = costs ? Math.max(...costs.map((row) => Math.max(...row))) || 1 : 1;
   grid.forEach((cells, row) =>
     cells.forEach((cell, column) => {
       const share = costs ? (TINT * costs[row][column]) / dearest : 0;
-      const shown = cell ? blocked : free.map((part, index) => part + share * (dear[index] - part));
+      const ground = unknown?.[row][column] ? unexplored : cell ? blocked : free;
+      const shown = cell ? ground : ground.map((part, index) => part + share * (dear[index] - part));
       image.data.set([...shown, 255], 4 * (row * width + column));
     }),
   );

@@ -15,10 +15,11 @@ export async function read(service, files, chosen, roads, signal) {
   const sorted = files.toSorted((one, other) => (one.name < other.name ? -1 : 1)); // as file dialogs have no order
   await Promise.all(sorted.map(checked));
   const answer = await service.read(sorted, signal, chosen);
-  const { request, planes, name, notes, columns, choices } = roads ? answer : withoutRoads(answer);
+  const { request, planes, name, notes, columns, choices, unknown_cells: unknown } = roads ? answer : withoutRoads(answer);
   const { matrices, ...others } = request;
   // The form rounds distances itself, so that planes stay planes.
   const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
+  if (unknown) members.unknownCells = unknown;
   return { members, objectives: namesIn(members), name, notes, columns, choices };
 }
 

@@ -88,7 +88,8 @@ export class Result {
     this.#asked = instance;
     this.#kind = kindOf(instance);
     element("uncovered").textContent = "";
-    element("shade").textContent = shadeOf(instance) ? `shaded: ${this.#objectives[1].name}` : "";
+    const shade = shadeOf(instance) ? `shaded: ${this.#objectives[1].name}` : "";
+    element("shade").textContent = [shade, instance.unknownCells ? "grey: unknown" : ""].filter(Boolean).join("; ");
     this.#front = [];
     this.#id = null;
     this.#balance = MIDDLE;

@@ -148,6 +148,16 @@ class MapRequest(PlanRequest):
             Refusal: There is no map, or more than one, or it cannot be read, or is too large; or a
                 field is given that does not apply to this form.
         """
+        return self.with_occupancy(picture, most_cells)[0]
+
+    def with_occupancy(
+        self, picture: bytes | None, most_cells: int
+    ) -> tuple[Self, Occupancy | None]:
+        """Return what `with_map` returns, and the occupancy that the map says.
+
+        The occupancy has shape (rows, columns). It is None where the map came as rows of `grid`,
+        which do not tell unknown cells from obstacles.
+        """
         self._check_forms(picture)
         message = self.occupancy_grid
         update: dict[str, Any] = {}
@@ -162,8 +172,8 @@ class MapRequest(PlanRequest):
             if self.grid.size > most_cells:
                 raise too_many_cells(most_cells, self.grid.size, self.grid.size)
             check_grid(self.grid)
-            return self
-        return self.model_copy(update={"grid": self._blocked(values), **update})
+            return self, None
+        return self.model_copy(update={"grid": self._blocked(values), **update}), values
 
     def _check_forms(self, picture: bytes | None) -> None:
         given = self.model_fields_set

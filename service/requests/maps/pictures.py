@@ -80,6 +80,11 @@ def occupancy(channels: Channels, how: Interpretation) -> Occupancy:
     return values
 
 
+def darkness(channels: Channels) -> Shades:
+    """Return how dark each pixel looks, 0 white to 1 black; transparency is ignored."""
+    return (_WHITE - _luma(channels)) / _WHITE
+
+
 def _split(channels: Channels) -> tuple[Channels, Channels]:
     """Return the grey or the colours, and the alpha, shape (rows, columns), of a picture."""
     count = channels.shape[2]
