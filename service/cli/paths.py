@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
@@ -63,8 +64,13 @@ def _named_paths(front: FrontOfAnyKind) -> Iterator[tuple[str, MapPath | None]]:
         yield from ((f"tour-{number}", tour.path) for number, tour in enumerate(front))
     elif isinstance(front, RobotFront):
         for number, plan in enumerate(front.plans):
+            named: Counter[str] = Counter()
             for route in plan.routes:
-                yield f"plan-{number}-{_file_name(route.robot)}", route.path
+                name = _file_name(route.robot)
+                named[name] += 1
+                # Other ids may have the same letters; a dot is in no name.
+                further = f".{named[name]}" if named[name] > 1 else ""
+                yield f"plan-{number}-{name}{further}", route.path
 
 
 def _file_name(robot: str) -> str:

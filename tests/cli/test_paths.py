@@ -100,3 +100,15 @@ def test_paths_need_a_folder(folder: str, said: str, tmp_path: Path, url: str) -
     ended = paretour("coverage", write(tmp_path), *given)
     assert ended.returncode == 2
     assert said in " ".join(ended.stderr.split())
+
+
+def test_robots_whose_names_have_the_same_letters_have_files_of_their_own(
+    tmp_path: Path, url: str
+) -> None:
+    named = [{**robot, "id": name} for robot, name in zip(ROBOTS, "#!", strict=True)]
+    folder = tmp_path / "paths"
+    file = write(tmp_path, robots=named, cost_layer=None)
+    ended = paretour("coverage", file, "--json", "--path-folder", folder, "--url", url)
+    assert ended.returncode == 0, ended.stderr
+    routes = sum(len(plan["routes"]) for plan in json.loads(ended.stdout)["front"])
+    assert len(list(folder.glob("*.csv"))) == routes
