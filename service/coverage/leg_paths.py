@@ -82,14 +82,13 @@ class LegPaths:
             yield replace(self.instance, matrices=matrices)
 
     def tour_lengths(self, legs: Legs) -> Array:
-        """Return the lengths of tours by each row of choices, shape (w, k, m).
+        """Return the lengths of tours by each row of choices of the further paths, shape (w, k, m).
 
         Args:
             legs: The legs of each tour, shape (k, legs).
         """
         assert self.instance.matrices is not None
-        if self.further is None:
-            return self.instance.matrices[(slice(None), *legs)].sum(axis=2).T[np.newaxis]
+        assert self.further is not None
         pairs = self._pairs[legs]
         alone = np.where(pairs < 0, self.instance.matrices[(slice(None), *legs)], 0.0).sum(axis=2)
         lengths = np.empty((len(self.further.choices), len(pairs), len(alone)))
@@ -100,8 +99,7 @@ class LegPaths:
 
     def chosen(self, legs: Legs, rows: Indices) -> Numbers:
         """Return the path of each leg, shape (k, legs), by the row of choices of each tour."""
-        if self.further is None:
-            return np.zeros(legs[0].shape, np.int8)
+        assert self.further is not None
         pairs = self._pairs[legs]
         return np.where(pairs < 0, np.int8(0), self.further.choices[rows[:, np.newaxis], pairs])
 

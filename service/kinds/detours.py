@@ -110,7 +110,7 @@ class PlanWithDetours:
         """Keep what a front adds, and report it: its search may have been too short for that."""
         self._found = self._with(front.tours)
         self._hypervolume = hypervolume(self._found.points, self._reference_point)
-        self._tell(Progress(0.0, 0.0, 0), lambda _: front)
+        self._say(0.0, 0, lambda size: self._front(front, self._found, size))
 
     def _with(self, tours: Tours) -> "_Found":
         """Return what is found so far and what further tours add once their legs have chosen."""
@@ -155,15 +155,19 @@ class PlanWithDetours:
         )
 
     def _tell(self, progress: Progress, best: Callable[[int], Front]) -> None:
-        """Report what is found so far: never less than before, though each search begins anew."""
-        found = max(progress.hypervolume, self._hypervolume)
-        points = max(progress.points, len(self._found.points))
+        """Report what is found so far, with what the search that runs has found."""
 
         def best_front(size: int) -> Front:
             front = best(size)
             return self._front(front, self._with(front.tours), size)
 
-        self._report(Progress(time.monotonic() - self._began, found, points), best_front)
+        self._say(progress.hypervolume, progress.points, best_front)
+
+    def _say(self, found: float, points: int, best: Callable[[int], Front]) -> None:
+        """Report a hypervolume and points: never less than before, though each search is new."""
+        found = max(found, self._hypervolume)
+        points = max(points, len(self._found.points))
+        self._report(Progress(time.monotonic() - self._began, found, points), best)
 
 
 @dataclass(frozen=True, eq=False)
