@@ -168,6 +168,8 @@ def test_before_the_search_is_compiled_the_network_answers_and_the_rest_waits(
         while client.post("/front", json=request, timeout=30).status_code == 504:
             pass  # until the worker has started
         assert client.post("/front", json=request).status_code == 200
+        while "%" not in client.get("/health/ready").json()["detail"]:
+            pass  # until it has said how far it is
         for refused in (
             client.get("/health/ready"),
             client.post("/front", json={**request, "time_limit": 0.1}),

@@ -146,6 +146,8 @@ def place_of_stop(page: Page, number: int, plane: str = "#plane-1") -> Place:
     page.locator(plane).press("Escape")
     for _ in range(number):
         page.keyboard.press("Enter")
+    # The line that names the stop may leave the map less room, which it takes in the next frame.
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
     ring = page.locator(f"{plane} .ring.highlight").bounding_box()
     assert ring is not None
     return ring["x"] + ring["width"] / 2, ring["y"] + ring["height"] / 2
