@@ -7,40 +7,79 @@ once all targets are reached, so that paths to the nearest places are found fast
 """
 
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.coverage.frame import Array, Cells
-from service.coverage.shortest_paths import DIAGONAL, Grid
-from service.jit import allocating
+from service.coverage.frame import Array, Cells, Mask
+from service.coverage.shortest_paths import DIAGONAL, Grid, mark, unmark
+from service.jit import allocating, compiled
+
+
+class _State(NamedTuple):
+    """The paths found so far."""
+
+    cost: Array  # (cells,), infinite if no path was found
+    predecessor: NDArray[np.int32]  # (cells,), the cell before on the path, or -1
+    is_target: Mask  # (cells,)
+    reached: NDArray[np.int32]  # (cells,), the cells that have a path
+    reached_size: Cells  # (1,)
+
+
+class CheapestPaths:
+    """Searches on one grid, one after another. They share their memory, which is large.
+
+    The layer of the grid is not read.
+    """
+
+    def __init__(self, grid: Grid) -> None:
+        cells = len(grid.free)
+        self._grid = grid
+        self._state = _State(
+            np.full(cells, np.inf),
+            np.full(cells, -1, np.int32),
+            np.zeros(cells, np.bool_),
+            np.empty(cells, np.int32),
+            np.zeros(1, np.int64),
+        )
+
+    def find(self, layer: Array, source: int, targets: Cells) -> NDArray[np.int32]:
+        """Return the cell before each cell on the cheapest path from a source; -1 without one.
+
+        Shape (cells of the grid,). It is final for the targets and for all cells that cost less to
+        reach, and holds until the next search. O(c log c) for the c cells that cost no more than
+        the dearest target.
+
+        Args:
+            layer: Positive costs, shape (cells of the grid,).
+            source: The number of a free cell.
+            targets: Numbers of cells, shape (n,).
+        """
+        _forget(self._state)
+        _search(self._grid, self._state, layer, source, targets)
+        return self._state.predecessor
+
+
+@compiled
+def _forget(state: _State) -> None:
+    """Take the paths of the last search away."""
+    for k in range(state.reached_size[0]):
+        cell = state.reached[k]
+        state.cost[cell], state.predecessor[cell] = np.inf, -1
 
 
 @allocating
-def find_cheapest_paths(grid: Grid, layer: Array, source: int, targets: Cells) -> NDArray[np.int32]:
-    """Return the cell before each cell on the cheapest path from a source; -1 if there is none.
-
-    Shape (cells of the grid,). It is final for the targets and for all cells that cost less to
-    reach. O(c log c) for the c cells that cost no more than the dearest target.
-
-    Args:
-        grid: The grid. Its own layer is not read.
-        layer: Positive costs, shape (cells of the grid,).
-        source: The number of a free cell.
-        targets: Numbers of cells, shape (n,).
-    """
-    cost = np.full(len(grid.free), np.inf)
-    predecessor = np.full(len(grid.free), -1, np.int32)
-    missing = np.zeros(len(grid.free), np.bool_)
-    missing[targets] = True
-    left = missing.sum()
-    cost[source] = 0.0
+def _search(grid: Grid, state: _State, layer: Array, source: int, targets: Cells) -> None:
+    cost, predecessor, is_target, reached, reached_size = state
+    left = mark(is_target, targets)
+    cost[source], reached[0], reached_size[0] = 0.0, source, 1
     heap = [(0.0, source)]
     while left > 0 and len(heap) > 0:
-        reached, cell = heappop(heap)
-        if reached > cost[cell]:  # it got a cheaper path since
+        so_far, cell = heappop(heap)
+        if so_far > cost[cell]:  # it got a cheaper path since
             continue
-        left -= missing[cell]
+        left -= is_target[cell]
         for down in (-grid.width, 0, grid.width):
             if not grid.free[cell + down]:
                 continue
@@ -49,8 +88,10 @@ def find_cheapest_paths(grid: Grid, layer: Array, source: int, targets: Cells) -
                 if not (grid.free[cell + right] and grid.free[beside]):
                     continue
                 length = DIAGONAL if down * right != 0 else 1.0
-                over = reached + length * (layer[cell] + layer[beside]) / 2
+                over = so_far + length * (layer[cell] + layer[beside]) / 2
                 if over < cost[beside]:
+                    reached[reached_size[0]] = beside
+                    reached_size[0] += cost[beside] == np.inf  # else it is among them already
                     cost[beside], predecessor[beside] = over, cell
                     heappush(heap, (over, beside))
-    return predecessor
+    unmark(is_target, targets)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage import shortest_paths
-from service.coverage.cheapest_paths import find_cheapest_paths
+from service.coverage.cheapest_paths import CheapestPaths
 from service.coverage.frame import Array, Cells
 from service.coverage.leg_paths import FurtherPaths, LegPaths
 from service.coverage.shortest_paths import cell_numbers, make_grid, path_costs, path_steps
@@ -86,12 +86,17 @@ def find_detours(
     )
 
 
+def most_searches(places: int, objectives: int) -> int:
+    """Return the most searches of `find_detours`, each from one place under one weight."""
+    return places * (len(_lattice(objectives, _PARTS)) - 1)
+
+
 def warm_up() -> None:
     """Compile the searches for paths, or load them from the cache of an earlier process."""
     shortest_paths.warm_up()
     grid = make_grid(np.ones((1, 2), np.bool_))
     cells = cell_numbers(grid, np.array([[0, 0], [0, 1]]))
-    path_steps(find_cheapest_paths(grid, grid.layer, int(cells[0]), cells), cells)
+    path_steps(CheapestPaths(grid).find(grid.layer, int(cells[0]), cells), cells)
 
 
 def _near_pairs(metres: Array, count: int) -> Cells:
@@ -121,7 +126,7 @@ def _cheapest(
             break
         own = list(group)
         ends = cells[pairs[own, 1]]
-        before = find_cheapest_paths(grid, weighted, int(cells[origin]), ends)
+        before = shortest.cheapest.find(weighted, int(cells[origin]), ends)
         steps[own] = path_steps(before, ends)
         for row, layer in zip(lengths, layers, strict=True):
             row[own] = path_costs(grid, before, layer, ends)

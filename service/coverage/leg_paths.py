@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from service.coverage.cheapest_paths import find_cheapest_paths
+from service.coverage.cheapest_paths import CheapestPaths
 from service.coverage.frame import Array, Cells
-from service.coverage.shortest_paths import Grid, find_paths, trace_path
+from service.coverage.shortest_paths import Grid, ShortestPaths, trace_path
 from service.instance import Instance
 
 Indices = NDArray[np.integer]
@@ -123,19 +123,29 @@ class LegPaths:
         pairs = self._pairs[legs]
         return np.where(pairs < 0, self.steps[legs], self.further.steps[taken, pairs])
 
-    def trace(self, path: int, origin: int, ends: Sequence[int]) -> Iterator[Cells]:
-        """Yield the rows and columns, shape (s, 2), of a path from a place to each of others.
+    def trace(self, path: int, origin: int, ends: Sequence[int]) -> list[Cells]:
+        """Return the rows and columns, shape (s, 2), of a path from a place to each of others.
 
         These must have higher numbers: a path back is the same in reverse.
         """
         source, targets = self.cells[origin], self.cells[list(ends)]
         if path == 0:
-            before = find_paths(self.grid, source, targets).predecessor
+            before = self.shortest.find(int(source), targets).predecessor
         else:
             assert self.further is not None
             layer = self.further.layers[path - 1]
-            before = find_cheapest_paths(self.grid, layer, source, targets)
-        return (trace_path(self.grid, before, target) for target in targets)
+            before = self.cheapest.find(layer, int(source), targets)
+        return [trace_path(self.grid, before, target) for target in targets]
+
+    @cached_property
+    def shortest(self) -> ShortestPaths:
+        """The search for shortest paths on the grid."""
+        return ShortestPaths(self.grid)
+
+    @cached_property
+    def cheapest(self) -> CheapestPaths:
+        """The search for cheapest paths on the grid."""
+        return CheapestPaths(self.grid)
 
     def _chosen(self, row: int) -> Array:
         """Return the lengths of the path that each pair takes by a row of choices, shape (m, p)."""

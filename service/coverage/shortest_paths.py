@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.frame import Array, Cells, Mask
-from service.jit import allocating, inlined
+from service.jit import allocating, compiled, inlined
 
 DIAGONAL = np.sqrt(2.0)
 
@@ -48,6 +48,40 @@ class DijkstraState(NamedTuple):
     tree: PathTree
     buckets: NDArray[np.int32]  # (3, cells), by the whole part of a cell's length, modulo 3
     sizes: Cells  # (3,)
+    is_target: Mask  # (cells,)
+    reached: NDArray[np.int32]  # (cells,), the cells that have a path
+    reached_size: Cells  # (1,)
+
+
+class ShortestPaths:
+    """Searches on one grid, one after another. They share their memory, which is large."""
+
+    def __init__(self, grid: Grid) -> None:
+        cells = len(grid.free)
+        tree = PathTree(
+            np.full(cells, np.inf),
+            np.zeros(cells, np.int32),
+            np.zeros(cells),
+            np.full(cells, -1, np.int32),
+        )
+        self._state = DijkstraState(
+            grid,
+            tree,
+            np.empty((3, cells), np.int32),  # a step leads at most two buckets ahead
+            np.zeros(3, np.int64),
+            np.zeros(cells, np.bool_),
+            np.empty(cells, np.int32),
+            np.zeros(1, np.int64),
+        )
+
+    def find(self, source: int, targets: Cells) -> PathTree:
+        """Return the shortest paths from a source to targets, shape (n,), and to all nearer cells.
+
+        Cells are given by their numbers. The tree holds until the next search. O(cells reached).
+        """
+        _forget(self._state)
+        _search(self._state, source, targets)
+        return self._state.tree
 
 
 def make_grid(free: Mask, layer: Array | None = None) -> Grid:
@@ -103,10 +137,11 @@ def pairwise_paths(
     """
     n = len(cells)
     lengths, costs = np.zeros((n, n)), np.zeros((1 + len(further), n, n))
+    search = ShortestPaths(grid)
     for i in range(n - 1):
         if stop():
             break
-        tree = find_paths(grid, cells[i], cells[i + 1 :])
+        tree = search.find(int(cells[i]), cells[i + 1 :])
         lengths[i, i + 1 :] = lengths[i + 1 :, i] = tree.length[cells[i + 1 :]]
         costs[0, i, i + 1 :] = costs[0, i + 1 :, i] = tree.cost[cells[i + 1 :]]
         for row, layer in zip(costs[1:], further, strict=True):
@@ -133,37 +168,50 @@ def warm_up() -> None:
     pairwise_paths(grid, cells, lambda: False, further=[grid.layer])
 
 
-@allocating
-def find_paths(grid: Grid, source: int, targets: Cells) -> PathTree:
-    """Return the shortest paths from a source to targets, shape (n,), and to all nearer cells.
+@compiled
+def _forget(state: DijkstraState) -> None:
+    """Take the paths of the last search away."""
+    for k in range(state.reached_size[0]):
+        cell = state.reached[k]
+        state.tree.length[cell], state.tree.predecessor[cell] = np.inf, -1
+    state.reached_size[0] = 0
 
-    Cells are given by their numbers. O(cells).
-    """
-    cells = len(grid.free)
-    tree = PathTree(
-        np.full(cells, np.inf),
-        np.zeros(cells, np.int32),
-        np.zeros(cells),
-        np.full(cells, -1, np.int32),
-    )
-    # A step leads at most two buckets ahead, so three suffice.
-    state = DijkstraState(grid, tree, np.empty((3, cells), np.int32), np.zeros(3, np.int64))
-    is_target = np.zeros(cells, np.bool_)
-    is_target[targets] = True
-    missing = is_target.sum()
-    tree.length[source] = 0.0
-    _enqueue(state, source)
+
+@compiled
+def _search(state: DijkstraState, source: int, targets: Cells) -> None:
+    missing = mark(state.is_target, targets)
+    state.sizes[:] = 0
+    tree = state.tree
+    tree.length[source], tree.diagonals[source], tree.cost[source] = 0.0, 0, 0.0
+    _enqueue(state, source, np.inf)
     now = 0
-    while missing > 0 and state.sizes.sum() > 0:
+    while missing > 0 and state.sizes[0] + state.sizes[1] + state.sizes[2] > 0:
         for k in range(state.sizes[now % 3]):
             cell = state.buckets[now % 3, k]
             # A cell that got a shorter path since was expanded from an earlier bucket.
             if int(tree.length[cell]) == now:
-                missing -= is_target[cell]
+                missing -= state.is_target[cell]
                 _expand(state, cell)
         state.sizes[now % 3] = 0
         now += 1
-    return tree
+    unmark(state.is_target, targets)
+
+
+@compiled
+def mark(is_target: Mask, targets: Cells) -> int:
+    """Mark cells, shape (n,), as targets of a search, and return the number of different ones."""
+    different = 0
+    for k in range(len(targets)):
+        different += not is_target[targets[k]]
+        is_target[targets[k]] = True
+    return different
+
+
+@compiled
+def unmark(is_target: Mask, targets: Cells) -> None:
+    """Take the marks of targets away."""
+    for k in range(len(targets)):
+        is_target[targets[k]] = False
 
 
 @allocating
@@ -226,11 +274,15 @@ def _relax(state: DijkstraState, cell: int, beside: int, length: float, diagonal
     tree.length[beside], tree.diagonals[beside] = length, tree.diagonals[cell] + diagonal
     tree.cost[beside], tree.predecessor[beside] = cost, cell
     if known >= int(length) + 1:
-        _enqueue(state, beside)
+        _enqueue(state, beside, known)
 
 
 @inlined
-def _enqueue(state: DijkstraState, cell: int) -> None:
+def _enqueue(state: DijkstraState, cell: int, known: float) -> None:
+    """Put a cell into the bucket of its length, which was this before."""
+    if known == np.inf:
+        state.reached[state.reached_size[0]] = cell
+        state.reached_size[0] += 1
     bucket = int(state.tree.length[cell]) % 3
     state.buckets[bucket, state.sizes[bucket]] = cell
     state.sizes[bucket] += 1

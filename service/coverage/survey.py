@@ -7,6 +7,7 @@ the mean of the layer at both its ends. Of equally short paths the cheapest by t
 taken. With detours, legs may take other paths, which give up metres for cost.
 """
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, groupby, islice
@@ -14,10 +15,11 @@ from itertools import chain, groupby, islice
 import numpy as np
 
 from service.coverage.coverage import Coverage
-from service.coverage.detours import find_detours
+from service.coverage.detours import find_detours, most_searches
 from service.coverage.frame import Array, Cells, CoveragePath, MapFrame
 from service.coverage.grid import Uncovered, free_cells, uncovered
 from service.coverage.leg_paths import Indices, LegPaths, Legs, Numbers
+from service.coverage.pace import Pace
 from service.coverage.places import find_places
 from service.coverage.shortest_paths import (
     cell_numbers,
@@ -142,19 +144,26 @@ class Survey:
                 yield (number, end, origin), path[::-1]
 
 
-def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Survey:
+def survey(
+    coverage: Coverage,
+    max_places: int,
+    stop: Callable[[], bool],
+    seconds: float = math.inf,
+) -> Survey:
     """Return the places of a coverage task and the instance of the costs between them.
 
     Args:
         coverage: The task.
         max_places: The greatest number of places that a spacing may give.
         stop: Called once for each place, and before and after; True ends the survey.
+        seconds: The most that the searches for paths may take.
 
     Raises:
         InvalidCoverage: No cell is free, a place or a pose is not free or cannot be reached, or the
             second objective has another number of places.
         TooManyPlaces: The spacing gives more than `max_places`.
         InvalidInstance: The second objective's costs are not valid.
+        Refusal: The searches take longer than `seconds`, or clearly will.
         Cancelled: `stop` returned True.
     """
     free = free_cells(coverage.blocked, coverage.cell_size, coverage.robot_radius)
@@ -171,7 +180,8 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     steps = np.zeros((len(cells), len(cells)), np.int32)
     further = [framed_layer(layer) for layer in layers[1:]]
     numbers = cell_numbers(grid, cells)
-    lengths, costs = pairwise_paths(grid, numbers, stop, steps, further)
+    pace = Pace(seconds, stop, cells=int(free.sum()), places=len(cells))
+    lengths, costs = pairwise_paths(grid, numbers, pace.of(len(cells) - 1), steps, further)
     _check(stop)
     metres = coverage.cell_size * lengths
     matrices = np.concatenate((metres[np.newaxis], _other_objectives(coverage, metres, costs)))
@@ -180,7 +190,12 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     if coverage.detours:
         of_metres = np.ones(len(grid.free))
         by_objective = coverage.cell_size * np.stack((of_metres, grid.layer, *further))
-        legs = replace(legs, further=find_detours(legs, by_objective, stop))
+        legs = replace(
+            legs,
+            further=find_detours(
+                legs, by_objective, pace.of(most_searches(len(cells), len(matrices)))
+            ),
+        )
         _check(stop)
     return Survey(
         cells,

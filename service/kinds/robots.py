@@ -29,7 +29,7 @@ from service.kinds.fleet import document_of_plans, plan_front
 from service.kinds.front_document import FrontDocument, encode_path, with_member
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import on_map
-from service.kinds.tours import unless_cancelled
+from service.kinds.tours import seconds_to_survey, unless_cancelled
 from service.requests.task import SharedCoverage, Task
 
 Indices = NDArray[np.int64]
@@ -40,7 +40,8 @@ def run_robots(task: Task, tools: Tools, stop: Callable[[], bool], report: Repor
     subject, actor, limits = task.subject, tools.actors.get(task.actor), tools.limits
     assert isinstance(subject, SharedCoverage)
     began = time.perf_counter()
-    surveyed = survey(subject.coverage, limits.most_places(shared=True), stop)
+    most, seconds = limits.most_places(shared=True), seconds_to_survey(task, limits)
+    surveyed = survey(subject.coverage, most, stop, seconds)
     fleet = robot_fleet(surveyed, subject.over)
     known = {**on_map(surveyed), **subject.members}
 

@@ -84,15 +84,22 @@ def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
 
     Raises:
         InvalidCoverage: A place cannot be visited, or there are too many.
+        Refusal: It takes too long.
         Cancelled: `stop` returned True.
     """
     assert isinstance(task.subject, Coverage)
     try:
-        return survey(task.subject, limits.most_places(task.subject.objectives, shared=False), stop)
+        most = limits.most_places(task.subject.objectives, shared=False)
+        return survey(task.subject, most, stop, seconds_to_survey(task, limits))
     except InvalidCoverage as refusal:
         if not task.parts:
             raise
         raise about_request(refusal, task.parts) from None
+
+
+def seconds_to_survey(task: Task, limits: Limits) -> float:
+    """Return how long a survey may take: who asks for a longer search waits as long for it."""
+    return max(limits.survey_seconds, task.options.time_limit)
 
 
 def _plan(

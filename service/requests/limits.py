@@ -27,6 +27,7 @@ class Limits:
             a map.
         several_cities: Stops under more than two objectives, whose costs are all looked up.
         network_cities: Stops for which a network builds tours.
+        survey_seconds: Seconds to find the paths between the places of a map.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
@@ -49,6 +50,7 @@ class Limits:
     several_cities: int = 2000
     network_cities: int = 5000
     path_cells: int = 2**21
+    survey_seconds: float = 10.0
     fleet_stops: int = 500
     repairs: int = 200
     roads: bool = False

@@ -297,6 +297,7 @@ def test_a_front_that_cannot_be_found_later_says_why(client: httpx.Client) -> No
 def patient() -> Iterator[httpx.Client]:
     """A client of a service that allows what takes long."""
     limits = replace(LIMITS, body_bytes=2**24, cities=1000, cells=2**20, seconds=600.0)
+    limits = replace(limits, survey_seconds=1.0)
     with serving(app_of(limits=limits)) as url, httpx.Client(base_url=url, timeout=60) as client:
         yield client
 
@@ -304,12 +305,28 @@ def patient() -> Iterator[httpx.Client]:
 def test_a_survey_that_takes_long_can_be_cancelled(patient: httpx.Client) -> None:
     places = np.random.default_rng(0).integers(1000, size=(1000, 2)).tolist()
     task = {"cell_size": 1, "places": places, "second_coordinates": places}
-    files = {"request": (None, json.dumps(task)), "map": png(np.zeros((1000, 1000)))}
+    longest = {**task, "time_limit": 600}
+    files = {"request": (None, json.dumps(longest)), "map": png(np.zeros((1000, 1000)))}
     front = patient.post("/coverage", files=files, headers=LATER).headers["location"]
     while patient.get(front).json()["status"] == "queued":
         time.sleep(0.02)
     body = patient.delete(front).json()
     assert (body["status"], body["front"]) == ("cancelled", [])
+
+
+@pytest.mark.parametrize("robots", [{}, {"robots": [{"id": "one"}, {"id": "two", "start": 1}]}])
+def test_a_survey_that_would_take_too_long_is_refused_early(
+    patient: httpx.Client, robots: dict[str, Any]
+) -> None:
+    places = np.random.default_rng(0).integers(1000, size=(500, 2)).tolist()
+    task = {"cell_size": 1, "places": places, "time_limit": 0, **robots}
+    costs = {} if robots else {"second_coordinates": places}
+    files = {"request": (None, json.dumps(task | costs)), "map": png(np.zeros((1000, 1000)))}
+    began = time.monotonic()
+    document = problem(patient.post("/coverage", files=files), 422, "survey-too-long")
+    assert time.monotonic() - began < 8
+    assert document["limit"] == 1.0
+    assert "500 places over 1000000 free cells" in document["detail"]
 
 
 def test_a_search_that_is_cancelled_keeps_what_it_has_found(patient: httpx.Client) -> None:

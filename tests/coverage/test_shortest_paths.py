@@ -11,8 +11,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from service.coverage.shortest_paths import (
+    ShortestPaths,
     cell_numbers,
-    find_paths,
     framed_layer,
     make_grid,
     pairwise_paths,
@@ -85,7 +85,7 @@ def test_a_path_is_made_of_steps_and_is_as_long_and_as_costly_as_it_says(
     cells = np.argwhere(free)
     grid = make_grid(free, layer)
     numbers = cell_numbers(grid, cells)
-    tree = find_paths(grid, numbers[0], numbers)
+    tree = ShortestPaths(grid).find(int(numbers[0]), numbers)
     table = {(tail, head): rest for tail, head, *rest in steps(free, layer)}
     for number, cell in zip(numbers, cells, strict=True):
         if np.isfinite(tree.length[number]):

@@ -137,7 +137,7 @@ def test_paths_of_too_many_cells_are_refused_before_any_is_traced(
     tours = np.array([[0, 1, 2], [2, 1, 0]])
     cells = sum(len(path.cells) for path in found.paths(tours))
     assert len(list(found.paths(tours, cells))) == 2
-    monkeypatch.setattr("service.coverage.leg_paths.find_paths", None)
+    monkeypatch.setattr("service.coverage.leg_paths.ShortestPaths", None)
     with pytest.raises(Refusal, match="ask for a size of 1") as raised:
         list(found.paths(tours, cells - 1))
     assert (raised.value.limit, raised.value.actual) == (cells - 1, cells)

@@ -7,8 +7,8 @@ const GLANCE = 300; // milliseconds between two requests for a growing front
 const MOST_WAIT = 5; // seconds between two attempts
 const MANY = 1500; // stops: for more, the network's front may take longer than a search
 const REFUSED = Symbol("the network has no plan");
-// With shipments, tight windows or very many stops, only the search finds plans.
-const SEARCH_ALONE = ["no-plan", "too-many-for-network"];
+// With shipments, tight windows or very many stops, only the search finds plans; a longer time limit admits larger maps.
+const SEARCH_ALONE = ["no-plan", "too-many-for-network", "survey-too-long"];
 const FINAL = ["done", "cancelled", "failed"];
 
 /**
