@@ -19,7 +19,7 @@ from service.onnx_runtime import onnxruntime
 CITIES = (3, 7, 20, 40, 200, 1000)
 PREFERENCES = (1, 20, 100)
 REPAIRS = (0, 1, 10, 50)  # of tours of PA-One
-_LEAST_LENGTH = 1e-9  # which is no tour's: differences are divided by lengths
+_LEAST_LENGTH = 1e-9  # shorter than any tour: differences are divided by lengths
 _MANY_CITIES = 200  # above which torch takes minutes for more than one repair
 
 

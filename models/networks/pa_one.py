@@ -86,7 +86,7 @@ class OneActor(Actor):
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
     repairs_tours = True
-    most_objectives = 4  # it knows no number of them; so many were tried
+    most_objectives = 4  # the most that were tried: the network does not see their number
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
     candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many

@@ -116,7 +116,7 @@ def _send(stream: BinaryIO | Any, message: object) -> None:
 def _work(lock: str) -> None:
     """Plan what comes on standard input, until it ends."""
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a library prints is no answer
+    os.dup2(2, 1)  # so that what a library prints is not read as an answer
     from paretour.bars import Silent
 
     from service.library.local_planner import load_default_planner

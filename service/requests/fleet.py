@@ -56,8 +56,8 @@ class FleetRequest(SearchFields):
     clock: Clock | None = Field(
         default=None,
         description="the name of the objective that is time; or, where the costs of all objectives"
-        " are the same, the source of times that are no objective. All times are in its unit; the"
-        " length of a route in it includes service and waiting",
+        " are the same, the source of times that are not an objective. All times are in its unit;"
+        " the length of a route in it includes service and waiting",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 

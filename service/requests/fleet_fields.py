@@ -208,9 +208,9 @@ class VehicleItem(StrictModel):
 
 
 class ClockItem(ObjectiveItem):
-    """Travel times that are no objective, by their source."""
+    """The source of travel times that are not an objective."""
 
-    name: Text = Field(default="time", description="of the times, which are no objective")
+    name: Text = Field(default="time", description="of the times, which are not an objective")
 
 
 Clock = Annotated[

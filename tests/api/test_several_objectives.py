@@ -18,12 +18,12 @@ several = pytest.mark.parametrize("objectives", [3, 4])
 
 
 def cities(objectives: int) -> list[list[float]]:
-    """Cities in so many planes."""
+    """Cities in a plane for each objective."""
     return np.random.default_rng(objectives).random((N, 2 * objectives)).tolist()
 
 
 def matrices(objectives: int) -> np.ndarray:
-    """Costs of so many objectives, which differ by direction."""
+    """Costs of each objective, which differ by direction."""
     return np.random.default_rng(objectives).random((objectives, N, N))
 
 

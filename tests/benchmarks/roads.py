@@ -60,7 +60,7 @@ def asked(rounds: int) -> dict[str, Any]:
 
 
 def connected(client: httpx.Client, draw: np.random.Generator) -> NDArray[np.float64]:
-    """Return places, shape (m, 2), between all of which the service finds a way by road."""
+    """Return places, shape (m, 2). The service finds a way by road between any two of them."""
     places = _CORNER + _SIDES * draw.random((PLACES, 2))
     while (answer := _post(client, places)).status_code != 200:
         refused = {int(error["pointer"].split("/")[-1]) for error in answer.json()["errors"]}

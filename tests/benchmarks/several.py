@@ -126,7 +126,7 @@ def _under_weights(
     instance: Instance,
     seconds: float,
 ) -> Array:
-    """The points of tours under so many weighted sums, which share the seconds."""
+    """The points of tours, one under each of some weighted sums, which share the seconds."""
     ends = time.monotonic() + seconds
     steps = step_lengths(instance, *np.indices((instance.n, instance.n)))
     costs = np.moveaxis(steps / instance.scale, 2, 0)

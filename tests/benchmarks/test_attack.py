@@ -62,7 +62,7 @@ def seen_by(kinds: Crowds, address: tuple[str, int], seconds: float) -> dict[str
     ("status", "content", "fault"),
     [
         (500, b"{}", "500 {}"),
-        (422, b'{"actual": NaN}', "NaN is no JSON"),
+        (422, b'{"actual": NaN}', "NaN is not JSON"),
         (200, b'{"front": []}', "a front without a tour"),
         (202, b'{"id": "x"}', "job x is lost: 404"),
     ],

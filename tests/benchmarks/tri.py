@@ -5,7 +5,7 @@ the reference point that is used there. The instances are ours, for theirs are n
 weighted sums stand beside the network, each nearly as short as it can be, by the search. The rows:
 the network without repairs, with as many as the service makes by default, and with more; every tour
 of a call counts, with those visited on the way; and the search for the whole front, from nothing,
-which is given so many seconds of the clock. Seconds are those of the processor, on one thread.
+within a number of seconds by the clock. Seconds are those of the processor, on one thread.
 What is stored is not measured again. Stores `results/tri.json`.
 """
 

@@ -97,7 +97,7 @@ def kind_of(name: str) -> str:
 
 
 def command(folder: Path, number: int) -> list[object]:
-    """A command about a broken file, or about two of which one is."""
+    """A command about a broken file, or about a broken one and another."""
     file = broken(number)
     path = folder / file.name
     path.write_bytes(file.data)

@@ -1,4 +1,4 @@
-"""Files become requests, and what is no such file is refused with a sentence that names it."""
+"""Files become requests. Any other file is refused with a sentence that names it."""
 
 import io
 import os

@@ -25,7 +25,7 @@ CASES = [
     ("other line ends do not count", "data: a\u2028b\u0085c\x0b\x0cd\n\n".encode(),
      [("message", "a\u2028b\u0085c\x0b\x0cd")]),
     ("UTF-8", "data: \u00e9\u20ac\U0001f600\n\n".encode(), [("message", "\u00e9\u20ac\U0001f600")]),
-    ("bytes that are no UTF-8", b"data: \xff\n\n", [("message", "\ufffd")]),
+    ("bytes that are not UTF-8", b"data: \xff\n\n", [("message", "\ufffd")]),
     ("a byte order mark", b"\xef\xbb\xbfdata: x\n\n", [("message", "x")]),
     ("a second one", b"\xef\xbb\xbf\xef\xbb\xbfdata: x\n\n", []),
 ]  # fmt: skip

@@ -67,7 +67,7 @@ def test_the_search_finds_the_least_of_both_lengths_in_costs_of_any_size(seed: i
 
 @cache
 def front_with_one_leg(cost: float) -> FleetFront:
-    """The front of three vans and twenty stops, of which one leg has this cost."""
+    """The front of three vans and twenty stops, where one leg has this cost."""
     costs = np.random.default_rng(7).integers(1, 100, (2, 21, 21)).astype(float)
     costs[:, 3, 4] = cost
     rules = Rules(

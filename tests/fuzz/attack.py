@@ -78,7 +78,7 @@ def strict_json(content: bytes) -> Any:
     """
 
     def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"{constant} is no JSON")
+        raise ValueError(f"{constant} is not JSON")
 
     return json.loads(content, parse_constant=refuse)
 

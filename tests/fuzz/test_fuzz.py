@@ -62,5 +62,5 @@ def test_a_sample_over_http_is_answered(url: str, name: str) -> None:
 def test_what_is_no_strict_json_is_found() -> None:
     assert strict_json(b'{"a": 1e300}') == {"a": 1e300}
     for content in (b"NaN", b"[Infinity]", b'{"a": -Infinity}'):
-        with pytest.raises(ValueError, match="is no JSON"):
+        with pytest.raises(ValueError, match="is not JSON"):
             strict_json(content)

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def random_costs(rng: np.random.Generator, n: int, slices: int) -> CostsOfDay:
-    """Return costs of up to so many slices, some by factors of one matrix."""
+    """Return costs of at most `slices` slices, some by factors of one matrix."""
     count = int(rng.integers(1, slices + 1))
     begins = np.sort(rng.choice(100, count, replace=False)).astype(np.float64)
     layers = rng.integers(0, 2, count)

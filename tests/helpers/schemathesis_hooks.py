@@ -66,7 +66,7 @@ def _correct_body(body: Any, *, positive: bool) -> None:
 
 
 def _in_two_planes(body: dict[str, Any], rows: list[Any]) -> None:
-    """Leave the first two planes of cities, of which each may have had others."""
+    """Leave only the first two planes of each city."""
     if _is_point(body.get("reference_point")):
         del body["reference_point"]
     if _are_rows(rows):

@@ -1,4 +1,4 @@
-"""Fronts over the historical traffic of a routing engine, of which a stand-in has some."""
+"""Fronts over the historical traffic of a routing engine; a stand-in has some traffic."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -23,7 +23,7 @@ from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
 
 Ask = Callable[[httpx.Client, Asked], httpx.Response]
 LIMIT = 0.7  # seconds of search, in which it reports its progress
-LONG = 60.0  # seconds of search, of which no test waits for the end
+LONG = 60.0  # seconds of search: no test waits until they are over
 LATER = {"Prefer": "respond-async"}
 KINDS = ("cities", "stops", "coverage", "robots", "fleet", "replanned stops", "replanned coverage")
 NO_STOPS, NO_EARTH = "cities in planes lie nowhere", "a robot's map is not on the earth"

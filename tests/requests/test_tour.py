@@ -87,7 +87,7 @@ def test_exactly_one_way_must_be_given(query: dict[str, Any], came: str) -> None
 
 
 def several(objectives: int) -> st.SearchStrategy[np.ndarray]:
-    """Fronts of so many objectives."""
+    """Fronts with this number of objectives."""
     shape = st.tuples(st.integers(1, 12), st.just(objectives))
     points = arrays(np.float64, shape, elements=st.integers(0, 20))
     return points.map(lambda each: each[nondominated(each)])

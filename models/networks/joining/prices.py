@@ -22,7 +22,7 @@ _CHEAPEST = 4  # steps of each city, whose mean is the unit of the temperature
 _TEMPERATURE = 0.5
 _ITERATIONS = 10
 _LEAST_UNIT = 1e-6
-_ROOM = 3_000_000  # costs of the rows of which prices are found at a time
+_ROOM = 3_000_000  # costs in the rows whose prices are found at one time
 _LEAST = 1e-30  # entry of a kernel: a city so far from all others gets no higher price
 
 

@@ -76,7 +76,7 @@ ObjectiveRequest = TypedDict(
 )
 
 
-# Travel times that are no objective, by their source.
+# The source of travel times that are not an objective.
 ClockRequest = TypedDict(
     "ClockRequest",
     {

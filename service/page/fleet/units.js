@@ -1,6 +1,6 @@
 /** The units of a fleet's times, and of objectives that are measures of plans. */
 
-/** The unit of the clock of a request: that of an objective, or of times that are no objective; "" if it is not known. */
+/** The unit of the clock of a request: that of an objective, or of times that are not an objective; "" if it is not known. */
 export function clockUnit({ clock, objectives }) {
   const source = typeof clock === "string" ? objectives?.find(({ name }) => name === clock) : clock;
   return source ? unitOf(source) : "";

@@ -36,7 +36,7 @@ def exact_points(instance: Instance) -> NDArray[np.float64]:
 
 
 def in_order(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points by ascending lengths, of which those that differ by rounding are equal."""
+    """Points by ascending lengths; lengths that differ by rounding alone are equal."""
     return points[np.lexsort(points.round(9).T[::-1])]
 
 

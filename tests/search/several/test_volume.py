@@ -16,7 +16,7 @@ several = pytest.mark.parametrize("objectives", [3, 4])
 
 
 def shell(k: int, objectives: int, seed: int = 0) -> NDArray[np.float64]:
-    """Points none of which dominates another, some of them not below (1, 1, ...)."""
+    """Points that do not dominate one another, some of them not below (1, 1, ...)."""
     points = np.abs(np.random.default_rng(seed).normal(size=(k, objectives)))
     shares: NDArray[np.float64] = 1.05 - points / np.linalg.norm(points, axis=1, keepdims=True)
     return shares
