@@ -1,1 +1,1 @@
-"""Constructors of tours and a search of other packages, which an operator names."""
+"""Use functions of other packages to build tours and to search, where the operator names them."""

@@ -1,6 +1,6 @@
 """Call a function of another package, and check that it returns tours.
 
-A fault of such a function must not become a wrong front.
+So a fault of the function becomes an error of the request, and not a wrong front.
 """
 
 import logging
@@ -14,18 +14,22 @@ from service.errors import Cancelled, Refusal
 from service.instance import Instance
 
 Tours = NDArray[np.int64]
-_MOST_TOURS = 50_000  # that a search may return; with more, choosing among them takes too long
-_CHECKED_AT_ONCE = 2**22  # places of tours
+_MOST_TOURS = 50_000  # that a function may return: to choose among more takes too long
+_CHECKED_AT_ONCE = 2**22  # cities of tours, to bound the memory
 
 
 class _Raised(NamedTuple):
-    """What a function raised."""
+    """The name of the error that a function raised."""
 
     name: str
 
 
 def called(function: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what a function returns, or that it raised; its traceback is logged."""
+    """Return the result of a function, or a `_Raised` if it raised; the traceback is logged.
+
+    Raises:
+        Cancelled: The function raised it.
+    """
     try:
         return function(*arguments)
     except Cancelled:
@@ -36,10 +40,17 @@ def called(function: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def checked(found: Any, instance: Instance, at: str, rows: int | None = None) -> Tours:
-    """Return what a function found as tours, shape (t, n); t is `rows` unless that is None.
+    """Return the result of `called(...)` as tours, shape (t, n).
+
+    Args:
+        found: The result.
+        instance: The instance with n cities.
+        at: The function in words, for the error.
+        rows: The number of tours that there must be; None for any number, of a search. Only the
+            tours of a search must have the start and the end of an open route.
 
     Raises:
-        Refusal: It is something else.
+        Refusal: The function raised, or its result is not such tours.
     """
     if fault := _fault(found, instance, rows):
         raise Refusal("extension-failed", extension=at, fault=fault)
@@ -50,7 +61,7 @@ def checked(found: Any, instance: Instance, at: str, rows: int | None = None) ->
 
 
 def _fault(found: Any, instance: Instance, rows: int | None) -> str | None:
-    """Return what is wrong with tours, or None."""
+    """Return a sentence that says what is wrong with a result, or None."""
     if isinstance(found, _Raised):
         return f"must return tours, and raised {found.name}"
     n = instance.n

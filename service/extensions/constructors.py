@@ -1,4 +1,4 @@
-"""Build tours with a function of another package, in the place of a network."""
+"""Build tours with a function of another package, in place of a network."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
@@ -24,10 +24,13 @@ Tours = NDArray[np.int64]
 
 
 class Constructor:
-    """A function of another package that builds tours, in the place of a network.
+    """A function of another package that builds tours, with the methods of a network.
+
+    Args:
+        name: The name of its entry point.
 
     Raises:
-        ValueError: It is not installed, or cannot be imported.
+        ValueError: The function is not installed, or cannot be imported.
     """
 
     def __init__(self, name: str) -> None:
@@ -36,26 +39,35 @@ class Constructor:
         self._function = loaded(CONSTRUCTORS, name)
 
     def load(self) -> None:
-        """Do nothing: it was imported when it was made."""
+        """Do nothing: the function is imported already."""
 
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:  # noqa: ARG002
-        """Return the function's tours, shape (k, n), one a preference (k, m).
+        """Return the tours that the function builds, one for each preference, shape (k, n).
+
+        Args:
+            instance: The instance with n cities and m objectives.
+            preferences: Shape (k, m).
+            repairs: Not used: a function has no repairs.
 
         Raises:
-            Refusal: It failed, or returned other than that.
+            Refusal: The function raised, or did not return such tours.
         """
         found = called(self._function, instance, preferences)
         return checked(found, instance, described(CONSTRUCTORS, self.info.name), len(preferences))
 
     def terminate(self) -> None:
-        """Do nothing: the function cannot be told to stop."""
+        """Do nothing: the function cannot be stopped."""
 
 
 def load_constructors(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, Constructor]:
-    """Return the constructors of these names.
+    """Import constructors, and return them by their names.
+
+    Args:
+        names: The names of their entry points.
+        taken: The names of networks, which a constructor must not have.
 
     Raises:
-        ValueError: One is not installed, cannot be imported, or its name is taken.
+        ValueError: One is not installed, cannot be imported, or has a taken name.
     """
     names = tuple(names)
     constructor_infos(names, taken)
@@ -63,10 +75,14 @@ def load_constructors(names: Iterable[str], taken: Iterable[str] = ()) -> dict[s
 
 
 def constructor_infos(names: Iterable[str], taken: Iterable[str] = ()) -> Mapping[str, ActorInfo]:
-    """Return what is known of constructors before they are imported, by name.
+    """Return the descriptions of constructors by their names, without importing them.
+
+    Args:
+        names: The names of their entry points.
+        taken: The names of networks, which a constructor must not have.
 
     Raises:
-        ValueError: One is not installed, or a network has its name.
+        ValueError: One is not installed, or has a taken name.
     """
     infos = {}
     for name in names:
@@ -80,7 +96,8 @@ def constructor_infos(names: Iterable[str], taken: Iterable[str] = ()) -> Mappin
             name=name,
             digest=hashlib.sha256(f"{package} {found.value}".encode()).hexdigest(),
             commit=package,
-            inputs="matrices",  # which serve both kinds: a function is given the whole instance
+            # With "matrices" it may plan every instance: a function gets the instance as a whole.
+            inputs="matrices",
             sizes=[],
             angles=[],
             config={},

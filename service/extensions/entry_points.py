@@ -1,7 +1,7 @@
-"""Find the functions that other packages register as entry points, and import those that are named.
+"""Find functions that other packages register as entry points, and import those that are named.
 
-A package registers a function in the group `paretour.constructors` or `paretour.searches`. Nothing
-is imported because it is installed.
+A package registers a function in the group `paretour.constructors` or `paretour.searches`. Its
+function is imported only if the operator names it.
 """
 
 from collections.abc import Callable
@@ -15,10 +15,10 @@ _KINDS = {CONSTRUCTORS: "constructor", SEARCHES: "search"}
 
 
 def entry_point(group: str, name: str) -> EntryPoint:
-    """Return the entry point of a name, without importing its package.
+    """Return the entry point with a name, without importing its package.
 
     Raises:
-        ValueError: None is installed, or several are.
+        ValueError: No installed package, or more than one, has such an entry point.
     """
     found = entry_points(group=group, name=name)
     if len(found) != 1:
@@ -30,10 +30,10 @@ def entry_point(group: str, name: str) -> EntryPoint:
 
 
 def loaded(group: str, name: str) -> Callable[..., Any]:
-    """Return the function of an entry point, for which its package is imported.
+    """Import the package of an entry point, and return the function.
 
     Raises:
-        ValueError: It is not installed, cannot be imported, or is not a function.
+        ValueError: The entry point is not installed, cannot be imported, or is not a function.
     """
     found = entry_point(group, name)
     try:
@@ -47,10 +47,10 @@ def loaded(group: str, name: str) -> Callable[..., Any]:
 
 
 def source(found: EntryPoint) -> str:
-    """Return the package of an entry point, and its version."""
+    """Return the name and version of an entry point's package; "" if they are not known."""
     return "" if found.dist is None else f"{found.dist.name} {found.dist.version}"
 
 
 def described(group: str, name: str) -> str:
-    """Return what an entry point is, its name, its package and version, for messages."""
+    """Return an entry point in words, such as "search mine of my-package 1.0", for messages."""
     return f"{_KINDS[group]} {name} of {source(entry_point(group, name))}"

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Extensions(NamedTuple):
-    """The names of the constructors and of the search that the settings add."""
+    """The names of the constructors, and of the search that takes the place of Paretour's."""
 
     constructors: tuple[str, ...] = ()
     search: str | None = None

@@ -1,4 +1,4 @@
-"""Improve tours with a function of another package, in the place of Paretour's search."""
+"""Improve tours with a function of another package, in place of Paretour's search."""
 
 import time
 from collections.abc import Callable
@@ -12,15 +12,18 @@ from service.front import PlanOptions, ReportOf, SearchFunction, SearchResult, T
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 
-_FEWEST_CITIES = 3  # to search for: of fewer, the given tours are all there are
-_SHARE = 0.95  # of the seconds that are left: the rest is for checking the tours and choosing
+_FEWEST_CITIES = 3  # of a search: with fewer cities there are no other tours than the given ones
+_SHARE = 0.95  # of the seconds left that the function gets; the rest is for checks and the choice
 
 
 def load_search(name: str | None) -> SearchFunction | None:
-    """Return the search of a name, with its results checked; None if there is no name.
+    """Import a search, and return it as a function that checks its results.
+
+    Args:
+        name: The name of its entry point. With None the result is None.
 
     Raises:
-        ValueError: It is not installed, or cannot be imported.
+        ValueError: The search is not installed, or cannot be imported.
     """
     if name is None:
         return None

@@ -1,7 +1,8 @@
-"""Plan a front over a map on which paths give up metres for cost.
+"""Plan a front over a map where a leg can take a longer path for a lower cost.
 
-A front is planned for each weight between the objectives by which all legs choose their paths, with
-an equal share of the time that is left. Then the legs of each tour choose again, by many weights.
+Each leg has several paths, and each path number has its weights of the objectives. For each path
+number a front is planned in which every leg takes its best path under these weights, within an
+equal share of the time left. Then the legs of each tour found choose again, by many more weights.
 """
 
 import time
@@ -23,23 +24,24 @@ from service.search.hypervolume import hypervolume
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
-# Plans the front of an instance, with `stop` and `report` as plan(...) has them.
+# Plans the front of an instance. Its `stop` and `report` are those of plan(...).
 PlanOf = Callable[[Instance, PlanOptions, Callable[[], bool], ReportOf[Front]], Front]
-_LEAST_OF_WEIGHT = 200  # tours of each weight whose legs choose again, if there are as many
-_MOST_FOUND = 2000  # points of two objectives that are kept; of more, as many as are reported
-_LAST = 0.05  # of the time limit: for the choices of legs, and of the tours to report
-_DIGITS = 12  # of shares of the reference point that differ count
-_LEAST_SECONDS = 1e-3  # for all searches
+_LEAST_OF_WEIGHT = 200  # tours that each search returns, if it finds as many; legs choose again
+_MOST_FOUND = 2000  # points kept under two objectives; under more, only as many as are reported
+_LAST = 0.05  # share of the time limit after the searches, for choosing paths and tours
+_DIGITS = 12  # lengths are equal if their shares of the reference point agree to these decimals
+_LEAST_SECONDS = 1e-3  # that the remaining searches get together, even if no time is left
+# Searches may end for different reasons: of these reasons the first in this order is reported.
 _BY_WEIGHT: tuple[Termination | None, ...] = ("cancelled", "time_limit", "converged", None)
 
 
 class PlanWithDetours:
-    """The planning of one front.
+    """Plans one front.
 
     Args:
         legs: The paths between the places.
         options: The options of the front and the search.
-        earlier: What is left of the tours of the front that is replanned, if one is.
+        earlier: The rest of the tours of an earlier front, if that front is replanned.
         stop: As in plan(...).
         report: As in plan(...).
     """
@@ -55,7 +57,8 @@ class PlanWithDetours:
         self._began = time.monotonic()
         self._legs, self._earlier = legs, earlier
         self._stop, self._report = stop, report
-        # By default the box of the shortest paths: fronts with and without detours can be compared.
+        # By default that of the shortest paths, so that the hypervolumes of fronts with and
+        # without detours can be compared.
         point = options.reference_point
         self._reference_point = legs.instance.reference_point if point is None else point
         self._options = replace(options, reference_point=self._reference_point)
@@ -68,7 +71,7 @@ class PlanWithDetours:
         """Return the best front found within the time limit, with the path that each leg takes.
 
         Args:
-            planned: Plans the front of an instance.
+            planned: Called to plan the front of each instance of the legs.
 
         Raises:
             Cancelled, NoTour, Refusal: As in plan(...) and replan(...).
@@ -92,7 +95,7 @@ class PlanWithDetours:
         )
 
     def _next_options(self, planned: int) -> PlanOptions:
-        """Return the options of the next front, after this many."""
+        """Return the options of the next search, after `planned` searches."""
         size = max(self._options.size, _LEAST_OF_WEIGHT)
         options = replace(self._options, size=size)
         if options.time_limit == 0:
@@ -107,13 +110,16 @@ class PlanWithDetours:
         return replace(options, time_limit=share, initial_tours=tours)
 
     def _add(self, front: Front) -> None:
-        """Keep what a front adds, and report it: its search may have been too short for that."""
+        """Add the tours of a front to those found, and report: a short search may not have."""
         self._found = self._with(front.tours)
         self._hypervolume = hypervolume(self._found.points, self._reference_point)
         self._say(0.0, 0, lambda size: self._front(front, self._found, size))
 
     def _with(self, tours: Tours) -> "_Found":
-        """Return what is found so far and what further tours add once their legs have chosen."""
+        """Return the points found so far together with those of further tours.
+
+        The legs of the further tours choose their paths by each row of choices.
+        """
         known = self._found
         lengths = self._legs.tour_lengths(tour_steps(self._legs.instance, tours))
         choices, count, objectives = lengths.shape
@@ -122,7 +128,7 @@ class PlanWithDetours:
         own = np.tile(np.arange(count), choices) + len(known.tours)
         tours = np.concatenate((known.tours, tours))
         places = np.concatenate((np.arange(len(known.tours)), own))
-        # What the same paths add up to in another order is equal but for rounding.
+        # Lengths of the same paths in another order differ by rounding alone: they are equal here.
         front = nondominated((points / self._reference_point).round(_DIGITS))
         most = max(self._options.size, _MOST_FOUND if objectives == OBJECTIVES else 0)
         if len(front) > most:
@@ -130,7 +136,7 @@ class PlanWithDetours:
         return _Found(points[front], tours[places[front]], rows[front])
 
     def _front(self, front: Front, found: "_Found", size: int) -> Front:
-        """Return the best of what is found, as a front like another."""
+        """Return the best `size` of the tours found; other attributes are those of `front`."""
         legs, earlier = self._legs, self._earlier
         chosen = best_subset(found.points, min(size, self._options.size), self._reference_point)
         kept = None
@@ -155,7 +161,7 @@ class PlanWithDetours:
         )
 
     def _tell(self, progress: Progress, best: Callable[[int], Front]) -> None:
-        """Report what is found so far, with what the search that runs has found."""
+        """Report the tours found so far, those of the search in progress included."""
 
         def best_front(size: int) -> Front:
             front = best(size)
@@ -164,7 +170,10 @@ class PlanWithDetours:
         self._say(progress.hypervolume, progress.points, best_front)
 
     def _say(self, found: float, points: int, best: Callable[[int], Front]) -> None:
-        """Report a hypervolume and points: never less than before, though each search is new."""
+        """Report a hypervolume and a number of points.
+
+        A new search begins with few points. So neither number is below that of all tours found.
+        """
         found = max(found, self._hypervolume)
         points = max(points, len(self._found.points))
         self._report(Progress(time.monotonic() - self._began, found, points), best)
@@ -172,7 +181,7 @@ class PlanWithDetours:
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """Nondominated points, shape (k, m), with the tour and the row of choices of each."""
+    """Nondominated points, shape (k, m), each with its tour and its row of choices of paths."""
 
     points: Array
     tours: Tours

@@ -1,7 +1,8 @@
 """Define the arguments of the tools, as pydantic models whose JSON schemas an agent reads.
 
-They name what agents need most often. Items keep other members, which the service checks, so that
-all of `POST /front`, `/fleet` and `/front/{id}/replan` can be asked for.
+The schemas list the members that agents need most often. Stops, objectives and vehicles may have
+all other members of `POST /front` and `POST /fleet` too. These are passed on, and the service
+checks them.
 """
 
 from typing import Annotated, Any
@@ -22,7 +23,7 @@ class _Item(BaseModel):
 
 
 class Arguments(BaseModel):
-    """The arguments of a tool. An argument that it does not have is an error."""
+    """The arguments of a tool. An argument that is not listed is an error."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -76,11 +77,13 @@ class FleetStop(Stop):
     demand: list[int] | None = Field(default=None, description="one number for each kind of load")
     service: float | None = Field(default=None, description="seconds of the visit")
     window: list[float] | None = Field(default=None, description="opens and closes, in seconds")
-    prize: float | None = Field(default=None, description="what leaving it out costs; else it must")
+    prize: float | None = Field(
+        default=None, description="cost of leaving it out; by default it must be visited"
+    )
 
 
 class Vehicle(_Item):
-    """Equal vehicles. They may also have shift, longest, fixed, skills, max_stops, breaks."""
+    """A type of vehicle. It may also have shift, longest, fixed, skills, max_stops, breaks."""
 
     id: Id
     count: int | None = Field(default=None, description="how many there are; by default 1")
@@ -109,8 +112,8 @@ class PlanFront(Arguments):
     end: int | str | None = Field(default=None, description="where open routes end, by index or id")
     departure: float | dict[str, float] | None = Field(
         default=None,
-        description="of stops whose objectives have over_the_day or slices, or with service: a"
-        " second of the day, or earliest and latest",
+        description="when the tour begins, if objectives have over_the_day or slices, or stops have"
+        " service: a second of the day, or earliest and latest",
     )
     time_limit: float | None = _TIME_LIMIT
 
@@ -146,7 +149,7 @@ class PlanFleet(Arguments):
 class StoredFront(Arguments):
     """A front that was planned before."""
 
-    front: Id = Field(description="the id that a tool which plans has answered")
+    front: Id = Field(description="the id that a planning tool returned")
 
 
 class ChooseTour(StoredFront):
@@ -161,7 +164,10 @@ class ChooseTour(StoredFront):
     weights: Numbers | None = Field(default=None, description="how much each objective matters")
     knee: bool | None = Field(default=None, description="true: the tour with the best balance")
     balance: float | None = Field(
-        default=None, ge=0, le=1, description="of two objectives: 0 least first, 1 least second"
+        default=None,
+        ge=0,
+        le=1,
+        description="of two objectives: from 0 (least of the first) to 1 (of the second)",
     )
     number: Count | None = Field(default=None, description="its number in the front, from 0")
     first_stop: Count = Field(
@@ -175,12 +181,15 @@ class Replan(StoredFront):
 
     done: list[int | str] | None = Field(default=None, description="stops visited, in order")
     position: int | str | dict[str, Any] | None = Field(
-        default=None, description="where the way goes on: a stop, or a place with id and location"
+        default=None,
+        description="where the rest of the tour begins: a stop, or a place with id and location",
     )
     add: list[dict[str, Any]] | None = Field(
         default=None, description="more stops, each with id and location, or coordinates, or costs"
     )
-    remove: list[int | str] | None = Field(default=None, description="stops without a visit now")
+    remove: list[int | str] | None = Field(
+        default=None, description="stops that are no longer visited"
+    )
     costs: list[dict[str, Any]] | None = Field(
         default=None, description="changed costs, each with objective, from, to and cost"
     )

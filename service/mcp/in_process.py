@@ -1,4 +1,4 @@
-"""Connect the Python client with an application in this process, as if over HTTP."""
+"""Connect the Python client with an application in this process, without a network."""
 
 from collections.abc import Mapping
 
@@ -10,14 +10,14 @@ _MOST_BYTES = 2**23  # of an answer: it is parsed in the event loop
 
 
 class _Transport(httpx.ASGITransport):
-    """A transport to an application that adds headers to each request."""
+    """A transport that gives requests to an application, with more headers."""
 
     def __init__(self, app: ASGIApp, client: tuple[str, int], headers: Mapping[str, str]) -> None:
         super().__init__(app, client=client)
         self._headers = headers
 
     async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
-        """Have the application answer a request."""
+        """Return the application's answer to a request."""
         request.headers.update(self._headers)
         return await super().handle_async_request(request)
 
@@ -29,15 +29,15 @@ def client_of_app(
     headers: Mapping[str, str] | None = None,
     patience: float = 60.0,
 ) -> AsyncClient:
-    """Return a client of an application in this process.
+    """Return a client whose requests go to an application in this process.
 
     Args:
-        app: The application, which has started.
-        client: The address and port that the application sees requests come from.
-        headers: Headers of each request.
-        patience: Seconds, in all, to wait and retry when the application asks for it.
+        app: The application. It must have started.
+        client: The address and port of the caller, as the application sees them.
+        headers: Headers that are added to each request.
+        patience: The most seconds, in all, to wait and retry when the application asks for it.
     """
-    # Not compressed: nothing is sent anywhere.
+    # Answers are not compressed: they do not go over a network.
     plain = {"Accept-Encoding": "identity", **(headers or {})}
     return AsyncClient(
         "http://paretour",

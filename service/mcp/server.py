@@ -1,4 +1,4 @@
-"""Build the server of the protocol: the tools, and errors as sentences."""
+"""Build the MCP server: it lists the tools, calls them, and returns errors as sentences."""
 
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
@@ -21,7 +21,7 @@ from paretour import Refused, UnexpectedAnswer
 from service.errors import Refusal
 from service.mcp.tools import TOOLS, Planner
 
-# Given the HTTP request that brought a call, or None over stdio.
+# Returns the service for a call of a tool, given the HTTP request of the call; None over stdio.
 Connect = Callable[[Any], AbstractAsyncContextManager[Planner]]
 _MOST_ERROR = 2000  # characters
 _INSTRUCTIONS = (
@@ -32,7 +32,12 @@ _INSTRUCTIONS = (
 
 
 def make_server(connect: Connect, version: str) -> Server[Any]:
-    """Return a server whose tools call the service that `connect` connects them with."""
+    """Return a server with all tools.
+
+    Args:
+        connect: Returns the service for each call of a tool.
+        version: The version that the server tells its clients.
+    """
 
     async def list_tools(
         _context: ServerRequestContext[Any, Any], _params: PaginatedRequestParams | None

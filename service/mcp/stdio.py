@@ -1,4 +1,4 @@
-"""Serve the tools over stdin and stdout, for a client that starts this process."""
+"""Serve the tools over stdin and stdout, to a client that started this process."""
 
 import signal
 from collections.abc import Callable
@@ -17,16 +17,16 @@ _PATIENCE = 600.0  # seconds: the search may have to be compiled first
 
 
 def serve_of_service(url: str, api_key: str | None, version: str) -> None:
-    """Serve until stdin ends, with a service at a URL that plans."""
+    """Serve tools that call the service at a URL, until stdin ends."""
     client = AsyncClient(url, api_key=api_key)
     _run(lambda: nullcontext(Planner(client, url)), version)
 
 
 def serve_of_app(app: Starlette, version: str) -> None:
-    """Serve until stdin ends, with an application in this process that plans."""
+    """Serve tools that call an application in this process, until stdin ends."""
 
     class Started(AsyncExitStack):
-        """The application from its start to its end."""
+        """A block of code in which the application runs."""
 
         async def __aenter__(self) -> Planner:  # type: ignore[override]
             await super().__aenter__()
@@ -37,13 +37,14 @@ def serve_of_app(app: Starlette, version: str) -> None:
 
 
 def _run(started: Callable[[], AbstractAsyncContextManager[Planner]], version: str) -> None:
-    # A thread that reads stdin cannot be cancelled: Ctrl-C ends the process, as nothing is kept.
+    # The thread that reads stdin cannot be cancelled, so Ctrl-C must end the process by itself.
+    # Nothing is lost: there is nothing to save.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     anyio.run(_serve, started, version)
 
 
 async def _serve(started: Callable[[], AbstractAsyncContextManager[Planner]], version: str) -> None:
-    # In this order, so that worker processes do not inherit the stdin and stdout of the protocol.
+    # First stdio_server(), so that worker processes do not inherit the protocol's stdin and stdout.
     async with stdio_server() as (reading, writing), started() as planner:
         server = make_server(lambda _: nullcontext(planner), version)
         await server.run(reading, writing, server.create_initialization_options())

@@ -1,4 +1,4 @@
-"""Write fronts and tours as texts of a few kilobytes, which fit into what an agent reads."""
+"""Write fronts and tours as JSON texts of at most 8 kB, short enough for an agent to read."""
 
 import json
 from bisect import bisect_right
@@ -11,21 +11,21 @@ from paretour.display import shown
 
 from service.objectives import OBJECTIVES
 
-MOST_BYTES = 8000  # of an answer, so that it is never over 8 kB
-_SLACKS = (0.01, 0.05, 0.1)  # shares of the least length, which a trade-off may cost
+MOST_BYTES = 8000  # of a text
+_SLACKS = (0.01, 0.05, 0.1)  # what a trade-off may cost, as shares of the least length
 _MOST_NOTES, _LONGEST_NOTE = 5, 200  # notes about a file, and characters of one
-_NEAR = 0.5  # of the way from one end of a front to the knee
+_NEAR = 0.5  # share of the way from the knee to an end of a front, where another tour is shown
 
 Named = Mapping[str, Any]
 
 
 def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] = ()) -> str:
-    """Return a front: its ranges, up to five of its tours, and the stops of the knee.
+    """Return the text of a front: its ranges, up to five of its tours, and the stops of the knee.
 
     Args:
         front: The front.
-        link: The address at which people see it, if there is one.
-        assumed: Sentences about the file that it was planned from.
+        link: The address of a page that shows the front, if there is one.
+        assumed: Sentences that say how the file that it was planned from was read.
     """
     document = {**_heading(front, link), "tours": _representatives(front)}
     if assumed:
@@ -38,13 +38,23 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
 
 
 def explanation(front: FrontOfAnyKind, link: str | None) -> str:
-    """Return what a front trades: its ranges, its knee, and what a little more of each buys."""
+    """Return the text of a front's trade-offs: its ranges, some tours, and sentences.
+
+    A sentence says how much less of one objective a little more of another buys.
+    """
     document = {**_heading(front, link), "tours": _representatives(front)}
     return _fitted({**document, "trades": _trades(front)})
 
 
 def tour_text(front: FrontOfAnyKind, number: int, first_stop: int, link: str | None) -> str:
-    """Return one tour or plan of a front, with its stops from `first_stop` on."""
+    """Return the text of one tour or plan of a front.
+
+    Args:
+        front: The front.
+        number: The number of the tour or plan in the front.
+        first_stop: How many of its stops to leave out before the first that is shown.
+        link: The address of a page that shows the front, if there is one.
+    """
     losses = front.losses[number].round(4).tolist()
     chosen = {
         "summary": f"{_noun(front)} {number} of {len(front)}: {_lengths_text(front, number)}",
@@ -57,7 +67,7 @@ def tour_text(front: FrontOfAnyKind, number: int, first_stop: int, link: str | N
 
 
 def _heading(front: FrontOfAnyKind, link: str | None) -> dict[str, Any]:
-    """Return the summary, the id, the link and the range of each objective."""
+    """Return the first members of a front's text: summary, id, status, ranges and link."""
     found: dict[str, Any] = {"summary": _summary(front), "front": front.id, "status": front.status}
     if len(front):
         least, greatest = front.lengths.min(axis=0), front.lengths.max(axis=0)
@@ -80,7 +90,10 @@ def _summary(front: FrontOfAnyKind) -> str:
 
 
 def _representatives(front: FrontOfAnyKind) -> list[Named]:
-    """Return the least of each objective, the knee, and tours between, at most five."""
+    """Return a few tours: the least in each objective, the knee and, of two objectives, two more.
+
+    Of two objectives, each of the two further tours is between the knee and an end of the front.
+    """
     if not len(front):
         return []
     chosen: dict[int, list[str]] = {}
@@ -99,7 +112,7 @@ def _representatives(front: FrontOfAnyKind) -> list[Named]:
 
 
 def _trades(front: FrontOfAnyKind) -> list[str]:
-    """Return sentences: what a few per cent of one objective buys of each other one."""
+    """Return sentences: how much less of one objective a few per cent more of another buy."""
     names, lengths = _names(front), front.lengths
     slacks = _SLACKS if len(names) == OBJECTIVES else _SLACKS[1:2]
     return [
@@ -114,7 +127,15 @@ def _trades(front: FrontOfAnyKind) -> list[str]:
 def _trade(
     lengths: np.ndarray, names: Sequence[str], paid: int, bought: int, slack: float
 ) -> str | None:
-    """Return what a share more than the least of one objective buys of another; None if nothing."""
+    """Return a sentence about one trade-off; None if it gains nothing.
+
+    Args:
+        lengths: The lengths of the tours of the front, shape (k, m).
+        names: The names of the objectives.
+        paid: The index of the objective that may be more than its least.
+        bought: The index of the objective that becomes less.
+        slack: How much more may be paid, as a share of the least.
+    """
     if not len(lengths):
         return None
     budget = lengths[:, paid].min() * (1 + slack)
@@ -129,7 +150,10 @@ def _trade(
 
 
 def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int) -> str:
-    """Return a document with as many stops of a tour or plan as there is room for."""
+    """Return the text of a document with as many stops of a tour or plan as there is room for.
+
+    The first `first` stops are left out.
+    """
     routes = _routes(front, number)
     pairs = [(route, stop) for route, (_, stops) in enumerate(routes) for stop in stops]
     rest = pairs[first:]
@@ -143,13 +167,13 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
 
     if len(rest) <= MOST_BYTES and bytes_of(len(rest)) <= MOST_BYTES:
         return text_of(len(rest))
-    # A stop takes bytes of its own, so no more of them fit than there are bytes.
+    # A stop takes at least one byte, so at most MOST_BYTES stops have room.
     count = bisect_right(range(min(len(rest), MOST_BYTES)), MOST_BYTES, key=bytes_of) - 1
     return text_of(count) if count > 0 else _fitted(document)
 
 
 def _routes(front: FrontOfAnyKind, number: int) -> list[tuple[str, Sequence[Any]]]:
-    """Return the routes of a plan, each with its vehicle; a tour is one route without any."""
+    """Return the routes of a plan: vehicle and stops. A tour is one route; its vehicle is ""."""
     item = front[number]
     if isinstance(front, Front):
         return [("", front.stops[number] if front.stops else front.tours[number].tolist())]
@@ -163,7 +187,13 @@ def _stops(
     routes: Sequence[tuple[str, Sequence[Any]]],
     kept: Sequence[tuple[int, Any]],
 ) -> Named:
-    """Return the stops that are kept: a list, or one for each route of a plan."""
+    """Return the stops that have room, as a member of the document.
+
+    Args:
+        front: The front. A tour has one list of stops, a plan one for each route.
+        routes: The vehicle and all stops of each route.
+        kept: The stops that have room, each with the number of its route.
+    """
     if isinstance(front, Front):
         return {"stops": [stop for _, stop in kept]}
     found: dict[int, list[Any]] = {}
@@ -179,7 +209,13 @@ def _stops(
 
 
 def _left(pairs: Sequence[Any], first: int, kept: Sequence[Any]) -> Named:
-    """Return a sentence about the stops that are not in the text, if there are any."""
+    """Return a member that says how many stops are not in the text, if there are any.
+
+    Args:
+        pairs: All stops.
+        first: How many stops are left out before the first that is shown.
+        kept: The stops that are shown.
+    """
     last = min(first, len(pairs)) + len(kept)
     if len(kept) == len(pairs):
         return {}
@@ -197,7 +233,7 @@ def _noun(front: FrontOfAnyKind) -> str:
 
 
 def _names(front: FrontOfAnyKind) -> list[str]:
-    """Return the names of the objectives, or their indexes, by which a tour can be chosen."""
+    """Return the names of the objectives; their indexes if they have no names."""
     if front.objectives:
         return [objective.name for objective in front.objectives]
     return [str(index) for index in range(front.lengths.shape[1])]
@@ -213,7 +249,7 @@ def _lengths_text(front: FrontOfAnyKind, number: int) -> str:
 
 
 def _short(number: float) -> float:
-    """Return a number with the digits that a reader needs."""
+    """Return a number rounded to seven digits."""
     return float(f"{number:.7g}")
 
 
@@ -222,7 +258,10 @@ def _linked(document: dict[str, Any], link: str | None) -> dict[str, Any]:
 
 
 def _fitted(document: Named) -> str:
-    """Return a document without its last lines, where names are so long that they have no room."""
+    """Return the text of a document, shortened if long names make it too long.
+
+    The last trade-offs are left out first, then the last tours, and then all ranges.
+    """
     members = dict(document)
     for name in ("trades", "tours", "ranges"):
         while len(_text(members).encode()) > MOST_BYTES and members.get(name):

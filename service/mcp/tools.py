@@ -1,4 +1,4 @@
-"""Define the tools: each calls the service by the client and returns a short text."""
+"""Define the tools. Each one calls the service by the client, and returns a short text."""
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -27,20 +27,26 @@ from service.mcp.arguments import (
 from service.mcp.summaries import explanation, front_text, tour_text
 from service.requests.validation import refusal_of
 
-# A front is parsed in the event loop of the service: of these many stops that takes 50 ms.
+# A front is parsed in the event loop of the service. For this number of stops that takes 50 ms.
 _MOST_STOPS = 100_000  # in all tours of a front
-_MOST_TOURS = 100  # by default
+_MOST_TOURS = 100  # of a front by default
 
 
 @dataclass(frozen=True)
 class Planner:
-    """A service by its client, and the address of its page if it has one."""
+    """A service that tools call: its client, and the address of its page if it has one."""
 
     client: AsyncClient
     page: str | None = None
 
     async def planned(self, plan: Plan, stops: int, assumed: Sequence[str] = ()) -> str:
-        """Plan a front of few enough tours to read, and return its text with what was assumed."""
+        """Plan a front, and return its text.
+
+        Args:
+            plan: The path and the request. A front of many stops gets fewer tours by default.
+            stops: The number of stops; 0 if it is not known.
+            assumed: Sentences that say how a file was read, for the text.
+        """
         if stops * _MOST_TOURS > _MOST_STOPS:
             plan = replace(plan, request={"size": max(5, _MOST_STOPS // stops), **plan.request})
         front = await self.client.plan_any(plan)
@@ -51,7 +57,7 @@ class Planner:
         return await self.client.any_job(front).front()
 
     def link(self, front: FrontOfAnyKind) -> str | None:
-        """Return the address at which people see a front."""
+        """Return the address of the page that shows a front; None if there is none."""
         return None if self.page is None else f"{self.page.rstrip('/')}/#front={front.id}"
 
 
@@ -60,7 +66,7 @@ Run = Callable[[Planner, Any], Awaitable[str]]
 
 @dataclass(frozen=True, kw_only=True)
 class Tool:
-    """A tool: what an agent reads about it, its arguments, and what it does."""
+    """A tool: its name and description for an agent, its arguments, and the function it runs."""
 
     name: str
     description: str
@@ -72,9 +78,9 @@ class Tool:
         """Return the answer to a call.
 
         Raises:
-            Refusal: The arguments do not fit.
+            Refusal: The arguments do not match their schema.
             Refused: The service refuses the request.
-            ValueError: No tour can be chosen so.
+            ValueError: The front has no tour for this choice, or the choice is not valid.
         """
         try:
             parsed = self.arguments.model_validate(arguments)
@@ -119,7 +125,7 @@ async def _choose_tour(planner: Planner, asked: ChooseTour) -> str:
 
 
 def _chosen(front: FrontOfAnyKind, asked: ChooseTour) -> int:
-    """Return the number of the tour that a budget, weights, the knee or a balance chooses."""
+    """Return the number of the tour that is chosen by a budget, weights, the knee or a balance."""
     ways: dict[str, Any] = asked.model_dump(include={"knee", "balance"})
     known = [each.name for each in front.objectives or ()]
     for name in ("at_most", "weights"):
@@ -132,7 +138,7 @@ def _chosen(front: FrontOfAnyKind, asked: ChooseTour) -> int:
 
 
 def _objective(name: str, known: list[str]) -> str | int:
-    """Return an objective by its name, or by its index where it has no such name."""
+    """Return a text such as "1" as an index, unless an objective has that name; else the text."""
     return int(name) if name not in known and name.isdecimal() else name
 
 

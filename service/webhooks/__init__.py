@@ -1,1 +1,1 @@
-"""Post the ends of jobs to webhooks: signed, to allowed targets alone, and again after failures."""
+"""Tell webhooks that jobs have ended: by signed posts to allowed targets, repeated on failure."""

@@ -1,8 +1,9 @@
-"""Deliver the ends of jobs to their webhooks, and try again with growing pauses.
+"""Post an event to the webhook of each ended job; after a failure, try again after a pause.
 
-Deliveries wait in the store. A service takes one for longer than an attempt may last, so replicas
-do not deliver it twice; and if the service ends meanwhile, it is delivered later. It may arrive
-twice where the answer is lost: its `webhook-id` is the same then.
+Deliveries wait in the store. A service leases a delivery for longer than an attempt can last, so
+two replicas do not post it at the same time. If the service ends during an attempt, the lease ends
+too, and the event is posted again. If an answer is lost, the event arrives twice, with the same
+`webhook-id`.
 """
 
 import asyncio
@@ -27,11 +28,11 @@ from service.webhooks.transport import Undeliverable, WebhookTransport
 
 Outcome = Literal["delivered", "failed", "given-up"]
 PAUSES = (5.0, 60.0, 300.0, 1800.0, 7200.0)  # seconds before the second attempt, the third, ...
-_JITTER = 0.2  # the share by which a pause may be longer, so that failures do not come together
-_SECONDS = 15.0  # of one attempt
-_LEASE = 60.0  # seconds for which a delivery is taken
-_AT_ONCE = 64  # so that targets that do not answer delay others little
-_POLL = 0.5  # seconds between two looks for deliveries
+_JITTER = 0.2  # a pause is longer by up to this share, so that attempts do not come all at once
+_SECONDS = 15.0  # that an attempt may last
+_LEASE = 60.0  # seconds for which a delivery is leased
+_AT_ONCE = 64  # attempts: enough that targets without an answer hardly delay the others
+_POLL = 0.5  # seconds between two looks for deliveries that are due
 _TYPES: Mapping[Status, str] = {
     "done": "front.completed",
     "cancelled": "front.cancelled",
@@ -43,13 +44,14 @@ _LOG = logging.getLogger("paretour")
 
 @dataclass(frozen=True, kw_only=True)
 class Webhooks:
-    """Where webhooks may go, and how they are sent.
+    """The settings of webhooks: allowed targets, secrets and pauses.
 
     Args:
-        targets: The origins that are allowed.
-        secrets: What to sign with.
+        targets: The origins to which webhooks may go.
+        secrets: The secrets that sign each event.
         observe: Called with the outcome of every attempt.
-        pauses: Seconds before each further attempt.
+        pauses: Seconds before the second attempt, the third, and so on. After the last pause and
+            one more failure the event is given up.
     """
 
     targets: Targets
@@ -59,7 +61,7 @@ class Webhooks:
 
     @asynccontextmanager
     async def running(self, outbox: Outbox) -> AsyncIterator[None]:
-        """Deliver what is in an outbox until the block ends, which breaks off attempts."""
+        """Post the deliveries of an outbox while the block runs; its end cancels attempts."""
         sender = _Sender(self, outbox)
         running = asyncio.create_task(sender.run())
         try:
@@ -71,7 +73,7 @@ class Webhooks:
 
 
 class _Sender:
-    """Delivers what is in an outbox, a number at a time."""
+    """Takes deliveries from an outbox, and makes at most `_AT_ONCE` attempts at the same time."""
 
     def __init__(self, webhooks: Webhooks, outbox: Outbox) -> None:
         self._webhooks = webhooks
@@ -80,25 +82,26 @@ class _Sender:
         self._attempts: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:
-        """Deliver for ever."""
+        """Post deliveries that are due, until cancelled."""
         while True:
             try:
                 await self._begin()
             except StoreUnavailable:
                 pass
             except Exception:
-                # Otherwise nothing would ever be delivered again.
+                # Go on: an error that ended the loop would end all deliveries.
                 _LOG.exception("deliveries to webhooks could not be begun")
             await asyncio.sleep(_POLL)
 
     async def close(self) -> None:
-        """Break off the attempts in progress; they are made again later."""
+        """Cancel the attempts in progress. Once their leases end, they are made again."""
         for attempt in self._attempts:
             attempt.cancel()
         await asyncio.gather(*self._attempts, return_exceptions=True)
         self._transport.close()
 
     async def _begin(self) -> None:
+        """Begin an attempt for each delivery that is due, as long as fewer than `_AT_ONCE` run."""
         free = _AT_ONCE - len(self._attempts)
         for delivery in await self._outbox.due_deliveries(free, _LEASE) if free else ():
             attempt = asyncio.create_task(self._deliver(delivery))
@@ -106,7 +109,7 @@ class _Sender:
             attempt.add_done_callback(self._attempts.discard)
 
     async def _deliver(self, delivery: Delivery) -> None:
-        """Make one attempt, and remove the delivery or say when to try again."""
+        """Make one attempt; then remove the delivery, or postpone it for another attempt."""
         failure, final = await self._attempt(delivery)
         pauses = self._webhooks.pauses
         outcome: Outcome = "failed"
@@ -125,7 +128,11 @@ class _Sender:
         _LOG.log(level, _LINE, delivery.id, delivery.attempts, outcome, failure or "it has arrived")
 
     async def _attempt(self, delivery: Delivery) -> tuple[str, bool]:
-        """Post a delivery; return why it failed, if it did, and whether it will always fail."""
+        """Post a delivery.
+
+        Returns:
+            Why the attempt failed, or "" if it did not; and whether further attempts are useless.
+        """
         try:
             destination = self._webhooks.targets.find(delivery.webhook.url)
         except ValueError:
@@ -147,7 +154,7 @@ class _Sender:
 
 
 def _body(delivery: Delivery) -> bytes:
-    """Return the event as JSON: the same for every attempt."""
+    """Return the event of a delivery as JSON. It is the same in every attempt."""
     ended = datetime.fromtimestamp(delivery.ended_at, UTC)
     event = {
         "type": _TYPES[delivery.status],

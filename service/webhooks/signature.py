@@ -1,7 +1,7 @@
-"""Sign webhooks by HMAC-SHA256, as the specification Standard Webhooks 1.0.0 says.
+"""Sign webhooks by HMAC-SHA256, following the specification Standard Webhooks 1.0.0.
 
-The text that is signed is `{id}.{timestamp}.{body}`. With several secrets there are as many
-signatures, so that a secret can be replaced while receivers still know the former one.
+The signed text is `{id}.{timestamp}.{body}`. Each secret gives one signature. So an operator can
+replace a secret: until all receivers know the new one, events are signed with both.
 """
 
 import base64
@@ -18,16 +18,16 @@ _LEAST, _MOST = 24, 64  # bytes of a secret, by the specification
 
 @dataclass(frozen=True)
 class Secret:
-    """The bytes of a secret, which neither errors nor its representation show."""
+    """A key that signs webhooks. Neither errors nor its representation show its bytes."""
 
     key: bytes = field(repr=False)
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """Return the secret written as whsec_ and base64.
+        """Return the secret of a text: whsec_, then 24 to 64 bytes in base64.
 
         Raises:
-            ValueError: It has another form, or too few or too many bytes.
+            ValueError: The text has another form, or too few or too many bytes.
         """
         try:
             key = base64.b64decode(text.removeprefix(_PREFIX), validate=True)
@@ -44,13 +44,13 @@ def signed_headers(
     body: bytes,
     secrets: Iterable[Secret],
 ) -> dict[str, str]:
-    """Return the headers of an attempt to deliver a message.
+    """Return the headers with the id, the time and the signatures of one attempt.
 
     Args:
-        id: Of the message, without a full stop; the same for all attempts.
-        seconds: When the attempt is made, since 1970.
-        body: The body as it is sent.
-        secrets: What to sign with.
+        id: The id of the event, without a full stop; the same in all attempts.
+        seconds: The time of the attempt, in seconds since 1970.
+        body: The body, byte for byte as it is posted.
+        secrets: The secrets; each gives one signature.
     """
     text = b"%s.%d.%s" % (id.encode(), seconds, body)
     signatures = (

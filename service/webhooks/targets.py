@@ -1,8 +1,9 @@
-"""Say where webhooks may go: origins that the operator names, and none of their addresses inside.
+"""Check that a webhook goes to an origin that the operator allows, and to an allowed address.
 
-A caller chooses the URL, so it could choose one that only the service can reach: of a database, of
-the loopback, or of a cloud's metadata. Therefore scheme, host and port must be those of a target.
-The addresses of the host must be public, or in the network that the operator names with it.
+A caller chooses the URL of a webhook. It could choose one that only the service can reach: that of
+a database, the loopback, or the metadata of a cloud. Therefore the URL must have the scheme, host
+and port of a target that the operator names. The addresses of its host must be public, or in the
+network that the operator names with the target.
 """
 
 from collections.abc import Iterable
@@ -24,13 +25,13 @@ from service.errors import Fault, Refusal
 MOST_LETTERS = 2000  # of a webhook's URL
 _PORTS = {"http": 80, "https": 443}
 _EXAMPLES = "https://hooks.example.com, or http://hooks.internal:8080=10.0.0.0/8"
-# Of Oracle's and Azure's metadata, which count as public.
+# The metadata of Oracle's and Azure's clouds: `is_global` is true of their addresses.
 _METADATA = (ip_network("192.0.0.0/24"), ip_network("168.63.129.16"))
 
 
 @dataclass(frozen=True)
 class Target:
-    """An origin to which webhooks may go, and the network in which its addresses must be.
+    """An origin to which webhooks may go, and the network that its addresses must be in.
 
     Without a network the addresses must be public.
     """
@@ -42,12 +43,13 @@ class Target:
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """Return the target written as ORIGIN or ORIGIN=NETWORK.
+        """Return the target of a text: ORIGIN or ORIGIN=NETWORK.
 
-        The network of an origin whose host is an address is that address. HTTP needs a network.
+        If the host of the origin is an address, the network is that address by default. An origin
+        with http needs a network.
 
         Raises:
-            ValueError: It has another form.
+            ValueError: The text has another form.
         """
         origin, _, named = text.partition("=")
         try:
@@ -60,11 +62,11 @@ class Target:
         return cls(url.scheme, url.host, _port_of(url), network)
 
     def has(self, url: httpx.URL) -> bool:
-        """Return whether a URL is of this origin."""
+        """Return whether a URL has this scheme, host and port."""
         return (url.scheme, url.host, _port_of(url)) == (self.scheme, self.host, self.port)
 
     def allows(self, address: str) -> bool:
-        """Return whether a webhook may be sent to an address of the host."""
+        """Return whether a webhook of this origin may go to an address of its host."""
         ip = ip_address(address)
         if isinstance(ip, IPv6Address) and ip.ipv4_mapped is not None:
             ip = ip.ipv4_mapped
@@ -73,39 +75,46 @@ class Target:
 
 @dataclass(frozen=True)
 class Destination:
-    """A webhook's URL, and the targets of its origin: one for each network, in most cases one."""
+    """The URL of a webhook, and all targets that have its origin.
+
+    An origin may have several targets, each with another network.
+    """
 
     url: httpx.URL
     targets: tuple[Target, ...]
 
     @property
     def port(self) -> int:
-        """The port, which the URL may leave out."""
+        """The port of the URL, or that of its scheme if the URL has none."""
         return _port_of(self.url)
 
     def allows(self, address: str) -> bool:
-        """Return whether the webhook may be sent to an address of the host."""
+        """Return whether one of the targets lets the webhook go to an address of its host."""
         return any(target.allows(address) for target in self.targets)
 
 
 class Targets:
-    """All targets that the operator allows; by default none."""
+    """All targets that the operator names; by default none."""
 
     def __init__(self, targets: Iterable[Target] = ()) -> None:
         self._targets = tuple(targets)
 
     def find(self, text: str) -> Destination | None:
-        """Return where a webhook goes; None where the operator does not allow it.
+        """Return the destination of a webhook's URL; None if it is not of a target.
 
         Raises:
-            ValueError: It is not such a URL.
+            ValueError: The text is not an http or https URL that a webhook can have.
         """
         url = _parsed(text)
         of_its_origin = tuple(target for target in self._targets if target.has(url))
         return Destination(url, of_its_origin) if of_its_origin else None
 
     def check(self, text: str) -> None:
-        """Raise a refusal where a webhook may not be sent to a URL that a caller names."""
+        """Check the URL that a caller names for a webhook.
+
+        Raises:
+            Refusal: The text is not a URL that a webhook can have, or it is not of a target.
+        """
         try:
             found = self.find(text)
         except ValueError:
@@ -119,10 +128,10 @@ class Targets:
 
 
 def _parsed(text: str) -> httpx.URL:
-    """Return a URL of a server, without the name of a user and without a fragment.
+    """Return the http or https URL of a text.
 
     Raises:
-        ValueError: It is not such a URL.
+        ValueError: It is not such a URL, is too long, or has a user's name or a fragment.
     """
     if len(text) > MOST_LETTERS or not text.isascii() or not text.isprintable() or " " in text:
         raise ValueError
@@ -152,7 +161,7 @@ def _is_address(host: str) -> bool:
 
 
 def _is_public(ip: IPv4Address | IPv6Address) -> bool:
-    """Return whether an address is reached over the internet, and stands for no other one."""
+    """Return whether an address is on the internet, and does not stand for another address."""
     if isinstance(ip, IPv6Address) and ip.sixtofour is not None:
         return False
     inside = ip.is_multicast or ip.is_reserved or any(ip in network for network in _METADATA)

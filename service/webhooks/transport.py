@@ -1,8 +1,8 @@
-"""Post to a webhook within its bounds: checked addresses, no redirect, little time, no answer.
+"""Post to a webhook: only to checked addresses, without redirects or reading the answer's body.
 
-The name of the host is resolved once, and the connection goes to an address that was checked. So
-another answer of the name service cannot lead it elsewhere (DNS rebinding). Certificates are
-checked for the name.
+The name of the host is resolved once. Its addresses are checked, and the connection goes to one of
+them. So a second answer of the name service cannot lead the connection elsewhere (DNS rebinding).
+The certificate must be for the name of the host.
 """
 
 import asyncio
@@ -16,31 +16,33 @@ import httpx
 from service.webhooks.targets import Destination
 
 _CONNECT_SECONDS = 5.0  # for each address
-_MOST_ADDRESSES = 4  # of a host, which are tried in turn
-_RESOLVED_AT_ONCE = 4
+_MOST_ADDRESSES = 4  # of a host that are tried, one after another
+_RESOLVED_AT_ONCE = 4  # names
 
-# At INFO httpx logs every address, and a webhook's may hold a secret of its receiver.
+# At INFO httpx logs every URL, and the URL of a webhook may hold a secret of its receiver.
 for _name in ("httpx", "httpcore"):
     logging.getLogger(_name).setLevel(logging.WARNING)
 
 
 class Undeliverable(Exception):
-    """A webhook could not be posted; the sentence says why, without its URL."""
+    """A webhook could not be posted. The message says why, without the URL."""
 
 
 class WebhookTransport:
-    """Posts to webhooks. Neither proxies nor passwords of the environment are used."""
+    """Posts to webhooks. It uses neither proxies nor passwords of the environment."""
 
     def __init__(self) -> None:
-        # Those of the event loop are needed by requests: a slow name service must not hold them.
+        # Threads of its own: a slow name service must not hold those of the event loop, which
+        # requests need.
         self._resolving = ThreadPoolExecutor(_RESOLVED_AT_ONCE, thread_name_prefix="webhooks")
         self._certificates = httpx.create_ssl_context()
 
     async def post(self, destination: Destination, headers: Mapping[str, str], body: bytes) -> int:
-        """Post a body and return the status of the answer. The caller bounds the time.
+        """Post a body, and return the status of the answer. The caller bounds the time.
 
         Raises:
-            Undeliverable: No address is allowed, or none answers.
+            Undeliverable: The host is unknown, one of its addresses is not allowed, none can be
+                connected to, or the connection fails.
         """
         addresses = await self._addresses(destination)
         failure = "there is no address"
@@ -63,14 +65,14 @@ class WebhookTransport:
         raise Undeliverable(failure)
 
     def close(self) -> None:
-        """End the threads, without waiting for the name service."""
+        """End the threads that resolve names, without waiting for an answer."""
         self._resolving.shutdown(wait=False, cancel_futures=True)
 
     async def _addresses(self, destination: Destination) -> Sequence[str]:
-        """Return the addresses of the host.
+        """Return all addresses of the host of a destination.
 
         Raises:
-            Undeliverable: The name is unknown, or one of its addresses is not allowed.
+            Undeliverable: The host is unknown, or one of its addresses is not allowed.
         """
         loop = asyncio.get_running_loop()
         host, port = destination.url.host, destination.port
@@ -95,7 +97,7 @@ def _request(
     headers: Mapping[str, str],
     body: bytes,
 ) -> httpx.Request:
-    """Return the request to an address of the host; its certificate must name the host."""
+    """Return the request to an address of the host. The certificate must name the host."""
     return client.build_request(
         "POST",
         url.copy_with(host=address),
@@ -112,5 +114,5 @@ def _request(
 
 
 def _reason(error: httpx.HTTPError) -> str:
-    """Return the kind of an error: its text may have the address."""
+    """Return the kind of an error. Its text is left out, as it may have the URL."""
     return type(error).__name__
