@@ -1,9 +1,11 @@
-"""Find paths on a grid that give up metres for cost. Compiled.
+"""Find the cheapest paths on a grid, under a layer with the cost of each cell. Compiled.
 
-A path is cheapest under a layer of costs that already holds what a metre counts: a step costs its
-length times the mean of the layer at both its ends. Steps are those of `shortest_paths`. The
-algorithm is Dijkstra's with a binary heap, as the costs of steps may differ by any factor. It ends
-once all targets are reached, so that paths to the nearest places are found fast on a large map.
+A step costs its length times the mean of the layer at both its cells. The layer is a weighted sum
+of objectives, metres among them, so a path may be longer than the shortest. Steps are those of
+`shortest_paths`.
+
+The algorithm is Dijkstra's with a binary heap, as the costs of steps may differ by any factor. It
+ends once all targets are reached, so that paths to near places are found fast on a large map.
 """
 
 from heapq import heappop, heappush
@@ -18,7 +20,7 @@ from service.jit import allocating, compiled
 
 
 class _State(NamedTuple):
-    """The paths found so far."""
+    """The paths found so far, and the targets of the search."""
 
     cost: Array  # (cells,), infinite if no path was found
     predecessor: NDArray[np.int32]  # (cells,), the cell before on the path, or -1
@@ -28,9 +30,9 @@ class _State(NamedTuple):
 
 
 class CheapestPaths:
-    """Searches on one grid, one after another. They share their memory, which is large.
+    """Searches for cheapest paths on one grid. All searches use the same memory, as it is large.
 
-    The layer of the grid is not read.
+    The layer of the grid itself is not read.
     """
 
     def __init__(self, grid: Grid) -> None:
@@ -45,14 +47,15 @@ class CheapestPaths:
         )
 
     def find(self, layer: Array, source: int, targets: Cells) -> NDArray[np.int32]:
-        """Return the cell before each cell on the cheapest path from a source; -1 without one.
+        """Return for each cell the cell before it on the cheapest path from a source.
 
-        Shape (cells of the grid,). It is final for the targets and for all cells that cost less to
-        reach, and holds until the next search. O(c log c) for the c cells that cost no more than
-        the dearest target.
+        Shape (cells of the grid,); -1 for the source, and for cells that are not reached. The next
+        search overwrites it. Only the paths to the targets, and to cells that cost less to reach,
+        are sure to be the cheapest. O(c log c) for the c cells that cost no more to reach than the
+        dearest target.
 
         Args:
-            layer: Positive costs, shape (cells of the grid,).
+            layer: The positive cost of each cell, shape (cells of the grid,).
             source: The number of a free cell.
             targets: Numbers of cells, shape (n,).
         """
@@ -63,7 +66,7 @@ class CheapestPaths:
 
 @compiled
 def _forget(state: _State) -> None:
-    """Take the paths of the last search away."""
+    """Remove the paths of the last search."""
     for k in range(state.reached_size[0]):
         cell = state.reached[k]
         state.cost[cell], state.predecessor[cell] = np.inf, -1
@@ -77,7 +80,7 @@ def _search(grid: Grid, state: _State, layer: Array, source: int, targets: Cells
     heap = [(0.0, source)]
     while left > 0 and len(heap) > 0:
         so_far, cell = heappop(heap)
-        if so_far > cost[cell]:  # it got a cheaper path since
+        if so_far > cost[cell]:  # a cheaper path to the cell was found later
             continue
         left -= is_target[cell]
         for down in (-grid.width, 0, grid.width):
@@ -91,7 +94,7 @@ def _search(grid: Grid, state: _State, layer: Array, source: int, targets: Cells
                 over = so_far + length * (layer[cell] + layer[beside]) / 2
                 if over < cost[beside]:
                     reached[reached_size[0]] = beside
-                    reached_size[0] += cost[beside] == np.inf  # else it is among them already
+                    reached_size[0] += cost[beside] == np.inf  # else it is in the list already
                     cost[beside], predecessor[beside] = over, cell
                     heappush(heap, (over, beside))
     unmark(is_target, targets)

@@ -1,10 +1,10 @@
-"""Find paths between the places of a map that give up metres for cost.
+"""Find further paths between the places of a map: longer in metres, cheaper in other objectives.
 
-Each is cheapest under a weighted sum of metres and the cost layers. In a tour that is best under
-some weights, each leg takes the path that is best under the same weights. So a few paths of each
-leg, by weights spread between the objectives, serve all tours.
+Each path is the cheapest under a weighted sum of metres and cost layers. In the best tour under
+some weights, each leg takes its best path under the same weights. So a few paths of each leg are
+enough for all tours, if their weights are spread between the objectives.
 
-Only places that are near each other get further paths: tours seldom join others.
+Only places that are near each other get further paths: tours seldom have other legs.
 """
 
 from collections.abc import Callable
@@ -20,30 +20,31 @@ from service.coverage.leg_paths import FurtherPaths, LegPaths
 from service.coverage.shortest_paths import cell_numbers, make_grid, path_costs, path_steps
 from service.preferences import lattice
 
-# Places to which each has further paths: the most, and the fewest, on a large map. All searches
-# together visit each cell a few times for each of these, however many places there are.
+# The number of nearest places to which each place gets further paths: the most, and the fewest, on
+# a large map. The searches visit each cell a few times for each nearest place, whatever the number
+# of places on the map.
 _NEAREST, _FEWEST = 12, 5
-_MOST_VISITED = 2**22  # cells of the map times places near each
-# The parts into which the lattices of weights divide 1, by the number of objectives: of the paths,
-# and of the weights under which legs choose among these.
+_MOST_VISITED = 2**22  # free cells of the map times nearest places of a place
+# Weights come from shares of the objectives: multiples of 1 / parts that add up to 1. The parts, by
+# the number of objectives: for the paths, and for the further weights by which legs choose a path.
 _PARTS = {2: 4, 3: 3, 4: 2}
 _PARTS_OF_CHOICES = {2: 32, 3: 5, 4: 3}
-_LEAST_SHARE = 1e-4  # of a weight that is 0: of equally cheap paths the shortest is taken
+_LEAST_SHARE = 1e-4  # in place of 0, so that of equally cheap paths the shortest is taken
 _TINY = float(np.finfo(float).tiny)
 
 
 def find_detours(
     shortest: LegPaths, layers: Array, stop: Callable[[], bool]
 ) -> FurtherPaths | None:
-    """Return the paths between near places that are cheapest under weights between objectives.
+    """Return the cheapest paths between near places, under several weights of the objectives.
 
-    None if no two places are given, or `stop` returned True.
+    Return None if there are fewer than two places, or `stop` returned True.
 
     Args:
-        shortest: The shortest paths.
-        layers: What a cell's length costs by each objective, shape (m, cells of the grid,). Those
-            of metres, the first, are the same everywhere.
-        stop: Called before each search.
+        shortest: The places, and the shortest paths between them.
+        layers: The cost of a step of one cell's length in each cell, under each objective, shape
+            (m, cells of the grid). The first objective is metres, the same in all cells.
+        stop: Called before each search; True ends the searches.
     """
     instance = shortest.instance
     assert instance.matrices is not None
@@ -87,7 +88,7 @@ def find_detours(
 
 
 def most_searches(places: int, objectives: int) -> int:
-    """Return the most searches of `find_detours`, each from one place under one weight."""
+    """Return the most searches of `find_detours`: one for each place and each row of weights."""
     return places * (len(_lattice(objectives, _PARTS)) - 1)
 
 
@@ -100,7 +101,10 @@ def warm_up() -> None:
 
 
 def _near_pairs(metres: Array, count: int) -> Cells:
-    """Return each place with this many near ones, shape (p, 2), each pair once, ascending."""
+    """Return the pairs of each place and its `count` nearest places, shape (p, 2).
+
+    Each pair is there once, its lower number first. Pairs are in ascending order.
+    """
     nearest = np.argsort(metres, axis=1, kind="stable")[:, : count + 1]
     pairs = np.stack((np.repeat(np.arange(len(metres)), nearest.shape[1]), nearest.ravel()), axis=1)
     pairs = np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1)
@@ -110,14 +114,14 @@ def _near_pairs(metres: Array, count: int) -> Cells:
 def _cheapest(
     shortest: LegPaths, weighted: Array, layers: Array, pairs: Cells, stop: Callable[[], bool]
 ) -> tuple[Array, NDArray[np.int32]]:
-    """Return lengths, shape (m, p), and steps, shape (p,), of the cheapest paths of pairs.
+    """Return the lengths, shape (m, p), and the steps, shape (p,), of each pair's cheapest path.
 
     Args:
-        shortest: The shortest paths.
-        weighted: The layer under which paths are cheapest, shape (cells of the grid,).
-        layers: The layer of each objective.
-        pairs: Places, shape (p, 2), in ascending order.
-        stop: Called before each search; once it returns True, the rest is left out.
+        shortest: The places, and the shortest paths between them.
+        weighted: The weighted cost of each cell, which paths minimise, shape (cells of the grid,).
+        layers: The cost of each cell under each objective, shape (m, cells of the grid).
+        pairs: The pairs of places, shape (p, 2), in ascending order.
+        stop: Called before each search. Once it returns True, all other lengths and steps are 0.
     """
     grid, cells = shortest.grid, shortest.cells
     lengths, steps = np.zeros((len(layers), len(pairs))), np.zeros(len(pairs), np.int32)
@@ -134,11 +138,16 @@ def _cheapest(
 
 
 def _lattice(objectives: int, parts: dict[int, int]) -> Array:
-    """Return the weights of a lattice, shape (k, m), none of them 0."""
+    """Return weights that are spread between the objectives, shape (k, m), all above 0."""
     return np.maximum(lattice(objectives, parts[objectives]), _LEAST_SHARE)
 
 
 def _choices(lengths: Array, weights: Array) -> NDArray[np.int8]:
-    """Return the path of each pair that is best under each of the weights, shape (w, p)."""
+    """Return the number of each pair's best path under each row of weights, shape (w, p).
+
+    Args:
+        lengths: The length of each path under each objective, shape (paths, m, p).
+        weights: Shape (w, m).
+    """
     best = [np.tensordot(row, lengths, (0, 1)).argmin(axis=0) for row in weights]
     return np.array(best, np.int8)

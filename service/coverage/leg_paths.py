@@ -1,7 +1,8 @@
-"""The paths over a map that a leg between two places can take: one, or several to choose from.
+"""The paths over a map that each leg between two places can take: one, or several to choose from.
 
-Path 0 of a leg is the shortest. Between places that are near each other there may be further paths,
-which give up metres for cost. All paths lead both ways.
+The paths of a leg have numbers. Path 0 is the shortest. Legs between places that are near each
+other may have further paths, which may be longer in metres and cost less in another objective. A
+path can be taken in both directions.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,22 +18,24 @@ from service.coverage.shortest_paths import Grid, ShortestPaths, trace_path
 from service.instance import Instance
 
 Indices = NDArray[np.integer]
-Numbers = NDArray[np.int8]  # of the paths that legs take
+Numbers = NDArray[np.int8]  # the number of the path that each leg takes
 Legs = tuple[Indices, Indices]  # the places where legs begin and end, two arrays of one shape
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FurtherPaths:
-    """The paths of legs between places near each other, the shortest among them.
+    """All paths of the legs between p pairs of places near each other, the shortest included.
+
+    Each path number has weights of the objectives: a path is the cheapest under its weights.
 
     Attributes:
-        pairs: The two places, shape (p, 2), in ascending order.
-        lengths: The lengths of each path, shape (paths, m, p).
-        steps: The number of steps of each, shape (paths, p).
-        layers: What a metre costs in each cell, weighted as each path weights it, shape (paths - 1,
-            cells of the grid,): a path after the first is cheapest under its layer.
-        choices: The path of each pair that is best under each of many weights between the
-            objectives, shape (w, p). The first are the weights of the paths themselves, in order.
+        pairs: The two places of each pair, shape (p, 2). The lower number is first.
+        lengths: The length of each path under each of m objectives, shape (paths, m, p).
+        steps: The number of steps of each path, shape (paths, p).
+        layers: The weighted cost of each cell, shape (paths - 1, cells of the grid). Paths with
+            number i are the cheapest under row i - 1. Path 0 needs no layer.
+        choices: The number of each pair's best path under each of w rows of weights, shape (w, p).
+            The first rows are for the weights of path 0, path 1 and so on; then come others.
     """
 
     pairs: Cells
@@ -49,9 +52,9 @@ class LegPaths:
     Attributes:
         grid: The free cells and the cost layer.
         cells: The number of each place's cell in the grid, shape (n,).
-        instance: The lengths of the shortest paths.
-        steps: The numbers of their steps, shape (n, n).
-        further: Further paths; None if all legs take the shortest.
+        instance: The lengths of the shortest paths, as matrices of shape (m, n, n).
+        steps: The number of steps of each shortest path, shape (n, n).
+        further: The further paths; None if all legs take the shortest.
     """
 
     grid: Grid
@@ -62,13 +65,14 @@ class LegPaths:
 
     @property
     def count(self) -> int:
-        """The most paths that a leg can take."""
+        """The largest number of paths between which a leg can choose."""
         return 1 if self.further is None else len(self.further.lengths)
 
     def instances(self) -> Iterator[Instance]:
-        """Yield the lengths between all places under the weights of each path, for each path.
+        """Yield an instance for each path number, in ascending order.
 
-        Each leg takes the path that is best under these weights.
+        Its matrices are the lengths of the legs if each leg takes its best path under the weights
+        of that path number. In the first instance all legs take the shortest path.
         """
         yield self.instance
         if self.further is None:
@@ -82,10 +86,12 @@ class LegPaths:
             yield replace(self.instance, matrices=matrices)
 
     def tour_lengths(self, legs: Legs) -> Array:
-        """Return the lengths of tours by each row of choices of the further paths, shape (w, k, m).
+        """Return the lengths of k tours under each row of `further.choices`, shape (w, k, m).
+
+        Each leg takes the path that the row chooses, or its only path.
 
         Args:
-            legs: The legs of each tour, shape (k, legs).
+            legs: The places where the legs of each tour begin and end, each of shape (k, legs).
         """
         assert self.instance.matrices is not None
         assert self.further is not None
@@ -93,20 +99,28 @@ class LegPaths:
         alone = np.where(pairs < 0, self.instance.matrices[(slice(None), *legs)], 0.0).sum(axis=2)
         lengths = np.empty((len(self.further.choices), len(pairs), len(alone)))
         for row in range(len(lengths)):
-            padded = np.pad(self._chosen(row), ((0, 0), (0, 1)))  # 0 where a leg has one path
+            # A column of 0 at the end, for pair -1: legs with one path.
+            padded = np.pad(self._chosen(row), ((0, 0), (0, 1)))
             lengths[row] = (alone + padded[:, pairs].sum(axis=2)).T
         return lengths
 
     def chosen(self, legs: Legs, rows: Indices) -> Numbers:
-        """Return the path of each leg, shape (k, legs), by the row of choices of each tour."""
+        """Return the number of the path that each leg of k tours takes, shape (k, legs).
+
+        Args:
+            legs: The places where the legs of each tour begin and end, each of shape (k, legs).
+            rows: The row of `further.choices` of each tour, shape (k,).
+        """
         assert self.further is not None
         pairs = self._pairs[legs]
         return np.where(pairs < 0, np.int8(0), self.further.choices[rows[:, np.newaxis], pairs])
 
     def lengths(self, legs: Legs, taken: Numbers | None = None) -> Array:
-        """Return the lengths of legs that take these paths, or else the shortest.
+        """Return the length of each leg under each objective, shape (..., m).
 
-        With one more axis of m at the end.
+        Args:
+            legs: The places where legs begin and end, each of shape (...).
+            taken: The number of the path that each leg takes, shape (...); None for the shortest.
         """
         assert self.instance.matrices is not None
         shortest = np.moveaxis(self.instance.matrices[(slice(None), *legs)], 0, -1)
@@ -117,16 +131,28 @@ class LegPaths:
         return np.where(pairs[..., np.newaxis] < 0, shortest, several)
 
     def count_steps(self, legs: Legs, taken: Numbers | None = None) -> NDArray[np.int32]:
-        """Return the number of steps of legs that take these paths, or else the shortest."""
+        """Return the number of steps of each leg, shape (...).
+
+        Args:
+            legs: The places where legs begin and end, each of shape (...).
+            taken: The number of the path that each leg takes, shape (...); None for the shortest.
+        """
         if self.further is None or taken is None:
             return self.steps[legs]
         pairs = self._pairs[legs]
         return np.where(pairs < 0, self.steps[legs], self.further.steps[taken, pairs])
 
     def trace(self, path: int, origin: int, ends: Sequence[int]) -> list[Cells]:
-        """Return the rows and columns, shape (s, 2), of a path from a place to each of others.
+        """Return the cells of the paths from a place to others, each path of shape (s, 2).
 
-        These must have higher numbers: a path back is the same in reverse.
+        Args:
+            path: The number of the paths.
+            origin: The number of the place.
+            ends: The numbers of the other places, all above `origin`. A path in the other direction
+                is the same path in reverse.
+
+        Returns:
+            The row and the column of each cell of a path, for each end in turn.
         """
         source, targets = self.cells[origin], self.cells[list(ends)]
         if path == 0:
@@ -148,14 +174,14 @@ class LegPaths:
         return CheapestPaths(self.grid)
 
     def _chosen(self, row: int) -> Array:
-        """Return the lengths of the path that each pair takes by a row of choices, shape (m, p)."""
+        """Return the length of each pair's path under a row of `further.choices`, shape (m, p)."""
         assert self.further is not None
         choice = self.further.choices[row].astype(np.intp)
         return np.take_along_axis(self.further.lengths, choice[np.newaxis, np.newaxis], 0)[0]
 
     @cached_property
     def _pairs(self) -> NDArray[np.int32]:
-        """The number of each pair in the further paths, shape (n, n); -1 if it has none."""
+        """The number of the pair of any two places, shape (n, n); -1 if they have one path."""
         assert self.further is not None
         pairs = np.full(self.steps.shape, -1, np.int32)
         first, second = self.further.pairs.T

@@ -44,7 +44,7 @@ class SolutionArchive:
         swept = rules.swept is not None and not rules.has_longest
         self._any_distance = swept and translation.duration in (None, 1 - (rules.swept or 0))
         self._any_time = swept and not self._any_distance and not rules.spans
-        # Their limits in a search are no rules.
+        # A search limits overtime and lateness, but plans may exceed these limits.
         self._any_time |= rules.limits_times
         self._objectives = list(zip(rules.over, rules.layers, strict=True))
         slack = [_ROUNDED * (len(rules.clients) + 1) / scale for scale in translation.scales]

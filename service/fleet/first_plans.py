@@ -224,7 +224,7 @@ class Cutter:
 
         Args:
             weights: The weight of each objective, shape (m,). The first includes fixed costs, and
-                prizes if these are no objective. Only sums, vehicles and prizes have a weight.
+                prizes if these are not an objective. Only sums, vehicles and prizes have a weight.
             limited: The number of the costs in which routes are bounded, if they are.
         """
         rules = self._fleet.rules

@@ -19,9 +19,9 @@ LAYERS = 2  # costs: PyVRP knows one distance and one duration
 class Fleet:
     """Rules, and two costs of the legs between the stops, shape (2, n, n).
 
-    `rules.layers` says of which each objective is. If only one objective has costs, the second
-    costs are those of the clock, or a copy of the first. Costs get a diagonal of 0, and are
-    read-only. A leg of which one cost is infinite is forbidden, and gets two infinite costs.
+    `rules.layers` has the number of each objective's costs, 0 or 1. If only one objective has
+    costs, the second costs are those of the clock, or a copy of the first. Costs get a diagonal of
+    0, and are read-only. A leg with an infinite cost is forbidden: both its costs become infinite.
     """
 
     rules: Rules

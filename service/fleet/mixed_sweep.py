@@ -1,8 +1,9 @@
-"""Choose the searches for fronts of three objectives, or of one that PyVRP does not know.
+"""Choose the searches for a front under three objectives, or with one that PyVRP cannot minimise.
 
-Each search minimises a weighted sum of costs and prizes, under limits on routes, vehicles, overtime
-and lateness, as the objectives need them. Weights and limits are random, so that each region of the
-front is visited again and again. Each search is followed by moves, which are measured exactly.
+Each search minimises a weighted sum of costs and prizes. It has limits on the lengths of routes,
+vehicles, overtime and lateness if these are objectives. Weights and limits are random, so that each
+region of the front is visited again and again. After each search come small moves of stops, which
+are measured under all objectives exactly.
 """
 
 from collections import Counter
@@ -19,20 +20,20 @@ from service.fleet.scales import UNBOUNDED
 from service.fleet.solver import Step
 from service.fleet.sweep import Searches, least_limit, whole_weight
 
-_SEARCHES = 16  # in a round, for which there should be time
-_UNLIMITED = 0.25  # share of the searches without one of the limits
-_STRICTEST = 0.25  # share of them that allow no overtime, or no lateness
-_HALVINGS = 7  # other limits on these are spread over as many orders of magnitude, of base 2
-_ANY_START = 0.25  # share of them that start from any solution
-_MOVES = 2  # for each iteration of PyVRP, which takes several times as long
-_BEYOND = 1e3  # how much worse a start is that exceeds a limit by the width of the front
+_SEARCHES = 16  # in a round; their iterations are chosen so that there is time for all
+_UNLIMITED = 0.25  # share of the searches that leave out a limit; drawn for each limit
+_STRICTEST = 0.25  # share of the searches that allow no overtime, or no lateness
+_HALVINGS = 7  # other limits on these are the greatest value, halved up to this number of times
+_ANY_START = 0.25  # share of the searches that start from a random solution
+_MOVES = 2  # for each iteration of PyVRP, which takes several times as long as a move
+_BEYOND = 1e3  # weight of what a start exceeds limits by, against its lengths
 
 
 class MixedSweep(Searches):
-    """The searches for a front under any two or three objectives."""
+    """Chooses the searches for a front under any two or three objectives."""
 
     def steps(self) -> Iterator[Step]:
-        """Yield searches for the least costs until there is a solution, and then all others."""
+        """Yield searches without limits until there is a solution, and then random ones forever."""
         prizes = int("unassigned" in self._rules.over)
         free = Goal(weights=self._translation.sum_weights, prizes=prizes)
         yield from self._until_found(free, self._cheapest())
@@ -43,12 +44,15 @@ class MixedSweep(Searches):
                 yield self._search(weights, iterations)
 
     def _widths(self) -> Array:
-        """Return how wide the front is in each objective, shape (m,); a unit if it has no width."""
+        """Return the width of the front in each objective, shape (m,).
+
+        Where it is 0, return the unit of the fleet instead.
+        """
         widths = np.ptp(np.array(self._archive.points), axis=0)
         return np.where(widths > 0, widths, self._translation.fleet.scale)
 
     def _search(self, weights: Array, iterations: int) -> Step:
-        """Return a search with these weights, and random limits."""
+        """Return a search with these weights of the objectives, shape (m,), and random limits."""
         distance, duration, prizes = self._whole_weights(weights)
         goal = Goal(
             weights=(distance, duration),
@@ -64,7 +68,8 @@ class MixedSweep(Searches):
     def _whole_weights(self, weights: Array) -> tuple[int, int, int]:
         """Return the weights of distance, duration and prizes in PyVRP's units.
 
-        Where there is only one, it is 1: the scale of costs leaves no room for more.
+        If only one of these is minimised, its weight is 1: costs are scaled so that they have no
+        room for a greater one.
         """
         rules, translation = self._rules, self._translation
         if not rules.weighs:
@@ -83,7 +88,10 @@ class MixedSweep(Searches):
         return self._archive.solutions[int(self._random.integers(len(self._archive)))]
 
     def _limit(self) -> int:
-        """Return a limit on routes: between the least possible and the longest of a solution."""
+        """Return a random limit on the length of each route, in PyVRP's units.
+
+        It is between the least that leaves a plan possible and the longest route of a solution.
+        """
         if self._rules.swept is None or self._random.random() < _UNLIMITED:
             return UNBOUNDED
         timed = self._rules.swept == self._translation.duration
@@ -93,7 +101,10 @@ class MixedSweep(Searches):
         return least + int(self._random.random() * (longest - least))
 
     def _vehicles(self) -> tuple[int, ...] | None:
-        """Return the most vehicles of each type: those of a solution, or one fewer."""
+        """Return the most vehicles of each type: those that a solution uses, or one fewer.
+
+        None if there is no such limit.
+        """
         if "vehicles" not in self._rules.over or self._random.random() < _UNLIMITED:
             return None
         used = Counter(route.vehicle_type() for route in self._any_solution().routes())
@@ -102,7 +113,11 @@ class MixedSweep(Searches):
         return tuple(used[index] for index in range(len(self._rules.vehicles)))
 
     def _time_limit(self, measure: str) -> float:
-        """Return a limit on the overtime of each route, or on the lateness of each visit."""
+        """Return a random limit on the overtime of each route, or on the lateness of each visit.
+
+        Args:
+            measure: "overtime" or "lateness". If it is not an objective, the limit is infinite.
+        """
         if measure not in self._rules.over:
             return np.inf
         kind = self._random.random()
@@ -115,7 +130,7 @@ class MixedSweep(Searches):
         return float(greatest * 0.5 ** self._random.uniform(0, _HALVINGS))
 
     def _start(self, goal: Goal, weights: Array) -> pyvrp.Solution:
-        """Return the solution that is best under these weights and limits, or sometimes any."""
+        """Return the best solution under these weights and limits, or sometimes a random one."""
         if self._random.random() < _ANY_START:
             return self._any_solution()
         points, limits = np.array(self._archive.points), self._limits(goal)
@@ -125,7 +140,7 @@ class MixedSweep(Searches):
         return self._archive.solutions[int(values.argmin())]
 
     def _limits(self, goal: Goal) -> Array:
-        """Return the limits of a goal on each objective of plans, shape (m,)."""
+        """Return the limits of a goal in the units of each objective, shape (m,)."""
         limits = np.full(len(self._rules.over), np.inf)
         for index, (over, layer) in enumerate(
             zip(self._rules.over, self._rules.layers, strict=True)

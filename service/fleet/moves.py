@@ -1,7 +1,8 @@
-"""Improve plans of an archive by small moves, measured under all objectives exactly.
+"""Improve plans of an archive by small moves of stops, measured under all objectives exactly.
 
-PyVRP knows neither the imbalance of a plan nor its load distance, and limits overtime and lateness
-for each route and visit, not in all. Here the lengths of a plan are those that it is compared by.
+PyVRP cannot minimise the imbalance of a plan or its load distance. It limits the overtime of each
+route and the lateness of each visit, but not their sums. Moves are measured by the lengths by which
+plans are compared, so they improve all objectives.
 """
 
 from collections import Counter
@@ -17,20 +18,20 @@ from service.fleet.goal import FREE
 from service.fleet.plans import Plan, Route
 from service.fleet.translation import Translation
 
-_NEAR = 10  # the nearest stops, beside which a stop is put most often
-_FAR = 0.2  # share of moves to anywhere
-_CHECKED = 20  # moves between two checks of the time
+_NEAR = 10  # nearest stops of each stop: most moves put a stop beside one of them
+_FAR = 0.2  # share of moves that put a stop anywhere
+_CHECKED = 20  # moves between two calls of `ended`
 Lengths = tuple[float, ...]  # of a plan or a route
-Changes = Mapping[int, tuple[int, ...]]  # the new stops of routes by their number
+Changes = Mapping[int, tuple[int, ...]]  # the new stops of each changed route, by its number
 
 
 class Moves(NamedTuple):
-    """Moves to try on a random plan of the archive, one after another.
+    """How to improve a random plan of the archive by moves, one after another.
 
     Attributes:
-        weights: The weight of each objective, shape (m,). A move is kept if it lowers the weighted
-            sum of the lengths.
-        attempts: How many moves to try.
+        weights: The weight of each objective, shape (m,). A move is kept if it makes the weighted
+            sum of the lengths smaller.
+        attempts: The number of moves to try.
     """
 
     weights: Array
@@ -41,9 +42,9 @@ class Mover:
     """Moves stops within and between the routes of plans.
 
     Args:
-        translation: The translation of the fleet.
-        archive: The plans; better ones are offered to it.
-        random: Chooses plans, weights and moves.
+        translation: The translation of the fleet between plans and solutions of PyVRP.
+        archive: The plans found so far. New plans that none of them dominates are offered to it.
+        random: Chooses plans and moves.
     """
 
     def __init__(
@@ -65,7 +66,12 @@ class Mover:
         self._optional = [s for s in rules.clients if rules.visits[s].prize is not None]
 
     def improve(self, moves: Moves, ended: Callable[[], bool]) -> None:
-        """Try moves. `ended` is called every few milliseconds; True ends them."""
+        """Try moves on a random plan, and offer what they find to the archive.
+
+        Args:
+            moves: The weights, and the number of moves.
+            ended: Called every few milliseconds; True ends the moves.
+        """
         archive = self._archive
         start = archive.solutions[int(self._random.integers(len(archive)))]
         plan = self._translation.plan(start)
@@ -84,7 +90,15 @@ class Mover:
                 (plan, of_routes), least = moved, value
 
     def _moved(self, plan: Plan, of_routes: Sequence[Lengths]) -> tuple[Plan, list[Lengths]] | None:
-        """Return a plan after a move and the lengths of its routes; None if it breaks a rule."""
+        """Return a plan after a random move; None if it breaks a rule.
+
+        Args:
+            plan: The plan before the move.
+            of_routes: The lengths of its routes.
+
+        Returns:
+            The new plan, and the lengths of its routes.
+        """
         vehicles = [route.vehicle for route in plan.routes]
         stops = [route.stops for route in plan.routes]
         vehicles += self._spare(vehicles)
@@ -107,14 +121,26 @@ class Mover:
         return None if shipments and violations(self._fleet, moved) else (moved, lengths)
 
     def _spare(self, vehicles: Sequence[int]) -> list[int]:
-        """Return a type of which a vehicle has not left, if there is one."""
+        """Return a list of one random type that has an unused vehicle, or an empty list.
+
+        Args:
+            vehicles: The type of the vehicle of each route.
+        """
         used = Counter(vehicles)
         types = self._fleet.rules.vehicles
         spare = [each for each in self._types if used[each] < types[each].count]
         return [spare[self._index(spare)]] if spare else []
 
     def _changes(self, vehicles: Sequence[int], stops: Sequence[tuple[int, ...]]) -> Changes:
-        """Return a random move."""
+        """Return a random move.
+
+        It visits an optional stop or leaves it out, adds or removes a reload, reverses a part of a
+        route, or puts a stop elsewhere.
+
+        Args:
+            vehicles: The type of the vehicle of each route.
+            stops: The stops of each route.
+        """
         visited = [number for number, each in enumerate(stops) if each]
         kind = self._random.random()
         if self._optional and kind < 1 / 4:
@@ -138,7 +164,7 @@ class Mover:
         return (*stops[:place], stop, *stops[place:])
 
     def _with_or_without(self, stops: Sequence[tuple[int, ...]]) -> Changes:
-        """Return the move that visits a stop that may be left out, or leaves it out."""
+        """Return a move that leaves out a random optional stop, or visits it if it is left out."""
         stop = self._optional[self._index(self._optional)]
         for number, each in enumerate(stops):
             if stop in each:
@@ -146,13 +172,19 @@ class Mover:
         return self._put(stop, dict(enumerate(stops)), set())
 
     def _put(self, stop: int, stops: dict[int, tuple[int, ...]], changed: set[int]) -> Changes:
-        """Return a move after which a stop is visited in addition: most often beside a near one."""
+        """Return the move that inserts a stop, most often beside a near one.
+
+        Args:
+            stop: The stop.
+            stops: The stops of all routes without this stop, by the number of the route.
+            changed: The numbers of routes that the move has changed already.
+        """
         number, place = self._target(stop, stops)
         stops[number] = (*stops[number][:place], stop, *stops[number][place:])
         return {each: stops[each] for each in changed | {number}}
 
     def _target(self, stop: int, stops: Mapping[int, tuple[int, ...]]) -> tuple[int, int]:
-        """Return the number of a route, and a place in it."""
+        """Return where to insert a stop: the number of a route, and a place in it."""
         near = self._near.get(stop, [])
         if near and self._random.random() > _FAR:
             beside = near[self._index(near)]

@@ -292,9 +292,9 @@ class _Search:
         return self._with_kept(replace(front, found=max(front.found, len(archive))))
 
     def _with_kept(self, front: FleetFront) -> FleetFront:
-        """Return a front of which one plan keeps most of the driven one, if such a plan is short.
+        """Return the front with a plan that keeps most of the driven plan, if such a plan is short.
 
-        It takes the place of the plan nearest to it if there are as many as asked for.
+        If the front is full, this plan takes the place of the plan nearest to it.
         """
         if self._kept is None or any(map(self._kept.keeps, front.plans)):
             return front

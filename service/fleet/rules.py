@@ -130,7 +130,7 @@ class Rules:
 
     @cached_property
     def sums(self) -> tuple[int, ...]:
-        """The numbers of the costs of which some objective is the sum, in the order of these."""
+        """The numbers of the costs that objectives sum, in the order of the objectives."""
         pairs = zip(self.layers, self.over, strict=True)
         return tuple(dict.fromkeys(layer for layer, over in pairs if over == "sum"))
 

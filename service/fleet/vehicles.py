@@ -21,7 +21,7 @@ class Visit:
         due: The time at which the visit should have begun. If it begins later, the plan is late by
             the difference.
         release: The earliest time at which a vehicle can load what it brings there.
-        skills: The skills of which its vehicle must have all.
+        skills: The skills that its vehicle must have, all of them.
         vehicles: The types of vehicles that may visit it; empty for any.
     """
 

@@ -23,9 +23,9 @@ def best_subset(
 
     Of two objectives exact (Bringmann, Friedrich and Klitzke, 2014). Of more, points are chosen one
     after another, each time that which adds most: the hypervolume is at least 63 % of the largest
-    (Nemhauser, Wolsey and Fisher, 1978). If there are no more points than that, all are returned.
-    If fewer points than that contribute to the hypervolume, the rest are nondominated points, and
-    after these others, evenly spread along the first length. O(k log k + k size) of two objectives.
+    (Nemhauser, Wolsey and Fisher, 1978). If there are at most `size` points, all are returned. If
+    fewer than `size` contribute to the hypervolume, the rest are other nondominated points, and
+    then any others, evenly spread along the first length. O(k log k + k size) of two objectives.
 
     Args:
         points: Shape (k, m), in any order.
@@ -71,7 +71,7 @@ def selection_seconds(size: int, points: int, objectives: int = OBJECTIVES) -> f
 
 
 def _greedy(shares: Array, size: int, stop: Callable[[], bool]) -> Indices:
-    """Return the indices of points that are chosen one after another, of more than so many."""
+    """Return the indices of `size` points, chosen one after another from more."""
     gains = (1 - shares).prod(axis=1)
     chosen = np.empty(size, np.int64)
     sweep = make_sweep(size, shares.shape[1])
@@ -85,10 +85,10 @@ def _greedy(shares: Array, size: int, stop: Callable[[], bool]) -> Indices:
 
 
 def _best_of_front(shares: Array, size: int, stop: Callable[[], bool]) -> Indices:
-    """Return the indices of the best `size` of more than so many points of a front.
+    """Return the indices of the best `size` points of a front that has more.
 
     The points are scaled so that the reference point is (1, 1), and all lie below it. With x
-    ascending and y descending, the best j points of which i is the last have hypervolume
+    ascending and y descending, the best j points that end with point i have hypervolume
     h(j, i) = max over l < i of h(j - 1, l) + (1 - x[i]) (y[l] - y[i]): for each l a line in
     1 - x[i]. Slopes and arguments both descend, so one pass along the upper envelope of the lines
     serves all i (Bringmann, Friedrich and Klitzke, 2014).

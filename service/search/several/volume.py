@@ -147,8 +147,8 @@ def keep_sorted(front: Array, kept: int, points: Array, k: int) -> int:
 def added_volume(shares: Array, chosen: Order, count: int, k: int, sweep: Sweep) -> float:
     """Return by how much point k would increase the hypervolume of `count` chosen points.
 
-    These are ascending by the last length. What they have of the box of point k is that of the
-    points of which each length is the greater of the two.
+    The chosen points are ascending by the last length. Each covers a part of the box of point k:
+    the box of the point whose lengths are the greater ones of the two points.
     """
     box, objectives = 1.0, shares.shape[1]
     for m in range(objectives):
