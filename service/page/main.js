@@ -35,9 +35,10 @@ const result = new Result({
     if (input.priced) say("Moved. Costs given as a matrix did not change.");
   },
   onDelete: (city) => input.deleteCity(city),
+  ofEnds: { onMove: (...moved) => input.moveEnd(...moved), onRefused: say },
   onServe: (...served) => (input.serve(...served), plan()),
 });
-const input = new RequestForm(form, service, edited, settled);
+const input = new RequestForm(form, service, { onEdited: edited, onEnds: result.showEnds, settled });
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const examples = new Examples(element("example"), element("about"));
 const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"), element("columns"), {

@@ -13,7 +13,7 @@ export function describedFleet({ vehicles, stops }) {
 
 /** Robots that share a map, which is described. */
 export const describedRobots = ({ robots }, map) =>
-  `${counted(robots.length, "robot", "robots")} on ${map} Robots are shown here and not edited: change the request’s JSON, and open it again.`;
+  `${counted(robots.length, "robot", "robots")} on ${map} Their starts and ends are moved on the map; for anything else change the request’s JSON, and open it again.`;
 
 // Members that are long lists of rows.
 const ROWS = ["matrix", "coordinates", "grid", "cost_layer", "layer", "second_matrix", "second_coordinates"];

@@ -1,5 +1,6 @@
 /** The fields of a request: their names, and which kinds of request have them. */
 
+import { poseIn } from "./map_ends.js";
 import { nameOf, stopNamed } from "./names.js";
 
 // Requests for plans have those that say so, others have all; those of coverage stand where there is a grid.
@@ -18,6 +19,7 @@ const FIELDS = [
   { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
 ];
 
+const ENDS = ["start", "end"];
 const OFFERED = 1000; // the most names in a list that a browser opens without delay
 
 export class Fields {
@@ -41,11 +43,12 @@ export class Fields {
   get members() {
     const asked = FIELDS.filter((field) => this.#has(field));
     const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
-    const given = texts.filter(([, text]) => text).map(([name, text]) => [name, this.#value(name, text)]);
+    const filled = texts.filter(([, text]) => text);
+    const given = filled.map(([name, text]) => this.#member(name, text));
     if (this.#plans) return Object.fromEntries(given);
     const bound = this.#form.bound.checked ? { bound: true } : {};
     const detours = this.#layered && this.#form.detours.checked ? { detours: true } : {};
-    return { ...Object.fromEntries(given), ...bound, ...detours, ...this.#ends(given.map(([name]) => name)) };
+    return { ...Object.fromEntries(given), ...bound, ...detours, ...this.#ends(filled.map(([name]) => name)) };
   }
 
   /** Takes the names of stops, and offers them in the fields. */
@@ -56,8 +59,17 @@ export class Fields {
     this.#form.querySelector("#stop-names").replaceChildren(...names);
   }
 
-  #value(name, text) {
-    return ["start", "end"].includes(name) ? stopNamed(this.#ids, text) : numberOr(text);
+  /** The name and the value of the member that a field asks for. On a map, x and y are a pose. */
+  #member(name, text) {
+    if (!ENDS.includes(name)) return [name, numberOr(text)];
+    const pose = this.#coverage.hidden ? null : poseIn(text);
+    return pose ? [`${name}_pose`, pose] : [name, stopNamed(this.#ids, text)];
+  }
+
+  /** Puts an end of a tour on a map into its field: a place, a pose, or neither. */
+  put(name, { place, pose }) {
+    const none = name === "start" && !this.#form.open.checked ? nameOf(null, 0) : "";
+    this.#form[name].value = pose?.join(", ") ?? (place === undefined ? none : nameOf(null, place));
   }
 
   /** What open routes need: that they are, and that an empty start leaves it to them. */
@@ -115,9 +127,9 @@ export class Fields {
     this.#form.bound.checked = rest.bound === true;
     this.#form.detours.checked = rest.detours === true;
     const shown = (stop) => (typeof stop === "number" ? nameOf(this.#ids, stop) : (stop ?? ""));
-    this.#form.start.value = rest.start === null ? "" : shown(rest.start ?? 0);
-    this.#form.end.value = shown(rest.end);
-    for (const name of ["closed", "bound", "detours", "start", "end"]) delete rest[name];
+    this.#form.start.value = rest.start_pose?.join(", ") ?? (rest.start === null ? "" : shown(rest.start ?? 0));
+    this.#form.end.value = rest.end_pose?.join(", ") ?? shown(rest.end);
+    for (const name of ["closed", "bound", "detours", ...ENDS, "start_pose", "end_pose"]) delete rest[name];
   }
 }
 

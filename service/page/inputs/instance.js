@@ -6,6 +6,7 @@ import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
 import { DISTANCE, UNNAMED, namesIn, unnamed } from "../common/objectives.js";
+import { framed } from "./map_ends.js";
 import { nameOf } from "./names.js";
 import { Problem } from "../planning/service.js";
 
@@ -31,7 +32,7 @@ export function described(asked) {
  * stops, and `names`: the user's names of both objectives. Beside a grid it may have `unknownCells`, to draw them.
  */
 export function askedFor(opened, settings, { rows, whole }) {
-  const asked = { ...opened, ...settings };
+  const asked = framed({ ...opened, ...settings });
   return formOf(opened) === "coordinates" ? { ...asked, coordinates: rows, rounded: whole } : asked;
 }
 

@@ -7,6 +7,7 @@ import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.
 import { FleetForm } from "../fleet/fleet_form.js";
 import { byIds, servedBy, stopRenamed } from "../fleet/references.js";
 import { RequestText } from "../fleet/request_text.js";
+import { placedAt, withRobotEnd } from "./map_ends.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
@@ -36,10 +37,11 @@ export class RequestForm {
 
   /**
    * @param {Service} service reads what is typed
-   * @param {(instance: object, fit: boolean) => void} onEdited called with other stops or costs
-   * @param {() => Promise<boolean>} settled reads what was typed, or shows why that is not possible
+   * @param {{ onEdited: (instance: object, fit: boolean) => void, onEnds: (instance: object) => void,
+   *   settled: () => Promise<boolean> }} told called with other stops or costs; with other ends that were typed; and
+   *   to read what was typed, or show why that is not possible
    */
-  constructor(form, service, onEdited, settled) {
+  constructor(form, service, { onEdited, onEnds, settled }) {
     this.#onEdited = onEdited;
     this.#settled = settled;
     this.#typedRows = new TypedRows(service, (found) => this.#take(found));
@@ -52,6 +54,7 @@ export class RequestForm {
     });
     this.#fleet = new FleetForm(this.#table, (changed) => this.#change(changed));
     element("cities").addEventListener("input", () => this.#typed());
+    for (const name of ["start", "end", "open"]) form[name].addEventListener("change", () => onEnds(this.instance));
     element("rounded").addEventListener("change", () => this.#edited(false));
     element("add").addEventListener("click", () => this.#onceRead(() => this.#add()));
   }
@@ -92,6 +95,7 @@ export class RequestForm {
 
   /** The instance to draw. */
   get instance() {
+    if (kindOf(this.#brought).onGrid) return this.asked;
     return formOf(this.#brought) === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought;
   }
 
@@ -128,6 +132,13 @@ export class RequestForm {
     }
     const row = this.#rowOf(city);
     this.#write(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...rounded) : each)), false);
+  }
+
+  /** Puts an end of a robot's tour into a cell of its map; null takes it away. */
+  moveEnd(end, cell) {
+    if (end.robot === null) this.#fields.put(end.role, cell ? placedAt(this.asked, cell) : {});
+    else this.#brought = { ...this.#brought, robots: withRobotEnd(this.asked, end, cell) };
+    this.#edited(false);
   }
 
   /** Whether some costs are those of a matrix, and not measured between places. */

@@ -3,6 +3,7 @@
 import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "../common/colours.js";
 import { fitting, flatMap, ring } from "./flatmap.js";
+import { GridEnds } from "./grid_ends.js";
 import { turnOf } from "./planes.js";
 import { Routes } from "./routes.js";
 import { TourLine } from "./tourline.js";
@@ -21,35 +22,46 @@ export class GridMap {
   #unreached = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
   #outlines = L.svg({ padding: 0.2 });
-  #start = ring("start", 18);
-  #end = ring("end", 18);
+  #ends;
   #highlight = ring("highlight", 16);
   #tour = null; // the selected tour
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
   #visits = []; // the routes that are drawn, each `{ name, stops }`
 
-  constructor(element) {
+  /** @param {object} told callbacks for ends that are moved: see GridEnds */
+  constructor(element, told) {
     this.#element = element;
     this.#map = flatMap(element, { minZoom: -5, maxZoom: 8 });
     this.#map.setView([0, 0], 0);
     for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
     for (const group of [this.#places, this.#unreached]) group.addTo(this.#map);
+    this.#ends = new GridEnds(this.#map, told);
     this.#map.on("mousemove", ({ containerPoint }) => this.#point(this.#near(containerPoint)));
     element.addEventListener("mouseleave", () => this.#point(null)); // Leaflet's canvas keeps it from the map
     new ResizeObserver(() => this.#fit()).observe(element);
     onSchemeChange(() => this.#grid && this.#colour());
   }
 
-  /** Shows a grid, rows of 0 and 1, tinted by a layer of costs if there is one; `unknownCells` are rows of 0 and 1 too. */
-  show({ grid, places, unknownCells: unknown, ...costs }) {
-    this.#grid = { grid, unknown, costs: shadeOf(costs) };
+  /** Shows the map of a request, rows of 0 and 1, tinted by a layer of costs if there is one; `unknownCells` are rows of 0 and 1 too. `editable` says whether its ends can be moved. */
+  show(request, editable) {
+    const { grid, places, unknownCells: unknown } = request;
+    const shown = { grid, unknown, costs: shadeOf(request) };
+    const same = Object.keys(shown).every((part) => shown[part] === this.#grid?.[part]);
+    this.#grid = shown;
     for (const name of Object.keys(this.#lines)) this.draw(name, null);
     this.drawRoutes([]);
     this.#element.style.aspectRatio = `${grid[0].length} / ${grid.length}`;
     this.place(places ?? []);
+    this.#ends.show(request, editable, same);
+    if (same) return; // else a large map would be drawn again for each end that moves
     this.#colour();
     this.#fit();
+  }
+
+  /** Shows other ends of the request. */
+  showEnds(request) {
+    this.#ends.show(request, true, true);
   }
 
   /** Shows places, a row and a column each, and the boxes of regions out of reach. */
@@ -71,8 +83,7 @@ export class GridMap {
     this.#lines[name].show(path);
     if (name !== "selected") return;
     this.#tour = item?.tour ?? null;
-    this.#mark(this.#start, path[0]);
-    this.#mark(this.#end, String(path[0]) === String(path.at(-1)) ? undefined : path.at(-1));
+    this.#ends.follow([[null, item?.path?.cells ?? []]]);
   }
 
   #mark(ring, place) {
@@ -95,9 +106,10 @@ export class GridMap {
     this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
   }
 
-  /** Draws the paths of a plan's robots, `{ name, stops, path, style }` each, and where they start; none takes them away. */
+  /** Draws the paths of a plan's robots, `{ name, robot, stops, path, style }` each with the robot's index, and where they start; none takes them away. */
   drawRoutes(routes) {
     this.#visits = routes;
+    if (routes.length) this.#ends.follow(routes.map(({ robot, path }) => [robot, path?.cells ?? []]));
     this.#routes.show(routes.map(({ path, style }) => ({ latlngs: lineOf(path), style })), true);
   }
 

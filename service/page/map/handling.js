@@ -2,7 +2,6 @@
 
 const REACH = { mouse: 9, pen: 14, touch: 22 }; // pixels from a stop within which it can be grabbed
 const STILL = 4; // pixels that a pointer may move in a click
-const STEP = 10; // pixels that an arrow key moves a stop, with Shift one
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Handling {
@@ -16,8 +15,9 @@ export class Handling {
   /**
    * @param {L.Map} map the map of the stops
    * @param {object} plane with `near(point, reach)`, the city at a point in pixels or null;
-   *   `pointOf(city)`; and `drag(city, point)` and `drop(city, point)`, called with the place where a stop is put
-   * @param {ChosenStop} chosen the stop that is chosen
+   *   `pointOf(city)`; `stride(fine)`, the pixels that an arrow key moves a stop; and `drag(city, point)` and
+   *   `drop(city, point)`, called with the place where a stop is put
+   * @param {ChosenStop} chosen the stop that is chosen; or an object like it that may be `placing` what it has chosen, by a click
    */
   constructor(map, plane, chosen) {
     this.#map = map;
@@ -60,12 +60,13 @@ export class Handling {
     if (moved) this.#plane.drop(city, this.#point(event));
   }
 
-  /** Puts the stop back if the browser ends a drag. */
+  /** Puts the stop back if the browser ends a drag, or the key Escape. */
   #letGo() {
     if (!this.#held) return;
-    const { city, from } = this.#held;
+    const { city, moved } = this.#held;
     this.#end();
-    this.#plane.drag(city, from);
+    this.#dragged = moved; // the click to come chooses nothing
+    this.#plane.drag(city, this.#plane.pointOf(city));
   }
 
   #end() {
@@ -75,18 +76,19 @@ export class Handling {
 
   #click(event) {
     if (this.#dragged) event.stopImmediatePropagation();
-    else if (!event.target.closest(".leaflet-control")) this.#chosen.choose(this.#at(event));
+    else if (!this.#chosen.placing && !event.target.closest(".leaflet-control")) this.#chosen.choose(this.#at(event));
     this.#dragged = false;
   }
 
   #key(event) {
     const { city } = this.#chosen;
     if (event.target !== this.#map.getContainer()) return; // the zoom buttons have keys of their own
-    if (event.key === "Enter") this.#chosen.turn(event.shiftKey ? -1 : 1);
+    if (event.key === "Escape" && this.#held) this.#letGo();
+    else if (event.key === "Enter") this.#chosen.turn(event.shiftKey ? -1 : 1);
     else if (city === null) return;
     else if (event.key === "Escape") this.#chosen.choose(null);
     else if (!this.#chosen.editable) return;
-    else if (event.key in ARROWS) this.#nudge(city, ARROWS[event.key], event.shiftKey ? 1 : STEP);
+    else if (event.key in ARROWS) this.#nudge(city, ARROWS[event.key], this.#plane.stride(event.shiftKey));
     else if (event.key === "Delete" || event.key === "Backspace") this.#chosen.remove();
     else return;
     event.preventDefault();

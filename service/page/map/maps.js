@@ -39,8 +39,9 @@ export class Maps {
    * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
    * @param {(city: number) => void} onDelete called with the stop to delete
    * @param {(stop: string | null) => void} onChoose called with the id of a fleet's stop that is chosen
+   * @param {{ onMove: function, onRefused: function }} ofEnds called for ends on a robot's map: see GridEnds
    */
-  constructor({ onClick, onMove, onDelete, onChoose }) {
+  constructor({ onClick, onMove, onDelete, onChoose, ofEnds }) {
     const clicked = (plane, place) => onClick(plane, place, this.#form === "stops" || Boolean(this.#kind.movers));
     this.#planes = new Planes([element("plane-1"), element("plane-2")], {
       onClick: clicked,
@@ -49,7 +50,7 @@ export class Maps {
       onChoose: (city) => this.#kind.movers && onChoose(city === null ? null : this.#ids?.[city] ?? null),
     });
     this.#planes.follow((cities) => this.#ways.along(cities));
-    this.#grid = new GridMap(element("grid"));
+    this.#grid = new GridMap(element("grid"), ofEnds);
   }
 
   /** Draws map tiles under stops, if there are any; the credit names their source. */
@@ -122,7 +123,7 @@ export class Maps {
     this.#title();
     document.querySelectorAll(".plane").forEach((figure, map) => (figure.hidden = map >= drawn.length));
     document.querySelector(".wide").hidden = !this.#kind.onGrid;
-    if (this.#kind.onGrid) this.#grid.show(instance);
+    if (this.#kind.onGrid) this.#grid.show(instance, editable);
     else this.#planes.show(rows, fit, onEarth);
     const fleet = Boolean(this.#kind.movers && !this.#kind.onGrid);
     // In planes both objectives of a fleet may have the same places.
@@ -132,6 +133,11 @@ export class Maps {
     this.#ways.lead(this.#onEarth ? rows.map((row) => row.slice(0, 2)) : []);
     this.#sayLines(null);
     this.#sayCredit();
+  }
+
+  /** Shows other ends of a request on a robot's map. */
+  showEnds(request) {
+    if (this.#kind.onGrid) this.#grid.showEnds(request);
   }
 
   /** Chooses a stop of a fleet by its id; null chooses none. */
@@ -201,10 +207,11 @@ export class Maps {
     if (name === "selected") this.#grid.drawRoutes(movers && item ? this.#paths(item) : []);
   }
 
-  /** The paths of a plan's robots, each `{ name, stops, path, style }`, whose stops are places. */
+  /** The paths of a plan's robots, each `{ name, robot, stops, path, style }`, whose stops are places. */
   #paths({ routes }) {
     const styles = stylesOf(routes, this.#robots);
-    return routes.map(({ robot, tour, path }, at) => ({ name: robot, stops: tour, path, style: styles[at] }));
+    const index = new Map(this.#robots.map(({ id }, at) => [id, at]));
+    return routes.map(({ robot, tour, path }, at) => ({ name: robot, robot: index.get(robot), stops: tour, path, style: styles[at] }));
   }
 
   /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */

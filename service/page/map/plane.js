@@ -14,6 +14,7 @@ const { L } = globalThis;
 const NARROW = 240; // pixels, as a map on a phone
 const CROWD = 300; // stops
 const MOVED = 3; // pixels from the centre of a map to where it was, of a map that somebody moved
+const STEP = 10; // pixels that an arrow key moves a stop, with Shift one
 const POINTED = 6; // pixels from a stop within which it is pointed at
 const [MOVING, STILL] = [1500, 150]; // stops drawn of a way that changes, and milliseconds until all are
 
@@ -169,6 +170,7 @@ export class Plane {
     return {
       near: (point, reach) => this.#near(point, reach),
       pointOf: (city) => this.#pointOf(this.#places[city]),
+      stride: (fine) => (fine ? 1 : STEP),
       drag: (city, point) => this.#drag(city, placeAt(point)),
       drop: (city, point) => onMove(city, placeAt(point)),
     };

@@ -107,6 +107,9 @@ export class Result {
     showFigures(element("figures"), null, null);
   }
 
+  /** Shows other ends of the tours on a robot's map. */
+  showEnds = (request) => this.#maps.showEnds(request);
+
   /** Shows the front of the network alone, if it is known, and the best front so far. */
   show({ stage, alone, answer, growth, again = false }) {
     this.#kind = kindNamed(answer);
