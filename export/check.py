@@ -29,10 +29,13 @@ class TourMismatch(Exception):
 
 @dataclass(frozen=True)
 class Comparison:
-    """How many tours were compared, and how many of them parted after a tie.
+    """The result of comparing tours of the file with those of torch.
 
-    `largest` is the largest difference between a length of such a tour in the file and in torch,
-    as a share of torch's.
+    Attributes:
+        tours: The number of tours compared.
+        ties: The number of tours that differ, but only after a tie.
+        largest: The largest difference between the lengths of such a tour in the file and in torch,
+            as a share of torch's length.
     """
 
     tours: int = 0

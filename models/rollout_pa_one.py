@@ -26,7 +26,7 @@ EdgeLogits = Callable[[Costs, Fragments, Candidates], Tensor]
 
 
 class Judgement(NamedTuple):
-    """How a network rates edges: to how many candidates, and for how many joinings at once."""
+    """A network that rates edges, the candidates of an end, and the joinings of one look."""
 
     edge_logits: EdgeLogits
     candidates: int

@@ -43,7 +43,7 @@ def spread_preferences(k: int, generator: Generator, device: torch.device) -> Fl
 
 
 def fan_or_lattice(k: int, objectives: int, device: torch.device) -> Float[Tensor, "l m"]:
-    """Return preferences that are spread evenly, at least k, whatever the number of objectives.
+    """Return at least k preferences that are spread evenly, for any number of objectives.
 
     Under two objectives they are the fan of k. Under more, they are the directions of all weights
     that are multiples of 1 / s, for the least s that gives as many: of 100, under three

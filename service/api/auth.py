@@ -35,7 +35,7 @@ _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API ke
 
 @dataclass(frozen=True, kw_only=True)
 class Quota:
-    """What is left of a client's rate.
+    """The requests that a client's rate still allows.
 
     Attributes:
         remaining: The requests that it may make at once.

@@ -1,9 +1,9 @@
-"""Send the progress of a job as server-sent events, which go on after those that a client has.
+"""Send the progress of a job as server-sent events, and go on after those that a client has.
 
-A job has a state, not a history of events. So the id of an event names what its client has seen by
-then: the status, and digests of the last `progress` and `compiling`. A client that connects again
-sends it as `Last-Event-ID`, to any replica, and is sent whatever differs from that: no event twice,
-and always the last status.
+A job has a state, not a history of events. So the id of an event says what a client has seen by
+then: the status, and digests of the last `progress` and `compiling`. A client that connects again,
+to any replica, sends this id as `Last-Event-ID`. It is sent only what differs from that: no event
+twice, and always the last status.
 """
 
 import asyncio
@@ -33,7 +33,7 @@ PARAMETERS: tuple[dict[str, Any], ...] = (
 
 @dataclass(frozen=True)
 class Seen:
-    """What a client has seen of a job: its status, and digests of events; empty for nothing."""
+    """The part of a job that a client has seen: its status, and digests of events, "" if none."""
 
     status: str = ""
     progress: str = ""
@@ -41,7 +41,7 @@ class Seen:
 
     @classmethod
     def read(cls, text: str | None) -> Self:
-        """Return what the id of an event says; nothing where the service did not make it."""
+        """Return the part that an event's id stands for; an empty one if the id is not valid."""
         found = _ID.fullmatch(text or "")
         return cls(*found.groups()) if found else cls()
 

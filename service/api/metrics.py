@@ -115,7 +115,7 @@ class Metrics(Collector):
 
     def answered(self, answered: AnsweredRequest) -> None:
         """Count a request that was answered."""
-        # An invented method must not become a label: each label takes memory for ever.
+        # An invented method must not become a label: each label takes memory until the end.
         method = answered.method if answered.method in _METHODS else "other"
         self._requests(method, answered.path, answered.status).inc()
         self._request_seconds(method, answered.path).observe(answered.seconds)

@@ -41,7 +41,7 @@ class RouteItem(BaseModel):
 
 
 class ReasonItem(BaseModel):
-    """What keeps the vehicles of a type from a stop."""
+    """A rule that keeps the vehicles of a type from a stop."""
 
     vehicle: str = Field(description="the id of the type")
     rule: Rule
@@ -49,7 +49,7 @@ class ReasonItem(BaseModel):
 
 
 class LeftOutItem(BaseModel):
-    """How a stop can be served that a plan leaves out, or why not."""
+    """A stop that a plan leaves out: how it can be served, or why it cannot."""
 
     stop: str
     plan: int | SkipJsonSchema[None] = Field(

@@ -183,7 +183,7 @@ class FrontsAnswer(BaseModel):
 
 
 class AcceptedAnswer(BaseModel):
-    """Where a front will be found."""
+    """The id and the status of a front that was submitted."""
 
     id: str
     status: Status
@@ -316,7 +316,7 @@ class FileAnswer(BaseModel):
 
 
 class CompilingAnswer(BaseModel):
-    """How far the compilation of the code is that some requests need; they wait for it."""
+    """The progress of compiling code. Some requests need this code, and wait for it."""
 
     share: float = Field(description="what is done, 0 to 1")
     seconds_left: float = Field(description="about how long the rest takes")

@@ -94,8 +94,8 @@ class StoredFrontRoutes:
     ) -> Response:
         """List the caller's own fronts, the newest first: of its key or, without keys, its address.
 
-        A front is listed from when it was submitted, and anew when it is finished. If there are
-        more than `limit`, the header `Link` has the address of the next page.
+        A front is listed once it is submitted, and moves to the top when it is finished. If there
+        are more than `limit`, the header `Link` has the address of the next page.
         """
         caller = caller_of(request)
         found = await self._store.fronts(caller, owner_of(request), after, limit + 1)

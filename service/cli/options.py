@@ -181,7 +181,7 @@ class Network:
 
 @dataclass(frozen=True, kw_only=True)
 class Ends:
-    """Where tours begin and end, as members of a request."""
+    """The members of a request that say where tours begin and end."""
 
     closed: Annotated[
         bool | None,

@@ -48,7 +48,7 @@ def make_celery(redis_url: str, seconds: float) -> Celery:
         },
         broker_connection_retry_on_startup=True,
         broker_connection_max_retries=None,
-        # Redis refuses writes where it is full; the worker connects anew until there is room.
+        # Redis refuses writes where it is full; the worker connects again until there is room.
         broker_channel_error_retry=True,
         worker_cancel_long_running_tasks_on_connection_loss=False,
         worker_enable_remote_control=False,

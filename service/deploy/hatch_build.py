@@ -16,7 +16,7 @@ class Precompile(BuildHookInterface[Any]):
     """Compiles the code of the service for the Python that builds the wheel.
 
     numba loads compiled code of its own version alone, so the wheel demands this version. Where the
-    code is not for a processor, the service compiles it anew.
+    code is not for a processor, the service compiles it again.
     """
 
     def dependencies(self) -> list[str]:

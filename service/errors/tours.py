@@ -11,10 +11,10 @@ _PLURALS = {"city": "cities", "stop": "stops", "place": "places"}
 
 @dataclass(frozen=True)
 class CityNames:
-    """How refusals name cities.
+    """The words by which refusals name cities.
 
     Args:
-        noun: What a city is called.
+        noun: The word for a city, such as "stop".
         ids: The caller's names of the cities; None where there are only indexes.
         part: The member of the request that has an item for each city; None where none has.
     """

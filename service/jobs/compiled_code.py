@@ -35,7 +35,7 @@ Told = Callable[[Part | Compiling], None]
 
 
 class _Work(NamedTuple):
-    """What compiles a part, or loads it.
+    """The functions that compile a part, or load it.
 
     Args:
         whole: Compiles all of it.

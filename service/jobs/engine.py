@@ -59,7 +59,7 @@ class Engine(Protocol):
 
     @property
     def compiling(self) -> Compiling | None:
-        """How far this machine's compilation of the code is; None before it and after it."""
+        """The progress of compiling code on this machine; None before it and after it."""
 
     async def check_ready(self) -> None:
         """Raise a refusal when some kinds of tasks would be refused at the moment."""

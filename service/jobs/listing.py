@@ -11,7 +11,7 @@ from service.requests.task import KindName
 
 @dataclass(frozen=True, kw_only=True)
 class ListedFront:
-    """What a list says of a front.
+    """A front in a list.
 
     Attributes:
         number: Grows with each front that is stored. A page begins below a number.

@@ -172,7 +172,7 @@ class LocalEngine:
 
     @property
     def compiling(self) -> Compiling | None:
-        """How far the compilation of the code is; None before it and after it."""
+        """The progress of compiling code; None before it and after it."""
         return self._workers.compiling
 
     async def check_ready(self) -> None:

@@ -33,7 +33,7 @@ class Part(Enum):
 
 @dataclass(frozen=True)
 class Compiling:
-    """How far the compilation of all parts is.
+    """The progress of compiling all parts.
 
     Args:
         share: What is done, from 0 to 1.

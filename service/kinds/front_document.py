@@ -148,7 +148,7 @@ class FrontDocument:
 
     @property
     def _begins(self) -> list[int]:
-        """Where each tour begins, shape (m,)."""
+        """The place where each tour begins, shape (m,)."""
         return [0, *(np.frombuffer(self.ends, np.int64)[:-1] + 1).tolist()] if self.ends else []
 
     def split(self) -> list[bytes]:

@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 
 class Crew:
-    """A number of processes that plan. As a context manager it ends them, whatever they do.
+    """A number of processes that plan. As a context manager it ends them, even if they are busy.
 
     Args:
         workers: The number of processes; None for one for each processor.

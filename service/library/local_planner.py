@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Planned:
-    """What was planned: the task, its front as a document, and whether Ctrl-C ended it."""
+    """A planned task, its front as a document, and whether Ctrl-C ended it."""
 
     task: Task
     document: FrontDocument

@@ -177,7 +177,7 @@ class ChooseTour(StoredFront):
 
 
 class Replan(StoredFront):
-    """What has changed since a front was planned."""
+    """A front, and the changes since it was planned."""
 
     done: list[int | str] | None = Field(default=None, description="stops visited, in order")
     position: int | str | dict[str, Any] | None = Field(

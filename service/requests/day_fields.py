@@ -85,7 +85,7 @@ class TrafficItem(StrictModel):
 
 
 class DepartureRange(StrictModel):
-    """When a tour may begin."""
+    """The times at which a tour may begin."""
 
     earliest: TimeOfDay = Field(description="in seconds of the day")
     latest: TimeOfDay = Field(description="in seconds of the day")

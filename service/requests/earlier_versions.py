@@ -52,7 +52,7 @@ class EncodedTours(BaseModel):
 
 
 class EarlierMembers(BaseModel):
-    """What is left of the tours of an earlier front, as the service writes it."""
+    """The rest of the tours of an earlier front, as the service writes it."""
 
     earlier_tours: EncodedTours = Field(
         description="what is left of each tour, first of the one being driven"
@@ -67,7 +67,7 @@ class EarlierMembers(BaseModel):
 
     @property
     def earlier(self) -> EarlierTours:
-        """What is left of the earlier tours."""
+        """The rest of the earlier tours."""
         touched = None if self.touched is None else np.array(self.touched, np.int64)
         tours = self.earlier_tours.tours()
         return EarlierTours(tours, self.min_kept, touched, self.balance)

@@ -148,7 +148,7 @@ class FrontRequest(DayFields, PlanRequest):
 
     @cached_property
     def hours(self) -> Hours | None:
-        """When tours begin, if costs change over the day."""
+        """The times at which tours may begin, if costs change over the day."""
         for name in ("departure", "clock"):
             if name in self.model_fields_set and not self.stops:
                 raise invalid(name, "needs stops with objectives")

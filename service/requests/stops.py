@@ -146,7 +146,7 @@ class Traffic:
 
     @property
     def departures(self) -> list[str]:
-        """When each slice begins, as 2026-11-27T07:30, in the time of the place."""
+        """The local time at which each slice begins, such as 2026-11-27T07:30."""
         midnight = datetime.fromisoformat(self.day)
         each = [midnight + timedelta(seconds=seconds) for seconds in self.begins]
         return [time.isoformat(timespec="minutes") for time in each]
@@ -157,7 +157,7 @@ Source = FixedSource | OverTheDay | Slices | Traffic
 
 @dataclass(frozen=True, eq=False)
 class Hours:
-    """When tours begin and how long visits take, where costs change over the day.
+    """The times at which tours may begin, and those that visits take, if costs change over the day.
 
     Args:
         clock: The index of the objective whose costs are seconds of travel.

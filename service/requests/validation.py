@@ -116,7 +116,7 @@ def show(value: object) -> str:
 
 
 def nearest(word: str, words: Iterable[str]) -> str | None:
-    """Return the word that is most like another one, whatever their case; None if none is.
+    """Return the word that is most like another one, in any case; None if no word is like it.
 
     To compare two words takes difflib up to the cube of their length. So it compares only the few
     words that have the most letters in common with this one, which are found in linear time.

@@ -30,7 +30,7 @@ class Costs(NamedTuple):
 
     @property
     def cheaper_way(self) -> Tensor:
-        """The cost of each step or of the step back, whichever costs less."""
+        """The smaller of the costs of each step and of the step back."""
         return self.means if self.leans is None else self.means - self.leans.abs()
 
     def steps(
@@ -43,7 +43,7 @@ class Costs(NamedTuple):
 
 
 class Prices(NamedTuple):
-    """What each city costs by itself, in each row: half a fee for the way there and the way on.
+    """The price of each city by itself, in each row: half a fee for the way there and the way on.
 
     The fee is taken off the cost of every step to a city and from it; the tilt is taken off that
     of the steps from the city, and put on those to it. The cost of no tour changes by more than

@@ -17,7 +17,7 @@ from models.networks.joining.fragments import Fragments, first_open
 
 
 class Walks(NamedTuple):
-    """How far each departure sees: the departure to which it looks, and the steps until there.
+    """The departure to which each departure looks, and the number of steps until there.
 
     A walk begins at one departure of each row and ends at the last one, which looks at itself.
     """

@@ -14,7 +14,7 @@ PAGE = 100  # the most fronts that the service lists at once
 
 @dataclass(frozen=True, kw_only=True)
 class ListedFront:
-    """What the service lists of a front; `client.any_job(id).front()` is the front itself.
+    """A front in a list, without its tours; `client.any_job(id).front()` is the front itself.
 
     Attributes:
         id: Its id.

@@ -153,7 +153,7 @@ class WorkerPool:
 
     @property
     def compiling(self) -> Compiling | None:
-        """How far the compilation of all parts is; None before it and after it."""
+        """The progress of compiling all parts; None before it and after it."""
         return self._workers.compiling
 
     def check_ready(self) -> None:

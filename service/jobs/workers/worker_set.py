@@ -100,7 +100,7 @@ class WorkerSet:
         return WarmingUp() if self.compiling is None else self.compiling.refusal
 
     async def _keep_worker(self) -> None:
-        """Keep one process running until the set is closed, whatever fails."""
+        """Keep one process running until the set is closed, even after failures."""
         while True:
             for seconds in _growing_pauses():
                 try:

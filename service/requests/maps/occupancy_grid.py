@@ -24,14 +24,14 @@ class _Message(BaseModel):
 
 
 class Point(_Message):
-    """Where the lower left corner of a map is, in metres."""
+    """The position of the lower left corner of a map, in metres."""
 
     x: Number
     y: Number
 
 
 class Quaternion(_Message):
-    """How a map is turned about the z axis."""
+    """The rotation of a map about the z axis, as a quaternion."""
 
     x: Number = 0.0
     y: Number = 0.0
@@ -40,7 +40,7 @@ class Quaternion(_Message):
 
 
 class Pose(_Message):
-    """Where a map is, and how it is turned."""
+    """The position and the rotation of a map."""
 
     position: Point
     orientation: Quaternion

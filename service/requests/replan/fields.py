@@ -46,7 +46,7 @@ class StopCosts(StrictModel):
 
 
 class NewCosts(StrictModel):
-    """How to reach a stop that the front does not have, under each objective."""
+    """The costs to and from a stop that the front does not have, under each objective."""
 
     coordinates: OneEach[PlanePoint | None] = Field(
         default_factory=list,
@@ -108,7 +108,7 @@ _Cells = Items[Cell]
 
 
 class ReplanRequest(PlanFields):
-    """What has changed since a front was planned, and the options of the front of the rest.
+    """The changes since a front was planned, and the options of the front of the rest.
 
     Stops are named by their ids, or by their indexes in the front. Stops of a front without ids
     are named by their indexes, which are their ids from then on.
@@ -174,7 +174,7 @@ class ReplanRequest(PlanFields):
     )
     cost_layers: CostLayers = Field(
         default_factory=list,
-        description="on a map whose cost layers have names: these layers anew",
+        description="on a map whose cost layers have names: all of these layers again",
     )
     paths: bool = Field(
         default=False, description="on a map: whether each tour comes with its path"

@@ -42,12 +42,12 @@ class RouteOnTheWay(StrictModel):
     broken_down: bool = Field(
         default=False,
         description="whether its vehicle is out of service: other vehicles bring what it carries,"
-        " which they load anew",
+        " which they load again",
     )
 
 
 class ReplanFleetRequest(SearchFields):
-    """What has changed since a fleet was planned, and the options of the front of the rest."""
+    """The changes since a fleet was planned, and the options of the front of the rest."""
 
     plan: NonNegativeInteger | None = Field(
         default=None,

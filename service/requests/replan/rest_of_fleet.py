@@ -68,7 +68,7 @@ def rest_of_fleet(
 
 
 class _Rest:
-    """What is left to plan, from indexes of all stops: those of the front, then new ones."""
+    """The rest that is to be planned. Indexes of stops count those of the front, then new ones."""
 
     def __init__(
         self,
