@@ -21,7 +21,7 @@ class JobState:
     Args:
         record: The record.
         progress: That of its search, if it runs.
-        compiling: How far the compilation is for which it waits, if it does.
+        compiling: The progress of the compilation that it waits for, if it waits.
     """
 
     record: Record

@@ -58,7 +58,7 @@ class FairQueue:
         )
 
     def take(self, submission: Submission) -> None:
-        """Remove a submission that waits, for which its client had its turn."""
+        """Remove a waiting submission to run it: a turn of its client, unless it was put first."""
         if submission not in self._first:
             self._note_turn(submission.client)
         self.remove(submission)

@@ -13,9 +13,10 @@ from service.objectives import OBJECTIVES
 from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 
-# As the search does, which cannot be imported here.
+# The limits of the search, which cannot be imported here.
 _THREE_OPT = 250  # cities from which on three-opt searches; fewer where costs differ by direction
-_MANY = {"coordinates": 600, "matrices": 2_000}  # from which on candidates or tours come otherwise
+# Cities from which on candidates or tours are found by other code.
+_MANY = {"coordinates": 600, "matrices": 2_000}
 
 
 class Part(Enum):

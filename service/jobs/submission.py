@@ -88,7 +88,7 @@ class Submission:
         self._future.add_done_callback(lambda _: callback())
 
     def wait(self, compiling: Compiling) -> None:
-        """Take how far the compilation is for which it may be waiting."""
+        """Note the progress of a compilation that the submission may have to wait for."""
         self.compiling = compiling
         self._on_change()
 

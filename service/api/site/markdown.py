@@ -10,7 +10,7 @@ from markdown_it.token import Token
 
 Resolve = Callable[[str], str | None]
 _RENDERER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
-_PROSE = 60  # characters of a cell, from which on it keeps room for some words on narrow screens
+_PROSE = 60  # characters; a longer cell keeps room for some words on narrow screens
 
 
 @dataclass(frozen=True)

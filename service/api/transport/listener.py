@@ -22,7 +22,7 @@ def bound_sockets(host: str, port: int) -> list[socket.socket]:
     with ExitStack() as opened:
         sockets: list[socket.socket] = []
         for family, kind, protocol, _, address in dict.fromkeys(found):
-            # With its protocol, for which asyncio sends an answer's parts without delay.
+            # With its protocol: otherwise asyncio delays the parts of an answer.
             listening = opened.enter_context(socket.socket(family, kind, protocol))
             listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             if family == socket.AF_INET6:

@@ -253,7 +253,7 @@ class _Output:
             self._ahead = 0
 
     def send_ahead(self) -> None:
-        """Send the next letter with which every answer begins, if one is left."""
+        """Send the next letter of the text that every answer begins with, if one is left."""
         self._transport.write(_EVERY_ANSWER[self._ahead : self._ahead + 1])
         self._ahead = min(self._ahead + 1, len(_EVERY_ANSWER))
 

@@ -324,7 +324,7 @@ class WorkerPool:
         return taken
 
     def _clients(self, taken: Sequence[Submission] = ()) -> set[str]:
-        """Return the clients for which submissions are being run, or are taken to be run."""
+        """Return the clients of the submissions that run, and of those that are taken to run."""
         return {each.client for each in (*self.running, *taken)}
 
     def _begin(self, worker: Worker) -> None:

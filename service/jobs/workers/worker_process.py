@@ -42,7 +42,7 @@ from service.requests.limits import Limits
 from service.requests.task import Task
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
-_LARGE = 1_000_000  # kilobytes to which a process may grow; after that task a fresh one follows
+_LARGE = 1_000_000  # kilobytes; a process that has grown beyond is replaced after its task
 _REPORT_TOURS = 100  # at most in a reported front
 _REPORT_SECONDS = 0.25  # at least between two reports
 _REPORT_SHARE = 0.05  # the share of the time that reports may take
@@ -263,7 +263,7 @@ class WorkerProcess:
         Raises:
             OSError: No descriptors or processes are left.
         """
-        with ExitStack() as ours:  # closed where this fails, with which the process ends
+        with ExitStack() as ours:  # closed if this fails; that ends the process
             with ExitStack() as theirs:
                 own_tasks, tasks = _socket_pair(ours, theirs)
                 own_signals, signals = _socket_pair(ours, theirs)
