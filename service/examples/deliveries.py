@@ -17,20 +17,21 @@ BLACK_SPOTS = np.array(
         [6100.0, 1500.0, 450.0, 5.0],  # the hill, icy in winter
     ]
 )
-USUAL = 2.0  # accidents per million kilometres
+USUAL = 2.0  # accidents per million kilometres, so per thousand million metres
+THOUSAND = 1000
 
 
 def deliveries() -> dict[str, Any]:
     """Return the request: the depot first, then the stops.
 
     Plane 1 is the map in metres. Plane 2 is the map redrawn so that the distance between two stops
-    is the risk of driving from one to the other, in accidents per thousand million drives.
+    is the risk of driving from one to the other, in accidents per million drives.
     """
     rng = np.random.default_rng(8)
     stops = np.concatenate((SIZE[np.newaxis] * [0.08, 0.9], _stops(rng)))
-    redrawn = _in_plane(_risks(stops))
+    redrawn = _in_plane(_risks(stops)) / THOUSAND
     return {
-        "coordinates": np.concatenate((stops, redrawn), axis=1).round(1).tolist(),
+        "coordinates": np.concatenate((stops.round(1), redrawn.round(4)), axis=1).tolist(),
         "time_limit": 1.0,
         "seed": 1,
     }

@@ -207,7 +207,9 @@ def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> dict[str,
     name = quoted(columns.names[cost])
     source.note("objectives", f"{name} is what a metre costs near a stop: an objective.")
     places = np.array([stop["location"] for stop in stops])
-    return {"name": columns.names[cost][:100], "matrix": weighted(places, weights)}
+    named = columns.names[cost][:90]  # with its unit within 100 characters
+    unit = f"{named} \N{MULTIPLICATION SIGN} m"
+    return {"name": named, "unit": unit, "matrix": weighted(places, weights)}
 
 
 def part_of(source: Source, table: Table) -> Part:

@@ -110,7 +110,7 @@ def _page_row(browser: Browser, address: str, n: int, rounds: int) -> dict[str, 
         page.get_by_label("Seconds of planning").fill(PLANNING)
         page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)
-        page.get_by_label("A front of 100 tours").wait_for()
+        page.get_by_label("A choice of 100 tours").wait_for()
         return _measured(page, SLIDER, None, rounds)
 
 

@@ -355,7 +355,7 @@ def test_a_column_is_ignored_or_a_cost_by_its_heading_alone() -> None:
     assert ignored.columns[-1].taken_for == "ignored"
     assert ignored.request["objectives"][1]["from"] == "road_time"
     risk = read("risk.csv").request["objectives"][1]
-    assert risk["name"] == "risk"
+    assert (risk["name"], risk["unit"]) == ("risk", "risk \N{MULTIPLICATION SIGN} m")
     assert risk["matrix"][0][1] == pytest.approx(3 * 111195.08, rel=1e-6)
 
 

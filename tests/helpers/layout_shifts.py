@@ -12,7 +12,7 @@ new PerformanceObserver((list) => {
     if (!hadRecentInput) shifts.push({ value, startTime, moved: sources.map(named) });
 }).observe({ type: "layout-shift", buffered: true });
 const look = () => {
-  const drawn = document.querySelector('#front-chart[aria-label^="A front of"]');
+  const drawn = document.querySelector('#front-chart[aria-label^="A choice of"]');
   if (drawn) firstFront = performance.now();
   else requestAnimationFrame(look);
 };

@@ -34,7 +34,7 @@ def compare_two_tours(page: Page) -> None:
     wait_until_planned(page)
     page.get_by_role("slider", name="Balance").press("Home")
     page.get_by_role("button", name="Pin to compare").click()
-    page.get_by_role("button", name="knee").click()
+    page.get_by_role("button", name="compromise").click()
     page.evaluate("document.activeElement.blur()")
     page.mouse.move(0, 0)
 
@@ -44,7 +44,7 @@ def plan_for_long(page: Page) -> None:
     page.get_by_label("Seconds of planning").fill("50")
     page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#status")).to_contain_text("improving")
-    expect(page.get_by_label(re.compile("A front of"))).to_be_visible()
+    expect(page.get_by_label(re.compile("A choice of"))).to_be_visible()
 
 
 def ask_for_nonsense(page: Page) -> None:

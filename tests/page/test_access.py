@@ -28,7 +28,7 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
         expect(page.get_by_role("button", name="Stop", exact=True)).to_be_enabled()
         warm.touch()
         wait_until_planned(page)
-        expect(page.get_by_label("A front of")).to_be_visible()
+        expect(page.get_by_label("A choice of")).to_be_visible()
 
 
 def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
@@ -47,4 +47,4 @@ def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
         field.press("Enter")
         wait_until_planned(page)
         expect(page.locator("#key-fault")).to_be_empty()
-        expect(page.get_by_label("A front of")).to_be_visible()
+        expect(page.get_by_label("A choice of")).to_be_visible()

@@ -74,7 +74,7 @@ def test_a_link_opens_the_selected_tour_even_if_its_front_has_expired(
         link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", link)
     with open_page(browser, link) as other:
         if expired:
-            expect(other.locator("#choice")).to_contain_text("no longer keeps this front")
+            expect(other.locator("#choice")).to_contain_text("no longer keeps this result")
         else:
             wait_until_planned(other)
         expect(other.locator("#count")).to_have_text("61 stops")

@@ -224,7 +224,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
         expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
         stops_as_text(other)
         other.get_by_label("Distances rounded").uncheck()
-        expect(other.get_by_label("No front yet")).to_be_visible()
+        expect(other.get_by_label("Nothing planned yet")).to_be_visible()
         assert len(curl_body(other)["coordinates"]) == 12
 
 

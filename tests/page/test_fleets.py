@@ -61,10 +61,11 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         page.get_by_label("Example").select_option("Helsinki, six vans")
         expect(page.locator("#brought")).to_contain_text("A fleet: 6 vehicles and 60 stops.")
         wait_until_planned(page)
-        expect(page.get_by_label(re.compile(r"A front of \d+ plans: driving from"))).to_be_visible()
+        chart = page.get_by_label(re.compile(r"A choice of \d+ plans: driving from"))
+        expect(chart).to_be_visible()
         plan = select_last(page)
         routes = plan["routes"]
-        expect(page.locator("#choice")).to_contain_text("for a longest route ")
+        expect(page.locator("#choice")).to_contain_text(", and the longest route is ")
         rows = page.locator("#fleet-legend tbody tr")
         shown = [row.inner_text().split("\t") for row in rows.all()]
         for number, (route, [name, stops_of, *times]) in enumerate(

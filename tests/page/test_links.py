@@ -33,7 +33,7 @@ def test_a_link_opens_the_same_front_with_its_cities(planned: Page, browser: Bro
         expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()
         other.goto(planned.url.partition("#")[0] + "#front=none")
         for told in ("#request-fault", "#waiting"):
-            expect(other.locator(told)).to_contain_text("no longer has the front of this link")
+            expect(other.locator(told)).to_contain_text("no longer has the result of this link")
         assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
 
 
@@ -88,17 +88,17 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     link = copied(page, "link")
-    expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
+    expect(page.get_by_text("This link opens the result without its maps")).to_be_visible()
     assert len(link) < 1000
     with open_page(browser, link) as other:
         wait_until_planned(other)
-        expect(other.get_by_text("The link only names a front")).to_be_visible()
+        expect(other.get_by_text("The link only names a result")).to_be_visible()
         expect(other.locator("#plane-1")).to_be_hidden()
-        expect(other.get_by_label("A front of")).to_be_visible()
+        expect(other.get_by_label("A choice of")).to_be_visible()
 
 
 SHORT = 2000  # characters of a link to a tour of 60 stops, at most
-KEPT = "The service no longer keeps this front. This is the {} that was chosen"
+KEPT = "The service no longer keeps this result. This is the {} that was chosen"
 rng = np.random.default_rng(5)
 
 
@@ -201,7 +201,7 @@ def test_a_link_keeps_what_was_chosen_on_a_map(
         chosen = on_screen(page)
         link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", copied(page, "link"))
     with open_page(browser, link) as other:
-        expect(other.locator("#choice")).to_contain_text("The service no longer keeps this front.")
+        expect(other.locator("#choice")).to_contain_text("The service no longer keeps this result.")
         assert on_screen(other) == chosen
         expect(other.locator("#grid")).to_be_visible()
 

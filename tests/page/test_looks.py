@@ -116,7 +116,7 @@ def test_every_text_is_legible_against_what_lies_behind_it(
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         unfold(page)
         texts = page.evaluate(TEXTS)
-        assert {"Front", "Plan", "Selected", "Pinned"} <= {text for text, _, _ in texts}
+        assert {"Trade-offs", "Plan", "Selected", "Pinned"} <= {text for text, _, _ in texts}
         assert [text for text, *colours in texts if contrast(*colours) < LEGIBLE] == []
         # The ground is what tells that the scheme was taken.
         ground = page.evaluate("getComputedStyle(document.body).backgroundColor")

@@ -133,11 +133,16 @@ def answer(measure: str, values: list[float]) -> dict[str, Any]:
 def open_stored(page: Page, released: str, measure: str, values: list[float]) -> None:
     """Open a stored front by a link that has its request, and wait until it is shown."""
     objectives = [REQUEST["objectives"][0], {"name": measure, "measure": measure}]
+    open_answer(page, released, objectives, answer(measure, values))
+
+
+def open_answer(page: Page, released: str, objectives: list[Any], front: dict[str, Any]) -> None:
+    """Open a stored answer by a link that has its request."""
     asked = {"request": {**REQUEST, "objectives": objectives}, "objectives": objectives}
     packer = zlib.compressobj(wbits=-15)
     packed = packer.compress(json.dumps(asked).encode()) + packer.flush()
     text = base64.urlsafe_b64encode(packed).decode().rstrip("=")
-    page.route(re.compile(f"/front/{ID}$"), lambda each: each.fulfill(json=answer(measure, values)))
+    page.route(re.compile(f"/front/{ID}$"), lambda each: each.fulfill(json=front))
     page.goto(f"{released}/#front={ID}&balance=0&asked={text}")
     wait_until_planned(page)
 
@@ -156,11 +161,10 @@ def select(page: Page, key: str) -> None:
 
 
 def rows(page: Page) -> dict[str, list[str]]:
-    """The table of lengths and measures, by the name of each row."""
+    """The table of lengths and measures, by the name of each row without the note below it."""
     lines = page.locator("#comparison tbody tr").all()
-    return {
-        line.locator("th").inner_text(): line.locator("td").all_text_contents() for line in lines
-    }
+    cells = [line.locator("th, td").all_inner_texts() for line in lines]
+    return {name.splitlines()[0]: others for name, *others in cells}
 
 
 def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> None:
@@ -173,9 +177,9 @@ def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> No
         "Distance, m": ["5,000", "4,000", "+25.0 %"],
         "Lateness": ["0 min", "13 min", f"{MINUS}13 min"],
         "Vehicles used": ["2", "1", "+1"],
-        "Driving": ["50 min", "50 min", "same"],
-        "At stops": ["5 min", "5 min", "same"],
-        "Waiting": ["0 min", "35 min", f"{MINUS}35 min"],
+        "Driving in all": ["50 min", "50 min", "same"],
+        "At stops in all": ["5 min", "5 min", "same"],
+        "Waiting in all": ["0 min", "35 min", f"{MINUS}35 min"],
         "Overtime in all": ["0 min", "0 min", "same"],
         "Longest route": ["1 h 5 min", "1 h 5 min", "same"],
         "Shortest route": ["1 h 5 min", "1 h 5 min", "same"],
@@ -184,12 +188,51 @@ def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> No
     }
 
 
+def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, released: str) -> None:
+    """The longest of two routes of 65 minutes has 25 minutes of driving, of 50 in all."""
+    objectives = [
+        {"name": "driving", "from": "road_time"},
+        {"name": "longest route", "from": "road_time", "over": "max"},
+    ]
+    routes = [
+        {**each, "lengths": [25.0 * MINUTE, length]}
+        for each, length in zip(IN_TIME["routes"], (30.0 * MINUTE, 35.0 * MINUTE), strict=True)
+    ]
+    plans = [
+        {**IN_TIME, "routes": routes, "lengths": [50.0 * MINUTE, 35.0 * MINUTE], "balance": 0.0},
+        {**IN_TIME, "routes": routes, "lengths": [60.0 * MINUTE, 30.0 * MINUTE]},
+    ]
+    named = [{**each, "unit": "s"} for each in objectives]
+    front = {**answer("lateness", [0.0, 0.0]), "front": plans, "objectives": named}
+    with open_page(browser, "about:blank") as page:
+        open_answer(page, released, objectives, front)
+        select(page, "Home")
+        heads = page.locator("#comparison tbody:first-of-type th").all_inner_texts()
+        assert heads == [
+            "Driving\nall vehicles together",
+            "Longest route\nvan, day 2: 30 min driving, 5 min at stops",
+        ]
+        expect(page.locator("#choice")).to_have_text(
+            "The least driving. Every other plan makes the longest route shorter, for more driving."
+        )
+        expect(page.get_by_role("button", name="longest route kept short")).to_be_visible()
+        expect(page.locator("#less-2")).to_have_text("longest route shorter")
+        select(page, "End")
+        expect(page.locator("#choice")).to_have_text(
+            "20 % more driving (10 min) than the least,"
+            " and the longest route is 14 % shorter (5 min): the shortest there is."
+        )
+        titles = page.locator("#fleet-legend thead th").all_inner_texts()
+        assert titles[2:] == ["Driving", "Whole route"]
+        assert page.locator("#fleet-legend tfoot td").all_inner_texts()[-1] == "30 min, the longest"
+
+
 def test_lateness_is_said_as_a_time(late: Page) -> None:
     select(late, "End")
     expect(late.locator("#choice")).to_have_text(
         "25 % more distance (1,000 m) than the least, for 13 min less lateness: none is left."
     )
-    chart = late.get_by_label(re.compile("A front of 2 plans"))
+    chart = late.get_by_label(re.compile("A choice of 2 plans"))
     expect(chart).to_have_attribute("aria-label", re.compile("lateness from 0 min to 13 min$"))
     assert "13 min" in saved(late, "SVG").decode()
 

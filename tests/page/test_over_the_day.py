@@ -80,8 +80,8 @@ def test_the_hours_of_a_tour_stand_beside_its_stops_and_in_files(
         assert body["departure"] == {"earliest": 25200, "latest": 30600}
         assert body["stops"][1]["service"] == 45
         assert len(body["objectives"][0]["over_the_day"]) == 5
-        figures = page.locator("#tour-figures")
-        expect(figures).to_contain_text(re.compile(r"Leaves at\s*[78]:\d\d"))
+        hours = page.locator("#comparison")
+        expect(hours).to_contain_text(re.compile(r"Leaves at\s*[78]:\d\d"))
         page.locator("#order > summary").click()
         order = page.locator("#order li")
         expect(order).to_have_count(len(body["stops"]) + 1)
@@ -106,7 +106,7 @@ def test_stops_get_rush_hours_and_a_departure_by_typing(window: Page) -> None:
     assert asked(page)["departure"] == 9.25 * HOUR
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
-    expect(page.locator("#tour-figures")).to_contain_text(re.compile(r"Leaves at\s*9:15"))
+    expect(page.locator("#comparison")).to_contain_text(re.compile(r"Leaves at\s*9:15"))
     write(page, "Rush hours", "")
     write(page, "Leaves at, or from", "")
     assert asked(page) == {"departure": None, "hours": [None, None]}
@@ -172,8 +172,8 @@ def test_the_rest_is_planned_from_the_time_at_which_the_vehicle_is_there(window:
     page.locator("#replanning > summary").click()
     write(page, "Visited up to", "order-0")
     page.get_by_role("button", name="Replan", exact=True).click()
-    figures = page.locator("#tour-figures")
-    expect(figures).to_contain_text(re.compile(r"Leaves at\s*7:01"))  # after the visit
+    hours = page.locator("#comparison")
+    expect(hours).to_contain_text(re.compile(r"Leaves at\s*7:01"))  # after the visit
     write(page, "It is now", "10:20")
     page.get_by_role("button", name="Replan", exact=True).click()
-    expect(figures).to_contain_text(re.compile(r"Leaves at\s*10:20"))
+    expect(hours).to_contain_text(re.compile(r"Leaves at\s*10:20"))

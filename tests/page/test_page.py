@@ -50,7 +50,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
 def test_an_example_shows_its_front(browser: Browser, released: str, width: int) -> None:
     with open_page(browser, released, width) as page:
         plan_city_deliveries(page)
-        shown = page.get_by_label(re.compile(r"A front of \d+ tours: distance from"))
+        shown = page.get_by_label(re.compile(r"A choice of \d+ tours: distance from"))
         expect(shown).to_be_visible()
         expect(page.locator("#figures")).to_contain_text("Network alone")
 
@@ -131,7 +131,7 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(planned: Page) -> 
     expect(planned.locator("#choice")).to_contain_text("the least risk there is")
     wait_for_next_frame(planned)
     assert drawn.first.evaluate("canvas => canvas.toDataURL()") == last
-    planned.get_by_role("button", name="knee").click()
+    planned.get_by_role("button", name="compromise").click()
     knee = httpx.get(
         f"{planned.url.partition('#')[0]}tour",
         params={"knee": "", "front": shown_front(planned)["id"]},
@@ -139,7 +139,7 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(planned: Page) -> 
     place = f"distance {knee.json()['lengths'][0]:,.6g}"
     expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
     marker = planned.locator("#front-chart .marker.selected").bounding_box()
-    label = planned.get_by_role("button", name="knee").bounding_box()
+    label = planned.get_by_role("button", name="compromise").bounding_box()
     # Its name stands to the left of its point.
     assert abs(label["x"] + label["width"] - marker["x"] - marker["width"] / 2) < 3
     slider.press("Home")
@@ -169,7 +169,7 @@ def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
     expect(page.locator("#status")).to_contain_text("improving")
     page.get_by_role("button", name="Stop", exact=True).click()
     expect(page.locator("#status")).to_contain_text("Stopped: ")
-    expect(page.get_by_label(re.compile("A front of [0-9]+ tours"))).to_be_visible()
+    expect(page.get_by_label(re.compile("A choice of [0-9]+ tours"))).to_be_visible()
     expect(page.get_by_role("button", name="Plan", exact=True)).to_be_enabled()
 
 
@@ -269,7 +269,7 @@ def test_the_front_can_be_taken_along(planned: Page, released: str) -> None:
     answer = shown_front(planned)
     assert answer == httpx.get(f"{released}/front/{answer['id']}").json()
     head, *lines = saved(planned, "CSV").decode().splitlines()
-    assert head == "angle,distance (m),risk (accidents in a thousand million drives),tour"
+    assert head == "angle,distance (m),risk (accidents per million drives),tour"
     assert len(lines) == len(answer["front"])
     asked = curl_body(planned)
     found = httpx.post(f"{released}/front", json={**asked, "time_limit": 0}).json()

@@ -70,7 +70,7 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
         expect(page.locator("#brought")).to_contain_text("3 robots on a grid of 40 by 64 cells")
         wait_until_planned(page)
         expect(
-            page.get_by_label(re.compile(r"A front of \d+ plans: total distance"))
+            page.get_by_label(re.compile(r"A choice of \d+ plans: total distance"))
         ).to_be_visible()
         plan = select_last(page)
         assert {route["robot"] for route in plan["routes"]} == set(COLOURS)

@@ -82,9 +82,9 @@ def test_three_objectives_are_asked_for_shown_and_named(page: Page) -> None:
     for hidden in (".plot", "#balance", "#budget"):
         expect(page.locator(hidden)).to_be_hidden()
     label = page.locator("#scatter").get_attribute("aria-label") or ""
-    assert re.match(r"A front of \d+ tours: way from .* to .*, people met from", label)
+    assert re.match(r"A choice of \d+ tours: way from .* to .*, people met from", label)
     rows = page.locator("#comparison tbody th").all_inner_texts()
-    assert rows == ["Way, m", "People met, people", "Climb, m"]
+    assert rows == ["Way, m", "People met", "Climb, m"]
 
 
 def test_without_limits_the_tour_in_the_middle_is_shown(page: Page) -> None:
@@ -173,7 +173,7 @@ def test_what_is_taken_along_has_all_three(page: Page) -> None:
     assert "choose(knee=True)" in copied(page, "as Python")
     svg = saved(page, "svg").decode()
     assert ">Way, m<" in svg
-    assert ">People met, people<" in svg
+    assert ">People met<" in svg
 
 
 def test_the_next_front_of_two_has_its_own_chart(page: Page) -> None:

@@ -41,7 +41,7 @@ def more_distance(page: Page) -> float:
 
 def test_see_how_far_from_optimal_the_front_may_be(page: Page) -> None:
     page.get_by_text("More settings").click()
-    page.get_by_label("Say how far from optimal").check()
+    page.get_by_label("Say how far from the best possible").check()
     page.get_by_label("Seconds of planning").fill("0.3")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)

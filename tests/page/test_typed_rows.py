@@ -117,12 +117,12 @@ def test_typing_asks_once_it_pauses_and_takes_the_front_away_at_once(page: Page)
     reads: list[Request] = []
     page.on("request", lambda asked: reads.append(asked) if asked.url.endswith("/files") else None)
     box = stops_as_text(page)
-    expect(page.get_by_label(re.compile("A front of"))).to_be_visible()
+    expect(page.get_by_label(re.compile("A choice of"))).to_be_visible()
     page.route("**/files", lambda route: route.abort())
     box.press("End")
     with page.expect_request("**/files"):
         box.press_sequentially("12345")
-        expect(page.get_by_label("No front yet")).to_be_visible()
+        expect(page.get_by_label("Nothing planned yet")).to_be_visible()
     assert len(reads) < 5
     page.unroute_all()
     box.fill(TEXT)

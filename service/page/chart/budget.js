@@ -1,7 +1,7 @@
 /** Budget lines across the chart: a limit on one objective, whose labelled handle is dragged or moved by keys. */
 
 import { amount, wordsOf } from "../common/amounts.js";
-import { UNNAMED, isCounted } from "../common/objectives.js";
+import { UNNAMED, isCounted, isLongest, namesThings } from "../common/objectives.js";
 
 const STEPS = [
   { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 },
@@ -31,7 +31,7 @@ export class Budget {
 
   name(objectives) {
     this.#objectives = objectives;
-    this.#lines.forEach((line, axis) => line.setAttribute("aria-label", `At most this ${wordsOf(objectives[axis]).much} ${objectives[axis].name}`));
+    this.#lines.forEach((line, axis) => line.setAttribute("aria-label", mostOf(objectives[axis])));
     this.place();
   }
 
@@ -56,7 +56,7 @@ export class Budget {
     if (!this.#limit) return "For a budget, drag a handle on the edge of the chart.";
     const { axis, most } = this.#limit;
     const objective = this.#objectives[axis];
-    return `Budget: ${amount(most, objective)}${isCounted(objective) ? "" : ` of ${objective.name}`}.`;
+    return `Budget: ${amount(most, objective)}${forWhat(objective)}.`;
   }
 
   /** Removes the budget if a tour beyond it was chosen. */
@@ -149,4 +149,14 @@ export class Budget {
     const ends = [this.#front[0], this.#front.at(-1)].map(({ lengths }) => lengths[axis]);
     return [Math.min(...ends), Math.max(...ends)];
   }
+}
+
+/** What a handle limits, such as "At most this much time". */
+const mostOf = (objective) =>
+  isLongest(objective) ? `${objective.name}, at most this long` : `At most this ${wordsOf(objective).much} ${objective.name}`;
+
+/** What a budget is for, where its amount does not say it. */
+function forWhat(objective) {
+  if (isCounted(objective) || namesThings(objective)) return "";
+  return isLongest(objective) ? ` for the ${objective.name}` : ` of ${objective.name}`;
 }

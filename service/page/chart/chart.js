@@ -146,7 +146,7 @@ export class FrontChart {
   }
 }
 
-const NONE = "No front yet: bring stops, then press Plan";
+const NONE = "Nothing planned yet. Press Plan once there are stops.";
 
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
 
@@ -228,5 +228,5 @@ function described(front, objectives, { one, many }) {
   if (!front.length) return NONE;
   const end = (axis, pick) => figure(pick(front[0].lengths[axis], front.at(-1).lengths[axis]), objectives[axis]);
   const ranges = objectives.map(({ name }, axis) => `${name} from ${end(axis, Math.min)} to ${end(axis, Math.max)}`);
-  return `A front of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;
+  return `A choice of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;
 }

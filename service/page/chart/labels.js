@@ -1,7 +1,9 @@
-/** Names on the chart for both ends of a front and its knee: buttons that preview and select their tours. */
+/** Name both ends of a front and its knee on the chart: buttons that preview and select their tours. */
 
-import { wordsOf } from "../common/amounts.js";
+import { leastOf } from "../common/amounts.js";
 
+const KNEE = "compromise"; // the knee, as people call it
+const LAST = 2; // of the three
 const BESIDE = 6; // pixels from a point to its name
 
 export class Labels {
@@ -28,8 +30,8 @@ export class Labels {
   /** Names the tours of a front: fewer names if it has fewer than three tours, or its knee is an end. */
   show(front, objectives) {
     this.#indices = front.length > 1 ? [0, kneeOf(front), front.length - 1] : [];
-    const [first, last] = objectives.map((objective) => `${wordsOf(objective).least} ${objective.name}`);
-    const said = [first, "knee", last];
+    const [first, last] = objectives.map(leastOf);
+    const said = [first, KNEE, last];
     this.#buttons.forEach((button, which) => (button.textContent = said[which]));
   }
 
@@ -50,12 +52,13 @@ export class Labels {
   }
 
   /**
-   * The name of the first tour is above it, the others are below and to the left, where no tour of a front can be; or
-   * where that is beyond the axis, above and to the right, where the front has no line.
+   * The name of the first tour is above it, the others are below and to the left, where no tour of a front can be. Where
+   * that is beyond the axis, that of the last tour begins there, and the other is above and to the right, where the
+   * front has no line.
    */
   #boxOf({ offsetWidth: width, offsetHeight: height }, which, [x, y], axis) {
-    const below = which > 0 && x - width >= axis;
-    const left = below ? x - width : Math.min(which ? x + BESIDE : x - BESIDE, this.#element.clientWidth - width);
+    const below = which === LAST || (which > 0 && x - width >= axis);
+    const left = below ? Math.max(axis, x - width) : Math.min(which ? x + BESIDE : x - BESIDE, this.#element.clientWidth - width);
     const top = below ? y + BESIDE : Math.max(0, y - height - BESIDE);
     return { left, top, right: left + width, bottom: top + height };
   }

@@ -150,7 +150,7 @@ export class Scatter {
     const count = this.#front.length;
     if (!count) return "No tours yet";
     const ranges = this.#objectives.map((objective, axis) => `${objective.name} from ${this.#ends[axis].map((value) => figure(value, objective)).join(" to ")}`);
-    return `A front of ${count} ${count === 1 ? one : many}: ${ranges.join(", ")}`;
+    return `A choice of ${count} ${count === 1 ? one : many}: ${ranges.join(", ")}`;
   }
 }
 

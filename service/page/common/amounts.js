@@ -2,11 +2,13 @@
 
 import { SECONDS, duration } from "./durations.js";
 import { counted, difference, length, rounded } from "./numbers.js";
-import { isCounted, isLongest, isTime, shortUnit } from "./objectives.js";
+import { isCounted, isLongest, isOfThings, isTime, namesThings, shortUnit } from "./objectives.js";
+
+const FEW = 10; // things; from there on nobody counts tenths
 
 /** A value to six digits, where a title beside it has the unit. */
 export function figure(value, objective) {
-  if (isCounted(objective)) return length(Math.round(value));
+  if (isCounted(objective) || (isOfThings(objective) && Math.abs(value) >= FEW)) return length(Math.round(value));
   return isTime(objective) ? duration(value * SECONDS.get(objective.unit)) : length(value);
 }
 
@@ -18,8 +20,11 @@ export function amount(value, objective) {
   if (isCounted(objective)) return counted(Math.round(value), "vehicle", "vehicles");
   if (isTime(objective)) return compared(value, objective);
   const unit = shortUnit(objective);
-  return `${length(rounded(value))}${unit && ` ${unit}`}`;
+  return `${compared(value, objective)}${unit && ` ${unit}`}`;
 }
+
+/** The same with its unit even if that is long, where there is room for it. */
+export const inFull = (value, objective) => (shortUnit(objective) ? amount(value, objective) : `${compared(value, objective)} ${objective.unit}`.trim());
 
 /** How much more than another a value is: in per cent, or for a measure of plans, which may be 0, as it is. */
 export function change(value, beside, objective) {
@@ -31,7 +36,13 @@ export function change(value, beside, objective) {
 
 /** The words that compare an objective. */
 export function wordsOf(objective) {
-  if (isCounted(objective)) return { least: "fewest", less: "fewer", more: "more", much: "many" };
+  if (isCounted(objective) || namesThings(objective)) return { least: "fewest", less: "fewer", more: "more", much: "many" };
   if (isLongest(objective)) return { least: "shortest", less: "shorter", more: "longer", much: "long" };
   return { least: "least", less: "less", more: "more", much: "much" };
 }
+
+/** The name on the chart of the tour with the least of an objective, such as "least time". */
+export const leastOf = (objective) => (isLongest(objective) ? `${objective.name} kept short` : `${wordsOf(objective).least} ${objective.name}`);
+
+/** What there is towards that tour, such as "less time". */
+export const lessOf = (objective) => (isLongest(objective) ? `${objective.name} shorter` : `${wordsOf(objective).less} ${objective.name}`);

@@ -3,6 +3,9 @@
 import { SECONDS } from "./durations.js";
 
 const TIMES = ["driving", "service", "waiting", "lateness", "overtime", "longest", "shortest", "imbalance"]; // measures of plans
+const THINGS = ["people", "pedestrians", "accidents", "vehicles", "stops", "orders", "parcels", "customers", "visits", "turns", "crossings"];
+
+const SHORT = 16; // letters
 
 /** The name of an objective that has none. */
 export const unnamed = (axis) => ({ name: `length ${axis + 1}`, unit: "" });
@@ -24,6 +27,12 @@ export const titled = ({ name }) => name[0].toUpperCase() + name.slice(1);
 /** Whether this is the number of vehicles. */
 export const isCounted = ({ measure }) => measure === "vehicles";
 
+/** Whether the unit names things that people count: their numbers are whole. */
+export const isOfThings = ({ unit }) => THINGS.includes(unit);
+
+/** Whether the name says what is counted, as "people met" of people does. */
+export const namesThings = ({ name, unit }) => isOfThings({ unit }) && name.split(" ").includes(unit);
+
 /** Whether this is the longest of a plan's routes: it is shorter or longer, where sums are less or more. */
 export const isLongest = ({ over, measure }) => over === "max" || measure === "longest";
 
@@ -31,8 +40,12 @@ export const isLongest = ({ over, measure }) => over === "max" || measure === "l
 export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || TIMES.includes(measure));
 
 /** The unit, if it is short enough to stand beside a number. */
-export const shortUnit = ({ unit }) => (unit && unit.length < 10 ? unit : "");
+export const shortUnit = ({ unit }) => (unit && unit.length < SHORT ? unit : "");
 
-/** The title with its unit, if there is room for that, and its values do not have units of their own. */
-export const withUnit = (objective) =>
-  shortUnit(objective) && !isCounted(objective) && !isTime(objective) ? `${titled(objective)}, ${objective.unit}` : titled(objective);
+/** The title with its unit, if there is room for that, and neither the name nor the values say it; "Risk × m" of the unit "risk × m". */
+export function withUnit(objective) {
+  const said = isCounted(objective) || isTime(objective) || namesThings(objective);
+  if (!shortUnit(objective) || said) return titled(objective);
+  if (objective.unit.startsWith(`${objective.name} ×`)) return titled({ name: objective.unit });
+  return `${titled(objective)}, ${objective.unit}`;
+}

@@ -1,7 +1,7 @@
 /** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, and its lengths. */
 
 import { compared } from "../common/amounts.js";
-import { withUnit } from "../common/objectives.js";
+import { isLongest, withUnit } from "../common/objectives.js";
 import { stylesOf, swatch } from "./route_styles.js";
 import { visits } from "./routes_of_plan.js";
 
@@ -16,10 +16,13 @@ export function showLegend(table, plan, movers, asked, objectives, names) {
     return [head, ...cells([counts[at], ...said(route)])];
   });
   const all = counts.reduce((sum, count) => sum + count, 0);
-  table.tHead.replaceChildren(line([movers.one, movers.stops, ...objectives.map(withUnit)].map((title) => made("th", title, "col"))));
+  table.tHead.replaceChildren(line([movers.one, movers.stops, ...objectives.map(titleOf)].map((title) => made("th", title, "col"))));
   table.tBodies[0].replaceChildren(...rows.map(line));
-  table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...said(plan)])]));
+  table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...said(plan).map((value, axis) => `${value}${isLongest(objectives[axis]) ? ", the longest" : ""}`)])]));
 }
+
+/** The title of a column: each row has the whole of its own route where the plan has the longest of all. */
+const titleOf = (objective) => withUnit(isLongest(objective) ? { ...objective, name: "whole route" } : objective);
 
 const cells = (values) => values.map((value) => made("td", value));
 

@@ -1,20 +1,20 @@
 /** The measures of a plan, as rows of a table. */
 
 import { titled, withUnit } from "../common/objectives.js";
-import { clockUnit, unitOfRoutes } from "./units.js";
+import { clockUnit, costsOf, loadUnit, unitOfRoutes } from "./units.js";
 
 const NAMES = {
   vehicles: "Vehicles used",
-  driving: "Driving",
-  service: "At stops",
-  waiting: "Waiting",
+  driving: "Driving in all",
+  service: "At stops in all",
+  waiting: "Waiting in all",
   lateness: "Late in all",
   overtime: "Overtime in all",
   longest: "Longest route",
   shortest: "Shortest route",
   imbalance: "Longest less shortest",
   unassigned: "Prizes left out",
-  load_distance: "Load times distance",
+  load_distance: "Load ×", // what the first costs are
 };
 
 /**
@@ -22,12 +22,13 @@ const NAMES = {
  * takes a plan; none if it has none.
  */
 export function measuresOf({ measures = {}, lengths }, objectives, request) {
-  const same = (each, axis, name) => titled(each) === NAMES[name] && lengths[axis] === measures[name];
+  const same = (each, axis, name) => NAMES[name].startsWith(titled(each)) && lengths[axis] === measures[name];
   const named = (name) => objectives.some((each, axis) => each.measure === name || same(each, axis, name));
   const shown = Object.keys(NAMES).filter((name) => name in measures && !named(name));
   return shown.map((measure) => {
     const unit = unitsOf(objectives, request)[measure] ?? "";
-    const objective = { name: NAMES[measure], unit, measure };
+    const name = measure === "load_distance" ? `${NAMES[measure]} ${costsOf(objectives).name}` : NAMES[measure];
+    const objective = { name, unit, measure };
     return { name: withUnit(objective), objective, value: (plan) => plan.measures[measure] };
   });
 }
@@ -36,5 +37,5 @@ function unitsOf(objectives, request) {
   const time = clockUnit(request);
   const times = { driving: time, service: time, waiting: time, lateness: time, overtime: time };
   const route = unitOfRoutes(request);
-  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit };
+  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit, load_distance: loadUnit(objectives) };
 }

@@ -15,9 +15,18 @@ export function unitOfRoutes(request) {
   return request.clock || !compared ? clockUnit(request) : unitOf(compared);
 }
 
+/** The first objective that is the sum of costs, and no measure of plans. */
+export const costsOf = (objectives) => objectives.find(({ measure }) => !measure) ?? objectives[0];
+
+/** The unit of loads times the first costs. */
+export function loadUnit(objectives) {
+  const { unit } = costsOf(objectives);
+  return unit ? `load·${unit}` : "";
+}
+
 /** These objectives with units for those that are measures of plans of a request. */
 export function withUnits(objectives, request) {
   const time = clockUnit(request ?? {});
-  const units = { lateness: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}) };
+  const units = { lateness: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives) };
   return objectives.map((each) => (each.measure && !each.unit ? { ...each, unit: units[each.measure] ?? "" } : each));
 }

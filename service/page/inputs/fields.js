@@ -16,7 +16,7 @@ const FIELDS = [
   { name: "open", label: "Open route: no way back to the start", box: true },
   { name: "preferences", label: "Trade-offs for the network", where: "more" },
   { name: "seed", label: "Seed", value: "0", where: "more", plans: true },
-  { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
+  { name: "bound", label: "Say how far from the best possible it may be", where: "more", box: true },
 ];
 
 const ENDS = ["start", "end"];

@@ -3,7 +3,7 @@
 import { Problem } from "./service.js";
 
 const GONE = ["unknown-front", "front-expired"];
-const FORGOTTEN = "the service no longer has the front of this link, and the link does not say which stops to plan again: open them, and press Plan";
+const FORGOTTEN = "the service no longer has the result of this link, and the link does not say which stops to plan again: open them, and press Plan";
 
 /**
  * The states of a stored front, as a planning yields them. If the service no longer has the front, the state

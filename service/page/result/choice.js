@@ -1,11 +1,11 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
 import { amount, wordsOf } from "../common/amounts.js";
-import { isCounted, isLongest, shortUnit } from "../common/objectives.js";
+import { isCounted, isLongest, namesThings, shortUnit } from "../common/objectives.js";
 
 /** The sentence about the tour of a link whose front the service no longer keeps; `noun` is what the front called it. */
 export const choiceKept = ({ one }) =>
-  `The service no longer keeps this front. This is the ${one} that was chosen; a new plan may differ.`;
+  `The service no longer keeps this result. This is the ${one} that was chosen; a new plan may differ.`;
 
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
 export function choiceOf(front, tour, objectives, { one }) {
@@ -19,11 +19,13 @@ function sentence(front, tour, objectives, one) {
   const [first, second] = objectives.map(wordsOf);
   const least = front[0];
   if (tour.lengths[0] === least.lengths[0]) {
-    return `The ${first.least} ${objectives[0].name}. Every other ${one} has ${some(objectives[1], second.less)}, for ${some(objectives[0], first.more)}.`;
+    const dearer = isLongest(objectives[0]) ? `but ${has(objectives[0], first.more)}` : `for ${first.more} ${objectives[0].name}`;
+    return `${capital(theLeast(objectives[0]))}. Every other ${one} ${has(objectives[1], second.less)}, ${dearer}.`;
   }
   const cost = capital(step(least, tour, 0, objectives, first.more));
   const gain = step(least, tour, 1, objectives, second.less);
-  return `${cost} than the ${first.least}, for ${gain}${reached(front, tour, objectives[1])}.`;
+  const joined = isLongest(objectives[1]) ? "and" : "for";
+  return `${cost} than ${isLongest(objectives[0]) ? "at its" : "the"} ${first.least}, ${joined} ${gain}${reached(front, tour, objectives[1])}.`;
 }
 
 /** Says that a tour has the least second length of all, or that a measure of plans is 0. */
@@ -31,24 +33,30 @@ function reached(front, tour, objective) {
   if (tour.lengths[1] !== front.at(-1).lengths[1]) return "";
   if (objective.measure && tour.lengths[1] === 0) return ": none is left";
   if (isLongest(objective)) return ": the shortest there is";
-  return isCounted(objective) ? ": the fewest there are" : `: the least ${objective.name} there is`;
+  if (isCounted(objective)) return ": the fewest there are";
+  return `: the ${wordsOf(objective).least} ${objective.name} there ${areOrIs(objective)}`;
 }
 
 /** How much more than the least of the front a tour has of each of three or four objectives. */
 function ofSeveral(front, tour, objectives) {
-  const said = objectives.map(({ name }, axis) => {
+  const said = objectives.map((objective, axis) => {
     const least = front.reduce((best, each) => (each.lengths[axis] < best.lengths[axis] ? each : best));
-    const { least: fewest, more } = wordsOf(objectives[axis]);
-    return tour.lengths[axis] === least.lengths[axis] ? `the ${fewest} ${name} there is` : step(least, tour, axis, objectives, more);
+    if (tour.lengths[axis] !== least.lengths[axis]) return step(least, tour, axis, objectives, wordsOf(objective).more);
+    return isLongest(objective) ? theLeast(objective) : `${theLeast(objective)} there ${areOrIs(objective)}`;
   });
-  const more = said.some((each) => !each.startsWith("the ")) ? " than the least of each" : "";
+  const more = front.some(({ lengths }) => lengths.some((value, axis) => value < tour.lengths[axis])) ? " than the best of each" : "";
   return capital(`${said.slice(0, -1).join(", ")} and ${said.at(-1)}${more}.`);
 }
 
 const capital = (sentence) => sentence[0].toUpperCase() + sentence.slice(1);
 
-/** More or less of an objective, such as "less driving" or "a shorter longest route". */
-const some = (objective, word) => `${isLongest(objective) ? "a " : ""}${word} ${objective.name}`;
+/** What the best of all is under one objective, such as "the least driving". */
+const theLeast = (objective) => `the ${isLongest(objective) ? `${objective.name} at its shortest` : `${wordsOf(objective).least} ${objective.name}`}`;
+
+const areOrIs = (objective) => (isCounted(objective) || namesThings(objective) ? "are" : "is");
+
+/** What other tours have, such as "has less driving". */
+const has = (objective, word) => (isLongest(objective) ? `makes the ${objective.name} ${word}` : `has ${word} ${objective.name}`);
 
 /** How much more or less of an objective one tour has than another: in per cent, and in its unit; of a measure of plans in its unit alone. */
 function step(from, to, axis, objectives, word) {
@@ -58,7 +66,8 @@ function step(from, to, axis, objectives, word) {
   const by = Math.abs(after - before);
   if (isCounted(objective)) return `${Math.round(by)} ${word} ${Math.round(by) === 1 && name === "vehicles" ? "vehicle" : name}`;
   const said = amount(by, objective);
-  if (isLongest(objective)) return objective.measure || before === 0 ? `a ${name} ${word} by ${said}` : `a ${name} ${percent((100 * by) / before)} ${word} (${said})`;
+  const is = objectives.length > 2 ? "" : " is"; // several are listed
+  if (isLongest(objective)) return `the ${name}${is} ${objective.measure || before === 0 ? `${said} ${word}` : `${percent((100 * by) / before)} ${word} (${said})`}`;
   if (objective.measure || before === 0) return `${said} ${word} ${name}`;
   return `${percent((100 * by) / before)} ${word} ${name}${shortUnit(objective) && ` (${said})`}`;
 }

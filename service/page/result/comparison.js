@@ -1,23 +1,46 @@
-/** Compare the lengths of the selected tour, and the measures of a plan, with those of the pinned one. */
+/** Compare the selected tour or plan with the pinned one: when it leaves, its lengths, and the measures of a plan. */
 
 import { change, compared } from "../common/amounts.js";
 import { withUnit } from "../common/objectives.js";
+import { noteOn } from "./notes.js";
+import { hoursOf } from "./hours.js";
 
-/** Fills a table with the lengths, and with measures, each `{ name, objective, value }`, whose `value` takes a plan. */
-export function compare(table, objectives, selected, pinned, measures = []) {
-  const lengths = objectives.map((objective, axis) => ({ name: withUnit(objective), objective, value: (item) => item.lengths[axis] }));
+const HOURS = [["Leaves at", 0], ["Ends at", -1]];
+
+/**
+ * Fills a table with lengths, hours and measures.
+ *
+ * @param {object[]} measures each `{ name, objective, value }`, whose `value` takes a plan
+ * @param {{ movers: object | null, asked: object }} known what moves along the routes of a plan, and the request
+ */
+export function compare(table, objectives, selected, pinned, measures, known) {
+  const lengths = objectives.map((objective, axis) => ({
+    name: withUnit(objective),
+    note: noteOn(objectives, axis, selected, known),
+    objective,
+    value: (item) => item.lengths[axis],
+  }));
   table.classList.toggle("alone", !pinned);
-  const filled = ({ name, objective, value }) => {
+  const filled = ({ name, note, objective, value }) => {
     const said = (item) => (item ? compared(value(item), objective) : "–");
     const beside = selected && pinned ? change(value(selected), value(pinned), objective) : "";
-    return row(name, [said(selected), said(pinned), beside]);
+    return row(name, note, [said(selected), said(pinned), beside]);
   };
-  [lengths, measures].forEach((rows, at) => table.tBodies[at].replaceChildren(...rows.map(filled)));
+  const [first, second] = table.tBodies;
+  first.replaceChildren(...lengths.map(filled), ...hours(selected, pinned));
+  second.replaceChildren(...measures.map(filled));
 }
 
-function row(name, cells) {
+/** When the selected tour leaves and ends, if it leaves at a time of day. */
+function hours(selected, pinned) {
+  const [said, beside] = [selected, pinned].map(hoursOf);
+  return said.length ? HOURS.map(([name, at]) => row(name, "", [said.at(at), beside.at(at) ?? "–", ""])) : [];
+}
+
+function row(name, note, cells) {
   const made = document.createElement("tr");
   const head = Object.assign(document.createElement("th"), { scope: "row", textContent: name });
+  if (note) head.append(Object.assign(document.createElement("small"), { textContent: note }));
   made.append(head, ...cells.map((textContent) => Object.assign(document.createElement("td"), { textContent })));
   return made;
 }

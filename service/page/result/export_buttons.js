@@ -8,7 +8,7 @@ import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
 import { csvOfPaths, drivenPaths, navPathsOf } from "./robot_paths.js";
 
-const ALONE = "This link opens the front without its maps: the request is too long for an address.";
+const ALONE = "This link opens the result without its maps: the request is too long for an address.";
 const NO_POSES = "Its path has no poses: its map has no origin. A map.yaml has one.";
 const COPIED = "Copied"; // a button's text, for a moment after it was last pressed
 const MOMENT = 1500; // ms

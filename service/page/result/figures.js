@@ -3,7 +3,6 @@
 import { kindNamed } from "../common/kinds.js";
 import { titled } from "../common/objectives.js";
 import { degrees, length, share } from "../common/numbers.js";
-import { hoursOf } from "./hours.js";
 
 /** Fills a list with what is known of a front, if there is one. */
 export const showFigures = (list, alone, answer) =>
@@ -11,12 +10,7 @@ export const showFigures = (list, alone, answer) =>
 
 /** Fills a list with what else is known of a tour, if there is one. */
 export const showTourFigures = (list, tour) =>
-  list.replaceChildren(...(tour ? [...hours(tour), ...angle(tour), ...kept(tour)] : []).flatMap(pair));
-
-function hours(tour) {
-  const said = hoursOf(tour);
-  return said.length ? [["Leaves at", said[0]], ["Ends at", said.at(-1)]] : [];
-}
+  list.replaceChildren(...(tour ? [...angle(tour), ...kept(tour)] : []).flatMap(pair));
 
 const angle = (tour) => (tour.angle == null ? [] : [["Angle of the tour", degrees(tour.angle)]]);
 const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the driven tour", `${Math.round(100 * tour.kept)} %`]]);
@@ -29,7 +23,7 @@ const worth = (alone, answer) => [
 
 /** The most hypervolume that any front can have, and how much of that is missing here. */
 const shortOf = ({ hypervolume, hypervolume_bound: bound }) => [
-  ["No front has more than", share(bound)],
+  ["Nothing can have more than", share(bound)],
   ["Short of optimal by at most", share(bound > 0 ? 1 - hypervolume / bound : 0)],
 ];
 

@@ -1,7 +1,7 @@
 /** Show a front: chart, slider, figures and maps, which select a tour together. */
 
 import { FrontChart } from "../chart/chart.js";
-import { compared, wordsOf } from "../common/amounts.js";
+import { inFull, lessOf } from "../common/amounts.js";
 import { choiceKept, choiceOf } from "./choice.js";
 import { placeIn } from "./chosen.js";
 import { compare } from "./comparison.js";
@@ -76,7 +76,7 @@ export class Result {
     this.#chart.name(objectives);
     this.#slider.name(objectives);
     objectives.forEach((objective, plane) => {
-      element(`less-${plane + 1}`).textContent = `${wordsOf(objective).less} ${objective.name}`;
+      element(`less-${plane + 1}`).textContent = lessOf(objective);
     });
   }
 
@@ -277,11 +277,11 @@ export class Result {
     this.#maps.draw("selected", shown, this.#closed);
     this.#planView.show(this.#kind.movers ? shown : null, this.#kind.movers);
     const measures = shown ? measuresOf(shown, this.#objectives, this.#asked) : [];
-    compare(element("comparison"), this.#objectives, shown, this.#pinned, measures);
+    compare(element("comparison"), this.#objectives, shown, this.#pinned, measures, { movers: this.#kind.movers ?? null, asked: this.#asked });
     showTourFigures(element("tour-figures"), shown);
     element("choice").textContent = shown ? this.#said(shown) : "";
     for (const objective of [0, 1]) {
-      const said = shown ? compared(shown.lengths[objective], this.#objectives[objective]) : "";
+      const said = shown ? inFull(shown.lengths[objective], this.#objectives[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
     }
     this.#order();

@@ -1,0 +1,58 @@
+/** Say below the name of an objective what its number counts, where a reader could take it for something else. */
+
+import { amount } from "../common/amounts.js";
+import { isCounted, isLongest, isTime, shortUnit } from "../common/objectives.js";
+import { knownFleet } from "../fleet/known_fleet.js";
+import { namesOf } from "../fleet/routes_of_plan.js";
+import { visitTimes } from "../fleet/visit_times.js";
+
+const OWN = "added up from stop to stop, in the unit of your numbers";
+const NEAR = 0.01; // the share by which the parts of a route may miss its length
+const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "waiting"]];
+
+/**
+ * The note on one objective of a tour or plan; "" if its name says enough.
+ *
+ * @param {{ movers: object | null, asked: object }} known what moves along the routes of a plan, and the request
+ */
+export function noteOn(objectives, axis, item, { movers, asked }) {
+  const objective = objectives[axis];
+  const of = movers && !objective.measure ? ofRoutes(objective, axis, item, { movers, asked }) : "";
+  return [unitOf(objective), of].filter(Boolean).join("; ");
+}
+
+/** A unit that is too long to stand beside a number, or what a number without one is. */
+function unitOf(objective) {
+  if (isCounted(objective) || objective.measure) return "";
+  if (objective.unit?.startsWith(`${objective.name} ×`)) return `${objective.unit}: the column times metres, added up`;
+  return shortUnit(objective) ? "" : objective.unit || OWN;
+}
+
+/** Which routes are counted: those of all movers, or the longest one, with its parts as far as they are known. */
+function ofRoutes(objective, axis, item, { movers, asked }) {
+  if (!isLongest(objective)) return item?.routes.length > 1 ? `all ${movers.words} together` : "";
+  return (item && isTime(objective) && partsOf(item, axis, objective, { movers, asked })) || `of one ${movers.word}, from start to end`;
+}
+
+/** The longest route by name, and what its time is spent on; null if that is not known. */
+function partsOf({ routes }, axis, objective, { movers, asked }) {
+  const lengths = routes.map((route) => route.lengths[axis]);
+  const longest = lengths.indexOf(Math.max(...lengths));
+  if (!asked.stops || !routes[longest]?.arrivals) return null;
+  const spent = spentOn(visitTimes(routes[longest], knownFleet(asked)));
+  const all = spent.driving + spent.service + spent.waiting;
+  if (Math.abs(all - lengths[longest]) > NEAR * lengths[longest]) return null;
+  const parts = PARTS.filter(([part]) => Math.round(spent[part]) > 0).map(([part, said]) => `${amount(spent[part], objective)} ${said}`);
+  return `${namesOf(routes, movers, asked)[longest]}: ${parts.join(", ")}`;
+}
+
+/** What the time of a route is spent on, from the times of its visits. */
+function spentOn(visits) {
+  const spent = { driving: 0, service: 0, waiting: 0 };
+  visits.forEach(({ arrival, begin, end }, at) => {
+    if (at) spent.driving += arrival - visits[at - 1].end;
+    spent.waiting += begin - arrival;
+    spent.service += end - begin;
+  });
+  return spent;
+}
