@@ -1,4 +1,4 @@
-"""Read maps of robots as requests: a picture, maybe with its map.yaml of ROS and cost layers."""
+"""Read maps as requests: a picture, maybe with its map.yaml of ROS, or MovingAI; cost layers."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,19 +9,28 @@ import numpy as np
 from pydantic_core import to_json
 
 from service.errors import Refusal
-from service.files.reading import FileTooLarge, Reading, Request, Source, UnreadableFile
+from service.files.layers import Rows, check_size_of_layer, costs_of_cells, names_of_layers
+from service.files.octile import is_octile, read_octile
+from service.files.reading import (
+    FileTooLarge,
+    Reading,
+    Request,
+    Source,
+    UnreadableFile,
+    quoted,
+)
+from service.files.tables import Table
 from service.objectives import MOST_OBJECTIVES
 from service.requests.maps.fields import MapRequest
 from service.requests.maps.pictures import UNKNOWN, darkness, read_picture
 from service.requests.validation import parse_json
 
 _CELL = 0.05  # metres: the usual cell size of robots' maps
+_OCTILE_CELL = 1.0  # metres: maps of games have no size
 _MOST_LAYERS = MOST_OBJECTIVES - 1
 _OF_MESSAGE = ("occupancy_grid", "obstacle_from", "unknown")
 _OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
 _DIGITS = 3  # of a cost that is the shade of a pixel
-
-Rows = Sequence[Sequence[float]]
 
 
 class _Map(NamedTuple):
@@ -31,45 +40,76 @@ class _Map(NamedTuple):
     unknown: list[list[int]] | None
 
 
-def read_map(sources: Sequence[Source], tables: Sequence[tuple[Source, Rows]] = ()) -> Reading:
-    """Return the request for the grid in a picture, or in a picture with its map.yaml.
+def read_map(sources: Sequence[Source], tables: Sequence[tuple[Source, Table]] = ()) -> Reading:
+    """Return the request for the grid in a picture, maybe with its map.yaml, or of MovingAI.
 
-    Tables are cost layers, and so are the pictures that the map.yaml does not name: each is an
-    objective, which is named after its file.
+    Tables are cost layers, and so are all further pictures: each is an objective, which is named
+    after its file.
 
     Args:
-        sources: Pictures, and a map.yaml or none.
+        sources: Pictures, and a map.yaml or none; or a map of MovingAI, and pictures.
         tables: The costs of cells, row by row, with the files that they come from.
 
     Raises:
         UnreadableFile: There is not exactly one map, a file cannot be read, or a cost layer is not
             as large as the map.
     """
-    pictures = [source for source in sources if not source.file.is_yaml]
-    said = [source for source in sources if source.file.is_yaml]
+    grids = [source for source in sources if is_octile(source.file.data)]
+    pictures = [each for each in sources if not each.file.is_yaml and each not in grids]
     _refuse_other_pictures(pictures)
+    if grids:
+        main, found = _octile_map(grids, sources)
+    else:
+        main, picture, found = _pictured_map(pictures, sources)
+        pictures = [each for each in pictures if each is not picture]
+    grid = found.request["grid"]
+    layers = [(source, costs_of_cells(source, table, grid)) for source, table in tables]
+    layers += [(each, _shades(each)) for each in pictures]
+    everything = [*sources, *(source for source, _ in tables)]
+    return Reading(
+        "coverage",
+        {**found.request, **_layers(layers, grid)},
+        main.name,
+        tuple(note for source in everything for note in source.notes),
+        unknown_cells=found.unknown,
+    )
+
+
+def _octile_map(grids: Sequence[Source], sources: Sequence[Source]) -> tuple[Source, _Map]:
+    """Return the map of MovingAI, and its file."""
+    others = [source for source in sources if source.file.is_yaml]
+    if len(grids) > 1 or others:
+        demand = "a map must come once, got it as"
+        names = " and as ".join(each.name for each in [*grids, *others])
+        raise UnreadableFile(f"{sources[0].name}: {demand} {names}")
+    [source] = grids
+    source.note("cell-size", f"A cell is taken to be {_OCTILE_CELL:g} m wide; water is blocked.")
+    return source, _Map({"grid": read_octile(source), "cell_size": _OCTILE_CELL}, None)
+
+
+def _pictured_map(
+    pictures: Sequence[Source], sources: Sequence[Source]
+) -> tuple[Source, Source, _Map]:
+    """Return the map in a picture after the file that it is named after, and the picture."""
+    said = [source for source in sources if source.file.is_yaml]
+    if len(said) > 1:
+        names = " and ".join(each.name for each in said)
+        demand = "open one map.yaml, and other pictures as costs without theirs"
+        raise UnreadableFile(f"{said[0].name}: {demand}, got {names}")
+    how, named = {"cell_size": _CELL}, pictures
     if said:
         how, image = _interpretation(said[0])
         named = [each for each in pictures if each.file.name == image] or pictures
-    else:
-        how, named = {"cell_size": _CELL}, pictures
-    if len(named) != 1 or len(said) > 1:
+    if len(named) != 1:
         demand = "a map is a picture, or a map.yaml and its picture: open both together"
         raise UnreadableFile(f"{sources[0].name}: {demand}, got {len(sources)} files")
     [picture] = named
     if not said:
         picture.note("cell-size", f"A cell is taken to be {_CELL} m wide, and dark to be blocked.")
+    elif picture.file.name != image:
+        picture.note("picture", f"It is taken for the map, which map.yaml calls {quoted(image)}.")
     found = _map(picture.name, how, picture.file.data, picture.bounds.cells)
-    shades = [(each, _shades(each)) for each in pictures if each is not picture]
-    layers = _layers([*tables, *shades], found.request["grid"])
-    everything = [*sources, *(source for source, _ in tables)]
-    return Reading(
-        "coverage",
-        {**found.request, **layers},
-        (said or [picture])[0].name,
-        tuple(note for source in everything for note in source.notes),
-        unknown_cells=found.unknown,
-    )
+    return (said or [picture])[0], picture, found
 
 
 def with_grid(reading: Reading, cells: int) -> Reading:
@@ -107,7 +147,7 @@ def _rows(mask: np.ndarray[Any, np.dtype[np.bool_]]) -> list[list[int]]:
 
 def _unreadable(name: str, refusal: Refusal) -> UnreadableFile:
     kind = FileTooLarge if refusal.status == 413 else UnreadableFile
-    return kind(f"{name}: {refusal.detail}")
+    return kind(f"{name}: {refusal.detail.removeprefix('grid ')}")
 
 
 def _refuse_other_pictures(pictures: Sequence[Source]) -> None:
@@ -135,15 +175,10 @@ def _layers(layers: Sequence[tuple[Source, Rows]], grid: Rows) -> Request:
         demand = f"a map must have at most {_MOST_LAYERS} cost layers, got {len(layers)}"
         raise UnreadableFile(f"{layers[-1][0].name}: {demand}")
     for source, layer in layers:
-        if (len(layer), len(layer[0])) != (len(grid), len(grid[0])):
-            demand = f"must have {_size(grid)} costs, one for each cell of the map"
-            raise source.refusal(f"{demand}, got {_size(layer)}")
-    items = [{"name": PurePath(source.name).stem, "layer": layer} for source, layer in layers]
+        check_size_of_layer(source, layer, grid)
+    names = names_of_layers([PurePath(source.name).stem for source, _ in layers])
+    items = [{"name": name, "layer": layer} for name, (_, layer) in zip(names, layers, strict=True)]
     return {"cost_layers": items} if items else {}
-
-
-def _size(rows: Rows) -> str:
-    return f"{len(rows)} x {len(rows[0])}"
 
 
 def _interpretation(source: Source) -> tuple[dict[str, Any], str]:

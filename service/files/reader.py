@@ -5,6 +5,7 @@ from itertools import chain
 
 from service.files.benchmarks import is_customers, is_cvrp, read_customers, read_cvrp
 from service.files.json_files import looks_like_json, read_json
+from service.files.octile import is_octile
 from service.files.reading import (
     Bounds,
     Kind,
@@ -17,7 +18,7 @@ from service.files.reading import (
     reading_of_several,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
-from service.files.stop_tables import Part, numbers_of, part_of, reading_of
+from service.files.stop_tables import Part, part_of, reading_of
 from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
@@ -62,7 +63,7 @@ def read_files(
 
 def _read_all(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
     files = [source.file for source in sources]
-    if any(file.is_picture or file.is_yaml for file in files):
+    if any(map(_is_map, files)):
         return _read_map(sources)
     if len(sources) == 1:
         return _read(sources[0], wanted)
@@ -76,9 +77,13 @@ def _read_map(sources: Sequence[Source]) -> Reading:
     """Return the request for a map, in a picture or more, a map.yaml and tables of costs."""
     from service.files.maps import read_map  # here because it is slow to load
 
-    maps = [each for each in sources if each.file.is_picture or each.file.is_yaml]
+    maps = [each for each in sources if _is_map(each.file)]
     tables = [each for each in sources if each not in maps]
-    return read_map(maps, [(each, numbers_of(each, _table(each))) for each in tables])
+    return read_map(maps, [(each, _table(each)) for each in tables])
+
+
+def _is_map(file: NamedFile) -> bool:
+    return file.is_picture or file.is_yaml or is_octile(file.data)
 
 
 def _read_several(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
