@@ -38,7 +38,7 @@ const result = new Result({
   ofEnds: { onMove: (...moved) => input.moveEnd(...moved), onRefused: say },
   onServe: (...served) => (input.serve(...served), plan()),
 });
-const input = new RequestForm(form, service, { onEdited: edited, onEnds: result.showEnds, settled });
+const input = new RequestForm(form, service, { onEdited: edited, onEnds: result.showEnds, onShaded: result.shade, settled });
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const examples = new Examples(element("example"), element("about"));
 const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"), element("columns"), {

@@ -29,7 +29,8 @@ export function described(asked) {
 
 /**
  * The request as the page opens it. Beside coordinates or matrices it may have `rounded`, the `ids` of the
- * stops, and `names`: the user's names of both objectives. Beside a grid it may have `unknownCells`, to draw them.
+ * stops, and `names`: the user's names of both objectives. Beside a grid it may have `unknownCells`, and the cost layer by which it
+ * is `shaded`, to draw them.
  */
 export function askedFor(opened, settings, { rows, whole }) {
   const asked = framed({ ...opened, ...settings });
@@ -37,7 +38,7 @@ export function askedFor(opened, settings, { rows, whole }) {
 }
 
 /** The request to send to the service. */
-export function requestFor({ rounded: whole, ids, names, unknownCells: _, ...body }) {
+export function requestFor({ rounded: whole, ids, names, unknownCells: _, shaded: __, ...body }) {
   const { path, onGrid } = kindOf(body);
   const form = formOf(body);
   if (onGrid) return { path, body: { ...body, paths: true } };

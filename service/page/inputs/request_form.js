@@ -1,6 +1,7 @@
 /** The form, put together: stops as a table and as text, the objectives, and the settings. */
 
 import { isCity, textOf } from "./cities.js";
+import { CostLayers } from "./cost_layers.js";
 import { DayForm } from "./day_form.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.js";
@@ -8,6 +9,7 @@ import { FleetForm } from "../fleet/fleet_form.js";
 import { byIds, servedBy, stopRenamed } from "../fleet/references.js";
 import { RequestText } from "../fleet/request_text.js";
 import { placedAt, withRobotEnd } from "./map_ends.js";
+import { isProposed, withoutLayer } from "./map_proposal.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
@@ -27,6 +29,12 @@ export class RequestForm {
   #objectiveFields;
   #fleet;
   #day = new DayForm((changed) => this.#change(changed));
+  #layers = new CostLayers({
+    onName: (at, name) => this.#nameLayer(at, name),
+    onShade: (at) => this.#shade(at),
+    onRemove: (at) => this.open(withoutLayer(this.asked, at)),
+  });
+  #onShaded;
   #text = new RequestText(element("fleet-request"));
   #onEdited;
   #settled;
@@ -38,10 +46,12 @@ export class RequestForm {
   /**
    * @param {Service} service reads what is typed
    * @param {{ onEdited: (instance: object, fit: boolean) => void, onEnds: (instance: object) => void,
-   *   settled: () => Promise<boolean> }} told called with other stops or costs; with other ends that were typed; and
-   *   to read what was typed, or show why that is not possible
+   *   onShaded: (instance: object) => void, settled: () => Promise<boolean> }} told called with other stops or costs;
+   *   with other ends that were typed; with the layer that shades the map; and to read what was typed, or show why that
+   *   is not possible
    */
-  constructor(form, service, { onEdited, onEnds, settled }) {
+  constructor(form, service, { onEdited, onEnds, onShaded, settled }) {
+    this.#onShaded = onShaded;
     this.#onEdited = onEdited;
     this.#settled = settled;
     this.#typedRows = new TypedRows(service, (found) => this.#take(found));
@@ -211,12 +221,26 @@ export class RequestForm {
     for (const id of ["add", "place"]) element(id).disabled = form !== "coordinates" && !isMeasured(this.#brought);
     element("add").hidden = element("place").hidden = !shown;
     this.#day.show(this.#brought);
+    this.#layers.show(this.#brought, this.#objectives[1].name, isProposed(this.#brought));
     this.#text.show(kindOf(this.#brought).movers ? this.#brought : null);
     element("brought").textContent = described(this.#brought);
     element("brought").hidden = !element("brought").textContent;
     this.#fields.name(this.ids, count);
     this.#onEdited(this.instance, fit);
     this.mark();
+  }
+
+  /** Names a cost layer. The service refuses names that are not different; one without letters stays as it was. */
+  #nameLayer(at, name) {
+    const { cost_layers: layers } = this.#brought;
+    if (name) this.#brought = { ...this.#brought, cost_layers: layers.with(at, { ...layers[at], name }) };
+    this.#objectives = ownNames(this.#brought);
+    this.#edited(false);
+  }
+
+  #shade(at) {
+    this.#brought = { ...this.#brought, shaded: at };
+    this.#onShaded(this.instance);
   }
 
   /** Marks the cells of a fleet that are not understood, and says what they must be. */

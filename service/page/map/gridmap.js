@@ -59,6 +59,12 @@ export class GridMap {
     this.#fit();
   }
 
+  /** Shades the map by the cost layer that the request names. */
+  shade(request) {
+    this.#grid.costs = shadeOf(request);
+    this.#colour();
+  }
+
   /** Shows other ends of the request. */
   showEnds(request) {
     this.#ends.show(request, true, true);
@@ -74,7 +80,8 @@ export class GridMap {
     this.#places.setStyle({ fillColor: colour("ink") });
     this.#unreached.clearLayers();
     const outlined = { renderer: this.#outlines, className: "unreached", interactive: false };
-    for (const { box } of regions) this.#unreached.addLayer(L.rectangle(corners(box), outlined));
+    regions.forEach(({ box }, at) => this.#unreached.addLayer(L.rectangle(corners(box), outlined)).addLayer(numberAt(box, at + 1)));
+    document.querySelector("#grid-legend .unreached").hidden = !regions.length;
   }
 
   /** Draws the path of a tour as "selected" or "pinned"; null removes it. */
@@ -139,14 +146,20 @@ export class GridMap {
   }
 }
 
-/** The costs that a request's map is tinted by, those of its second objective; undefined without a layer. */
-export const shadeOf = ({ cost_layer: layer, cost_layers: layers }) => layer ?? layers?.[0]?.layer;
+/** The costs that a request's map is tinted by; undefined without a layer. */
+export const shadeOf = ({ cost_layer: layer, cost_layers: layers, shaded = 0 }) => layer ?? layers?.[shaded]?.layer;
 
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];
 
 /** Two corners of a box, given the first and the last cell in it. */
 const corners = ([[top, left], [bottom, right]]) => [[-top, left], [-bottom - 1, right + 1]];
+
+/** The number of a box, in its middle. */
+function numberAt(box, number) {
+  const icon = L.divIcon({ className: "number", iconSize: [0, 0], html: String(number) });
+  return L.marker(L.latLngBounds(corners(box)).getCenter(), { icon, interactive: false, keyboard: false });
+}
 
 /** The line of a path on the map; empty without a path, as while a front is searched. */
 const lineOf = (path) => turns(path?.cells ?? []).map(middle);

@@ -135,6 +135,11 @@ export class Maps {
     this.#sayCredit();
   }
 
+  /** Shades a robot's map by the cost layer that the request names. */
+  shade(request) {
+    if (this.#kind.onGrid) this.#grid.shade(request);
+  }
+
   /** Shows other ends of a request on a robot's map. */
   showEnds(request) {
     if (this.#kind.onGrid) this.#grid.showEnds(request);

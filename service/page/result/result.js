@@ -14,13 +14,13 @@ import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
 import { hoursOf } from "./hours.js";
-import { counted, length } from "../common/numbers.js";
 import { visitItem } from "../common/visit_item.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
 import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
 import { SeveralObjectives } from "./several.js";
 import { nearest } from "./tours.js";
+import { showUnreached } from "./unreached.js";
 
 const MIDDLE = 0.5; // the middle balance
 
@@ -87,9 +87,8 @@ export class Result {
     this.#planView.open(instance);
     this.#asked = instance;
     this.#kind = kindOf(instance);
-    element("uncovered").textContent = "";
-    const shade = shadeOf(instance) ? `shaded: ${this.#objectives[1].name}` : "";
-    element("shade").textContent = [shade, instance.unknownCells ? "grey: unknown" : ""].filter(Boolean).join("; ");
+    showUnreached(null);
+    this.#sayShade(instance);
     this.#front = [];
     this.#id = null;
     this.#balance = MIDDLE;
@@ -107,6 +106,18 @@ export class Result {
     showFigures(element("figures"), null, null);
   }
 
+  /** Shades a robot's map by the cost layer that the request names. */
+  shade = (request) => {
+    this.#maps.shade(request);
+    this.#sayShade(request);
+  };
+
+  #sayShade(instance) {
+    const by = this.#objectives[1 + (instance?.shaded ?? 0)];
+    const shade = shadeOf(instance ?? {}) ? `shaded: ${by.name}` : "";
+    element("shade").textContent = [shade, instance?.unknownCells ? "grey: unknown" : ""].filter(Boolean).join("; ");
+  }
+
   /** Shows other ends of the tours on a robot's map. */
   showEnds = (request) => this.#maps.showEnds(request);
 
@@ -122,7 +133,7 @@ export class Result {
     if (this.#objectives.length > 2) this.#several.show(answer.front, this.#objectives, this.#kind.noun);
     else this.#showBoth(alone, answer);
     this.#maps.place(answer.places, answer.uncovered);
-    element("uncovered").textContent = unreached(answer.uncovered);
+    showUnreached(answer.uncovered, this.#asked.cell_size);
     element("tour-title").textContent = this.#kind.movers ? "Selected plan" : "Tour";
     if (this.#front.length) this.#select(this.#wanted);
     showFigures(element("figures"), alone, this.#kept ? null : answer);
@@ -313,15 +324,6 @@ export class Result {
     const hours = hoursOf(this.#selected);
     element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visitItem(name, hours[at])));
   }
-}
-
-/** How much of a map no path leads to, as a sentence; the service describes the largest of very many regions. */
-function unreached(uncovered) {
-  if (!uncovered?.cells) return "";
-  const { cells, square_metres, regions } = uncovered;
-  const described = regions.reduce((sum, region) => sum + region.cells, 0);
-  const where = `${described < cells ? "more than " : ""}${counted(regions.length, "region", "regions")}`;
-  return `${length(square_metres)} m² in ${where} cannot be reached.`;
 }
 
 /** The names of the stops of a tour, in its order. */

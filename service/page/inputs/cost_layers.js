@@ -1,0 +1,85 @@
+/** List the cost layers of a robot's map: what each holds, which one shades the map, its name, and a button that takes it away. */
+
+import { counted, length } from "../common/numbers.js";
+
+const element = (id) => document.getElementById(id);
+
+/** The cost layers of a request, each `{ name, layer }`; one that the request does not name has no name. */
+export const layersOf = ({ grid, cost_layer: layer, cost_layers: layers }) =>
+  (grid && (Array.isArray(layers) ? layers : layer ? [{ name: null, layer }] : [])) || [];
+
+export class CostLayers {
+  #told;
+
+  /**
+   * @param {{ onName: (at: number, name: string) => void, onShade: (at: number) => void, onRemove: (at: number) => void }}
+   *   told called with the place of the layer that is named, shades the map from now on, or is taken away
+   */
+  constructor(told) {
+    this.#told = told;
+    const list = element("layers-list");
+    list.addEventListener("change", ({ target }) => this.#changed(target));
+    list.addEventListener("click", ({ target }) => target.dataset.remove && told.onRemove(Number(target.dataset.remove)));
+  }
+
+  /** Shows the layers of a request: one without a name by this title, `fixed` if it cannot be taken away. */
+  show(request, title, fixed) {
+    const layers = layersOf(request);
+    element("layers").hidden = !layers.length;
+    const rows = layers.map((item, at) => row(item, at, { title, fixed, request, alone: layers.length === 1 }));
+    element("layers-list").replaceChildren(...rows);
+  }
+
+  #changed({ name, value }) {
+    if (name === "shaded") return this.#told.onShade(Number(value));
+    this.#told.onName(Number(name.slice("layer-".length)), value.trim());
+  }
+}
+
+function row({ name, layer }, at, { title, fixed, request, alone }) {
+  const called = name ?? title;
+  const made = document.createElement("li");
+  const shades = Object.assign(document.createElement("label"), { hidden: alone });
+  shades.append(input({ type: "radio", name: "shaded", value: String(at), checked: at === (request.shaded ?? 0) }, `Shade the map by ${called}`), "shades the map");
+  const named = name === null
+    ? Object.assign(document.createElement("b"), { textContent: called })
+    : input({ name: `layer-${at}`, value: name, autocomplete: "off", maxLength: 100 }, `Name of cost layer ${at + 1}`);
+  const holds = Object.assign(document.createElement("span"), { className: "help", textContent: held(layer, request.grid) });
+  const remove = Object.assign(document.createElement("button"), { type: "button", className: "remove", textContent: "×", hidden: fixed });
+  remove.dataset.remove = at;
+  remove.setAttribute("aria-label", `Take ${called} away`);
+  made.append(named, remove, holds, shades);
+  return made;
+}
+
+function input(members, label) {
+  const made = Object.assign(document.createElement("input"), members);
+  made.setAttribute("aria-label", label);
+  return made;
+}
+
+const known = new WeakMap(); // what layers hold: a large map has a million cells
+
+/** What a layer costs on the free cells, in words; it says so where it decides nothing. */
+function held(layer, grid) {
+  if (!known.has(layer)) known.set(layer, counts(layer, grid));
+  return known.get(layer);
+}
+
+function counts(layer, grid) {
+  let [least, most, without, free] = [Infinity, -Infinity, 0, 0];
+  grid.forEach((cells, row) =>
+    cells.forEach((blocked, column) => {
+      if (blocked) return;
+      const cost = layer[row]?.[column];
+      [least, most] = [Math.min(least, cost), Math.max(most, cost)];
+      without += cost === 0;
+      free += 1;
+    }),
+  );
+  if (!free || !Number.isFinite(least)) return "";
+  if (most === 0) return "0 on every free cell: it decides nothing";
+  if (least === most) return `${length(most)} on every free cell: it only repeats the distance`;
+  const nothing = without ? `, 0 on ${counted(without, "free cell", "free cells")}` : "";
+  return `${length(least)} to ${length(most)} a metre${nothing}`;
+}
