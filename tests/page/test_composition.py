@@ -1,5 +1,6 @@
 """The composition of the page: what is seen without scrolling, no holes, and no collisions."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -26,7 +27,8 @@ EXAMPLES = [
 DESK, TABLET = (1440, 900), (1024, 768)  # windows: width and height in pixels
 FILLED = 0.85  # of the place of front, numbers and map: the share that cards cover
 DRAWN = (0.8, 0.4)  # of a map's sides: how far a tour reaches, along the longer and the shorter one
-AT_ONCE = "#choice, .front .chart, .slider, .caps, #plan, #status"  # seen without scrolling
+# What is seen without scrolling.
+AT_ONCE = "#choice, .front .chart, .slider, .caps, #will-plan, #plan, #status"
 
 pytestmark = needs_chromium
 
@@ -99,6 +101,28 @@ def test_a_newcomer_sees_the_choice_and_the_plan_button_at_once(example: Page) -
         assert len(boxes) >= 5
         assert max(bottom for *_, bottom in boxes) <= height
     assert example.evaluate(BOXES, ".map")[0][1] < height  # the map begins there
+
+
+def test_the_first_screen_says_what_every_colour_means(example: Page) -> None:
+    resize(example, *DESK)
+    keys = example.evaluate(BOXES, ".key:not(:empty), .shades")
+    assert all(bottom <= DESK[1] for *_, bottom in keys)
+    routes = example.locator("#fleet:not([hidden]) #fleet-legend tbody th").all_inner_texts()
+    named = example.locator(":is(#vehicles-key, #robots-key):not([hidden]) li").all_inner_texts()
+    assert named == routes
+    if example.locator("#several").is_visible():
+        expect(example.locator(".shades i")).to_have_count(5)
+        assert re.match(r"[\d,]+ m\s*[\d,]+ m$", example.locator(".shades").inner_text())
+
+
+def test_change_leads_to_what_will_be_planned(example: Page) -> None:
+    heads = example.locator("#comparison tbody:first-of-type th").all_inner_texts()
+    first, second = (re.split("[,\n]", head)[0] for head in heads[:2])
+    said = re.compile(rf"^{first} against {second.lower()}.*, in \d s\. Change$")
+    expect(example.locator("#will-plan")).to_have_text(said)
+    example.get_by_role("button", name="Change", exact=True).click()
+    assert example.evaluate("Boolean(document.activeElement.closest('.asked'))")
+    assert example.evaluate("document.activeElement.matches('input, select')")
 
 
 def test_cards_leave_no_hole(example: Page) -> None:

@@ -71,12 +71,12 @@ def test_each_layer_says_what_it_holds_and_whether_it_decides_nothing(opened: Pa
 
 def test_the_layer_that_shades_the_map_is_chosen_and_sent_nowhere(opened: Page) -> None:
     open_office(opened, cost_layers=LAYERS)
-    expect(opened.locator("#shade")).to_have_text("shaded: noise")
+    expect(opened.locator("#ground .dear")).to_have_text("more noise")
     opened.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(opened)
     before, front = shading(opened), shown_front(opened)["id"]
     opened.get_by_label("Shade the map by dust").check()
-    expect(opened.locator("#shade")).to_have_text("shaded: dust")
+    expect(opened.locator("#ground .dear")).to_have_text("more dust")
     assert shading(opened) != before
     assert shown_front(opened)["id"] == front  # it stays
     assert "shaded" not in curl_body(opened, "coverage")

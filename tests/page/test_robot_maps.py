@@ -249,7 +249,8 @@ def test_costs_beside_a_map_are_its_objective_and_unknown_cells_are_told(opened:
         [{"name": name, "mimeType": "", "buffer": data} for name, data in files.items()]
     )
     wait_until_read(opened)
-    expect(opened.locator("#shade")).to_have_text("shaded: noise; grey: unknown")
+    colours = opened.get_by_role("list", name="Colours of the map").get_by_role("listitem")
+    expect(colours).to_have_text(["obstacle", "unknown", "more noise"])
     body = curl_body(opened, "coverage")
     assert body["cost_layers"][0]["name"] == "noise"
     assert "unknownCells" not in body

@@ -150,7 +150,7 @@ def test_each_cost_layer_of_a_robot_has_a_limit_of_its_own(browser: Browser, rel
     spread = {"grid": [[0] * 14] * 9, "cell_size": 0.5, "spacing": 1.2, "time_limit": 0.5}
     with open_page(browser, released) as page:
         open_files(page, {"robot.json": json.dumps({**spread, "cost_layers": layers})})
-        expect(page.locator("#shade")).to_have_text("shaded: people")
+        expect(page.locator("#ground li")).to_have_text(["obstacle", "more people"])
         expect(page.locator("#named")).to_be_hidden()
         page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)

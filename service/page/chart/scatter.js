@@ -1,6 +1,6 @@
 /** The plane of two of three or more objectives: a dot for each tour, coloured by another objective. */
 
-import { compared, figure } from "../common/amounts.js";
+import { amount, compared, figure } from "../common/amounts.js";
 import { titled, withUnit } from "../common/objectives.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -13,6 +13,7 @@ export class Scatter {
   #element;
   #svg = document.createElementNS(SVG, "svg");
   #choices;
+  #key = Object.assign(document.createElement("p"), { className: "shades" }); // what the colours mean
   #front = [];
   #within = [];
   #objectives = [];
@@ -73,7 +74,7 @@ export class Scatter {
       label.append(title, list);
       return label;
     });
-    this.#choices.replaceChildren(...parts);
+    this.#choices.replaceChildren(...parts, this.#key);
   }
 
   #exchange(at, axis) {
@@ -90,10 +91,19 @@ export class Scatter {
     this.#svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     if (!this.#front.length || !width) return this.#svg.replaceChildren();
     // Those beyond the limits first, so that the others lie over them.
+    this.#sayShades();
     const order = this.#front.map((_, at) => at).sort((a, b) => this.#within[a] - this.#within[b]);
     const dots = order.map((at) => this.#dot(this.#front[at].lengths, this.#within[at] ? `shade-${this.#shade(at)}` : "beyond", 4));
     this.#svg.replaceChildren(...this.#frame(width, height), ...dots);
     for (const [name, lengths] of Object.entries(this.#marks)) this.mark(name, lengths);
+  }
+
+  /** Says beside the lists from which to which length the colours go. */
+  #sayShades() {
+    const axis = this.#axes[2];
+    const [least, most] = this.#ends[axis].map((value) => amount(value, this.#objectives[axis]));
+    const dots = Array.from({ length: SHADES }, (_, at) => Object.assign(document.createElement("i"), { className: `shade-${at}` }));
+    this.#key.replaceChildren(least, ...dots, most);
   }
 
   #shade(at) {

@@ -5,11 +5,11 @@ const PLANS = { one: "plan", many: "plans" };
 
 // The names of vehicles or robots on the page; the members of a route with its mover and its visits; and how Python prints it.
 const VEHICLES = {
-  one: "Vehicle", many: "Vehicles", word: "vehicle", words: "vehicles", stops: "Stops", listed: "Stops of each vehicle",
+  one: "Vehicle", many: "Vehicles", words: "vehicles", stops: "Stops", listed: "Stops of each vehicle",
   by: "vehicle", through: "stops", printed: "route.stops",
 };
 const ROBOTS = {
-  one: "Robot", many: "Robots", word: "robot", words: "robots", stops: "Places", listed: "Places of each robot",
+  one: "Robot", many: "Robots", words: "robots", stops: "Places", listed: "Places of each robot",
   by: "robot", through: "tour", printed: "(route.robot, route.tour.tolist())",
 };
 

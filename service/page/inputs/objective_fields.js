@@ -6,6 +6,7 @@ const SOURCES = { great_circle: "Straight lines, m", [TIMED]: "Time in straight 
 const NTH = ["First", "Second", "Third", "Fourth"].map((each) => `${each} objective`);
 const OWN = "own"; // costs that came with the stops
 const MISSING = "no routing engine here";
+const SHORT = 9; // letters of a unit for which there is room beside the name
 let roads = true; // whether costs by road can be had
 
 /** Greys all measures by road, from now on. */
@@ -56,6 +57,7 @@ function line(objective, axis, sourced, which) {
   const made = Object.assign(document.createElement("div"), { className: "objective" });
   made.append(labelled(which, input(axis, "name", name ?? "")));
   if (measure) return made;
+  made.classList.toggle("long", (unit ?? "").length > SHORT);
   made.append(labelled("Unit", input(axis, "unit", unit ?? ""), `Unit of the ${which.toLowerCase()}`));
   if (!sourced) return made;
   const speed = input(axis, "speed", objective.speed ?? SPEED);

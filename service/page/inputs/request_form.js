@@ -11,6 +11,7 @@ import { RequestText } from "../fleet/request_text.js";
 import { placedAt, withRobotEnd } from "./map_ends.js";
 import { isProposed, withoutLayer } from "./map_proposal.js";
 import { nameOf } from "./names.js";
+import { PlanLine } from "./plan_line.js";
 import { ObjectiveFields } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
 import { EditableTable } from "./table.js";
@@ -36,6 +37,7 @@ export class RequestForm {
   });
   #onShaded;
   #text = new RequestText(element("fleet-request"));
+  #planLine;
   #onEdited;
   #settled;
   #typedRows;
@@ -56,6 +58,7 @@ export class RequestForm {
     this.#settled = settled;
     this.#typedRows = new TypedRows(service, (found) => this.#take(found));
     this.#fields = new Fields(form);
+    this.#planLine = new PlanLine(form);
     this.#objectiveFields = new ObjectiveFields(element("objectives"), (axis, change) => this.#measure(axis, change));
     this.#table = new EditableTable(element("stops"), {
       onName: (row, text) => this.#onceRead(() => this.#rename(row, text)),
@@ -216,7 +219,7 @@ export class RequestForm {
     const count = (form === "coordinates" ? this.#rows : (this.#brought.stops ?? [])).length;
     const shown = this.#isFleet || Boolean(COLUMNS[form]);
     if (this.#isFleet) this.#fleet.show(this.#brought);
-    else this.#table.show(COLUMNS[form] ?? [], this.#tableRows(form));
+    else this.#table.show(this.#columns(form), this.#tableRows(form));
     element("count").textContent = shown ? counted(count, "stop", "stops") : "";
     for (const id of ["add", "place"]) element(id).disabled = form !== "coordinates" && !isMeasured(this.#brought);
     element("add").hidden = element("place").hidden = !shown;
@@ -226,6 +229,7 @@ export class RequestForm {
     element("brought").textContent = described(this.#brought);
     element("brought").hidden = !element("brought").textContent;
     this.#fields.name(this.ids, count);
+    this.#planLine.show(this.#objectives);
     this.#onEdited(this.instance, fit);
     this.mark();
   }
@@ -246,6 +250,13 @@ export class RequestForm {
   /** Marks the cells of a fleet that are not understood, and says what they must be. */
   mark() {
     if (this.#isFleet) this.#fleet.mark();
+  }
+
+  /** The columns of the table; those of planes below the objective that is measured in them. */
+  #columns(form) {
+    const columns = COLUMNS[form] ?? [];
+    if (form !== "coordinates") return columns;
+    return columns.map((column, at) => ({ ...column, group: this.#objectives[Math.floor(at / 2)].name }));
   }
 
   #tableRows(form) {

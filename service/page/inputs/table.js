@@ -27,7 +27,8 @@ export class EditableTable {
   /**
    * Shows rows, each `{ name, cells, unread }` with the text of its cells and the columns of those that
    * are not understood, under columns `{ title, members, list, text }`: the members of a request that the
-   * column is about, the id of a list of proposals, and whether its cells are more than numbers.
+   * column is about, the id of a list of proposals, and whether its cells are more than numbers; columns of a
+   * `group` stand below its name.
    */
   show(columns, rows) {
     this.#columns = columns;
@@ -60,6 +61,7 @@ export class EditableTable {
     if (wanted === this.#drawn) return this.#fill();
     this.#drawn = wanted;
     const table = document.createElement("table");
+    table.classList.toggle("grouped", Boolean(this.#columns[0]?.group));
     table.append(head(this.#noun, this.#columns), body(this.#columns, rows));
     this.#element.replaceChildren(table);
     const left = this.#rows.length - rows.length;
@@ -105,8 +107,20 @@ function head(noun, columns) {
   );
   row.append(...cells, document.createElement("td"));
   const made = document.createElement("thead");
-  made.append(row);
+  made.append(...groups(columns), row);
   return made;
+}
+
+/** The names of the groups over their columns, if there are any. */
+function groups(columns) {
+  const names = [...new Set(columns.map(({ group }) => group))].filter(Boolean);
+  if (!names.length) return [];
+  const row = document.createElement("tr");
+  const cells = names.map((textContent) =>
+    Object.assign(document.createElement("th"), { scope: "colgroup", textContent, colSpan: columns.filter(({ group }) => group === textContent).length }),
+  );
+  row.append(document.createElement("td"), ...cells, document.createElement("td"));
+  return [row];
 }
 
 function body(columns, rows) {

@@ -2,6 +2,7 @@
 
 import { GridMap } from "./gridmap.js";
 import { pictureOfRoutes, pictureOfTours, startsOf, styleOfTour } from "./map_pictures.js";
+import { wordsOf } from "../common/amounts.js";
 import { UNNAMED, titled } from "../common/objectives.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { EARTH, mapsOf } from "../inputs/places.js";
@@ -9,6 +10,7 @@ import { stylesOf } from "../fleet/route_styles.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { Planes, roundOf } from "./planes.js";
 import { Ways } from "./ways/ways.js";
+import { showRoutes } from "./key.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -99,6 +101,8 @@ export class Maps {
     this.#drawn.forEach((drawn, map) => {
       element(`plane-${map + 1}-title`).textContent = single || drawn === EARTH ? "Map" : titled(this.#objectives[drawn]);
     });
+    const redrawn = single || this.#drawn[1] === EARTH ? null : this.#objectives[this.#drawn[1]];
+    element("plane-2-note").textContent = redrawn ? `The same stops, drawn anew: the longer a line, the ${wordsOf(redrawn).more} ${redrawn.name}.` : "";
     element("length-1").hidden = single || this.#drawn[0] === EARTH;
   }
 
@@ -186,7 +190,10 @@ export class Maps {
 
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. Of plans the selected one alone is drawn. */
   draw(name, item, closed = true) {
-    if (name === "selected") this.#sayLines(item, closed);
+    if (name === "selected") {
+      this.#sayLines(item, closed);
+      this.#showKey(item);
+    }
     if (this.#kind.onGrid) this.#drawOnGrid(name, item);
     else if (this.#kind.movers) {
       if (name === "selected") this.#planes.drawRoutes(item ? this.#routes(item) : []);
@@ -204,6 +211,13 @@ export class Maps {
     const followed = ways.length > 0 && ways.every((cities) => this.#ways.along(cities));
     const said = followed ? "along the streets" : "in straight lines";
     element("lines").textContent = ways.length ? said : "";
+  }
+
+  /** Names the colours of a plan's routes beside the map that is shown. */
+  #showKey(plan) {
+    const { movers, onGrid } = this.#kind;
+    for (const [id, there] of [["vehicles-key", !onGrid], ["robots-key", onGrid]]) element(id).hidden = !(movers && there);
+    if (movers) showRoutes(element(onGrid ? "robots-key" : "vehicles-key"), plan ? (onGrid ? this.#paths(plan) : this.#routes(plan)) : []);
   }
 
   #drawOnGrid(name, item) {

@@ -31,7 +31,7 @@ function unitOf(objective) {
 /** Which routes are counted: those of all movers, or the longest one, with its parts as far as they are known. */
 function ofRoutes(objective, axis, item, { movers, asked }) {
   if (!isLongest(objective)) return item?.routes.length > 1 ? `all ${movers.words} together` : "";
-  return (item && isTime(objective) && partsOf(item, axis, objective, { movers, asked })) || `of one ${movers.word}, from start to end`;
+  return (item && isTime(objective) && partsOf(item, axis, objective, { movers, asked })) || "";
 }
 
 /** The longest route by name, and what its time is spent on; null if that is not known. */

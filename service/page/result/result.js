@@ -9,6 +9,7 @@ import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
 import { nameOf } from "../inputs/names.js";
 import { shadeOf } from "../map/gridmap.js";
+import { showGround } from "../map/key.js";
 import { Maps } from "../map/maps.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
@@ -113,9 +114,8 @@ export class Result {
   };
 
   #sayShade(instance) {
-    const by = this.#objectives[1 + (instance?.shaded ?? 0)];
-    const shade = shadeOf(instance ?? {}) ? `shaded: ${by.name}` : "";
-    element("shade").textContent = [shade, instance?.unknownCells ? "grey: unknown" : ""].filter(Boolean).join("; ");
+    const dear = shadeOf(instance ?? {}) && this.#objectives[1 + (instance.shaded ?? 0)].name;
+    showGround(element("ground"), { unknown: instance?.unknownCells, dear });
   }
 
   /** Shows other ends of the tours on a robot's map. */
