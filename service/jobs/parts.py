@@ -81,7 +81,7 @@ def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
 def _of_means(stops: Stops, task: Task) -> frozenset[Part]:
     """Return the parts that stops need whose costs do not change over the day."""
     if len(stops.sources) > OBJECTIVES:
-        return _of_several(replanned=task.earlier is not None)
+        return _of_several(stops, replanned=task.earlier is not None)
     few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
     parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
     if stops.n >= _MANY[stops.kind]:
@@ -91,7 +91,9 @@ def _of_means(stops: Stops, task: Task) -> frozenset[Part]:
     return frozenset(parts)
 
 
-def _of_several(*, replanned: bool) -> frozenset[Part]:
+def _of_several(stops: Stops, *, replanned: bool) -> frozenset[Part]:
     """Return the parts that stops under three or four objectives need."""
     parts = {Part.FEW_CITIES, Part.MORE_CITIES, Part.SEVERAL_OBJECTIVES}
+    if stops.n >= _MANY[stops.kind]:
+        parts.add(Part.MANY_CITIES)
     return frozenset(parts | {Part.CHANGES} if replanned else parts)

@@ -89,7 +89,7 @@ def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
     """
     assert isinstance(task.subject, Coverage)
     try:
-        most = limits.most_places(task.subject.objectives, shared=False)
+        most = limits.most_places(shared=False)
         return survey(task.subject, most, stop, seconds_to_survey(task, limits))
     except InvalidCoverage as refusal:
         if not task.parts:

@@ -210,8 +210,7 @@ def parse_coverage_as(
     check_unique([item.name for item in request.cost_layers], "cost_layers", "name")
     if request.cost_layer.size and request.cost_layers:
         raise invalid("cost_layers", "or cost_layer must be left out")
-    objectives = 1 + max(1, len(request.cost_layers))
-    most = limits.most_places(objectives, shared=bool(request.robots))
+    most = limits.most_places(shared=bool(request.robots))
     if len(request.places) > most:
         raise too_many_cities("places", most, len(request.places))
     _check_poses(request)

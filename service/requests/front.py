@@ -189,7 +189,7 @@ def parse_front_as(
             update={"matrices": read_npy(npy, limits.most_cities("matrices"))}
         )
     _check_cities(request, limits)
-    _check_objectives(request, limits)
+    _check_objectives(request)
     request = _by_index(request)
     n, id_bytes = request.n, 0 if request.labels is None else request.labels.id_bytes
     check_limits(request, n, limits, id_bytes)
@@ -236,13 +236,9 @@ def _check_matrices(request: FrontRequest) -> None:
         check_costs(matrix, f"matrices/{m}")
 
 
-def _check_objectives(request: FrontRequest, limits: Limits) -> None:
-    """Raise a refusal where parts are for different numbers of objectives, or for too many."""
+def _check_objectives(request: FrontRequest) -> None:
+    """Raise a refusal where parts are for different numbers of objectives."""
     m = request.objective_count
-    most = limits.most_cities(request.kind, m)
-    if request.n > most:
-        form = "stops" if request.stops else request.kind
-        raise too_many_cities(form, most, request.n, " unless there are two objectives")
     for index, row in enumerate(request.coordinates):
         if len(row) != PLANE * m or len(row) % PLANE:
             columns = f"{PLANE * m} numbers, as coordinates/0"

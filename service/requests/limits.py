@@ -7,7 +7,6 @@ from typing import TypeVar
 from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Array, Kind
-from service.objectives import OBJECTIVES
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
 from service.requests.stops import ROAD_MEASURES, Measured, Source, Traffic, base_of
 
@@ -25,7 +24,6 @@ class Limits:
         cities: Stops in two planes.
         matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
-        several_cities: Stops under more than two objectives, whose costs are all looked up.
         network_cities: Stops for which a network builds tours.
         survey_seconds: Seconds to find the paths between the places of a map.
         fleet_stops: Stops of a fleet, and places that several robots share.
@@ -47,7 +45,6 @@ class Limits:
     size: int
     seconds: float
     matrix_cities: int = 1000
-    several_cities: int = 2000
     network_cities: int = 5000
     path_cells: int = 2**21
     survey_seconds: float = 10.0
@@ -66,14 +63,13 @@ class Limits:
             "time_limit": self.seconds,
         }
 
-    def most_cities(self, kind: Kind, objectives: int = OBJECTIVES) -> int:
-        """Return the most cities of an instance of a kind, under this number of objectives."""
-        most = self.cities if objectives == OBJECTIVES else min(self.cities, self.several_cities)
-        return most if kind == "coordinates" else min(most, self.matrix_cities)
+    def most_cities(self, kind: Kind) -> int:
+        """Return the most cities of an instance of a kind."""
+        return self.cities if kind == "coordinates" else min(self.cities, self.matrix_cities)
 
-    def most_places(self, objectives: int = OBJECTIVES, *, shared: bool) -> int:
+    def most_places(self, *, shared: bool) -> int:
         """Return the most places on a map, which several robots share or one visits."""
-        places = self.most_cities("matrices", objectives)
+        places = self.most_cities("matrices")
         return min(places, self.fleet_stops) if shared else places
 
     def most_tours(self, n: int, id_bytes: int = 0) -> int:

@@ -69,7 +69,8 @@ def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterato
         compared = n
     else:
         compared = 1 if costs.closing.size else 0  # the invented city is in no plane
-        trees = make_kd_trees(weights, np.arange(compared, n, dtype=np.int32))
+        cities = np.arange(compared, n, dtype=np.int32)
+        trees = make_kd_trees(weights, cities, costs.cities.shape[1])
         for k in range(len(weights)):
             fill_kd_tree(trees, costs, k)
             yield

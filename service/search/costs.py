@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 # second-level cache, and memory stays linear in the number of cities.
 DENSE_BELOW = 600
 
+SIDES = 4  # coordinates of a city in the first two planes
+
 # Of a reference point, in units in which costs are below 2: products of two are finite, not 0.
 LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
 
@@ -30,14 +32,16 @@ class Costs(NamedTuple):
     A forbidden leg costs more than any tour without one, under both objectives. So a tour that has
     one is dominated by every tour that has none.
 
-    Those of open routes have one more city, city 0, which comes before the instance's.
+    Those of open routes have one more city, city 0, which comes before the instance's. Each plane
+    beyond the second adds its distances to the first cost.
     """
 
-    cities: Array  # (n, 4)
+    cities: Array  # (n, 4), or (n, 2 p) with p planes, p > 2
     matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
     symmetric: bool
     closing: Array  # (2, n), the costs from city 0 and to it; (2, 0) of closed tours
     largest: Array  # (2,), of any step: what rounding can add to a gain is a share of these
+    plain: bool  # whether no city is invented, and there are no planes beyond the second
 
 
 def make_costs(instance: Instance) -> Costs:
@@ -58,10 +62,10 @@ def make_costs(instance: Instance) -> Costs:
         matrix[added:, added:] = planes.transpose(1, 2, 0)
         if added:
             matrix[0], matrix[:, 0] = closing[0, :, None], closing[1, :, None]
-        return Costs(cities, matrix, instance.symmetric, closing, largest)
+        return Costs(cities, matrix, instance.symmetric, closing, largest, not added)
     corner = instance.coordinates.min(axis=0)
     cities[added:] = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
-    sparse = Costs(cities, np.zeros((0, 0, 2)), True, closing, largest)
+    sparse = Costs(cities, np.zeros((0, 0, 2)), True, closing, largest, not added)
     if instance.n >= DENSE_BELOW:
         return sparse
     matrix = np.empty((n, n, 2))
@@ -83,13 +87,32 @@ def step_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
     """Return both scaled costs of the step from city i to city j."""
     if len(costs.matrix):
         return costs.matrix[i, j, 0], costs.matrix[i, j, 1]
-    if is_closing(costs.closing, i, j):
-        closing = closing_cost(costs.closing, i, j)
-        return closing, closing
     cities = costs.cities
+    if not costs.plain:
+        if is_closing(costs.closing, i, j):
+            closing = closing_cost(costs.closing, i, j)
+            return closing, closing
+        if cities.shape[1] > SIDES:
+            return costs_in_planes(cities, i, j)
     x, y = cities[i, 0] - cities[j, 0], cities[i, 1] - cities[j, 1]
     u, v = cities[i, 2] - cities[j, 2], cities[i, 3] - cities[j, 3]
     return np.sqrt(x * x + y * y), np.sqrt(u * u + v * v)
+
+
+@compiled
+def costs_in_planes(cities: Array, i: int, j: int) -> tuple[float, float]:
+    """Return both costs of a step where there are more than two planes."""
+    first, second = distance(cities, 0, i, j), distance(cities, 2, i, j)
+    for d in range(SIDES, cities.shape[1], 2):
+        first += distance(cities, d, i, j)
+    return first, second
+
+
+@inlined
+def distance(cities: Array, d: int, i: int, j: int) -> float:
+    """Return the distance of two cities in the plane of the coordinates d and d + 1."""
+    x, y = cities[i, d] - cities[j, d], cities[i, d + 1] - cities[j, d + 1]
+    return float(np.sqrt(x * x + y * y))
 
 
 @inlined

@@ -1,7 +1,7 @@
-"""k-d trees that find the cities nearest by a weighted sum of the distances in both planes.
+"""k-d trees that find the cities nearest by a weighted sum of the distances in two planes or more.
 
-That sum is a norm of the difference of four coordinates. So the same sum of the distances to a box
-in either plane is a lower bound for all cities in it, and a search that leaves out boxes by it is
+That sum is a norm of the difference of all coordinates. So the same sum of the distances to a box
+in each plane is a lower bound for all cities in it, and a search that leaves out boxes by it is
 exact (Bentley, 1975). For each weight there is a tree, whose boxes are cut in two where they are
 widest under it. All trees are balanced alike: node i has the children 2 i + 1 and 2 i + 2, and the
 nodes of the last level are leaves.
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
-from service.search.costs import Costs, step_costs
+from service.search.costs import SIDES, Costs, step_costs
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -28,7 +28,7 @@ class KdTrees(NamedTuple):
     weights: Array  # (k, 2)
     cities: Cities  # (k, m), leaf by leaf
     begins: Cities  # (leaves + 1,): leaf i has the cities begins[i] to begins[i + 1] - 1 of those
-    boxes: Array  # (k, nodes, 2, 4): least and greatest coordinates of a node's cities
+    boxes: Array  # (k, nodes, 2, sides): least and greatest coordinates of a node's cities
 
 
 class Nearest(NamedTuple):
@@ -40,8 +40,11 @@ class Nearest(NamedTuple):
     bounds: Array  # (WAITING,)
 
 
-def make_kd_trees(weights: Array, cities: Cities) -> KdTrees:
-    """Return trees of cities, shape (m,), under weights (k, 2), still to be filled."""
+def make_kd_trees(weights: Array, cities: Cities, sides: int) -> KdTrees:
+    """Return trees, still to be filled, of cities, shape (m,), under weights (k, 2).
+
+    `sides` is the number of coordinates of a city.
+    """
     m, k = len(cities), len(weights)
     leaves = 1
     while m > LEAF * leaves:
@@ -51,7 +54,7 @@ def make_kd_trees(weights: Array, cities: Cities) -> KdTrees:
         weights,
         np.tile(cities, (k, 1)),
         begins.astype(np.int32),
-        np.empty((k, 2 * leaves - 1, 2, 4)),
+        np.empty((k, 2 * leaves - 1, 2, sides)),
     )
 
 
@@ -87,13 +90,13 @@ def fill_kd_tree(trees: KdTrees, costs: Costs, k: int) -> None:
 def fill_box(box: Array, coordinates: Array, cities: Cities, weights: Array) -> int:
     """Fill in the box of some cities, and return the side on which it is widest under weights."""
     side, widest = 0, -1.0
-    for d in range(4):
+    for d in range(coordinates.shape[1]):
         least = greatest = coordinates[cities[0], d]
         for city in cities:
             least = min(least, coordinates[city, d])
             greatest = max(greatest, coordinates[city, d])
         box[0, d], box[1, d] = least, greatest
-        width = weights[d // 2] * (greatest - least)
+        width = weights[d // 2 if d < SIDES else 0] * (greatest - least)
         if width > widest:
             side, widest = d, width
     return side
@@ -106,7 +109,21 @@ def cost_to_box(box: Array, city: Array, w0: float, w1: float) -> float:
     y = max(box[0, 1] - city[1], 0.0, city[1] - box[1, 1])
     u = max(box[0, 2] - city[2], 0.0, city[2] - box[1, 2])
     v = max(box[0, 3] - city[3], 0.0, city[3] - box[1, 3])
-    return w0 * np.sqrt(x * x + y * y) + w1 * np.sqrt(u * u + v * v)
+    first, second = np.sqrt(x * x + y * y), np.sqrt(u * u + v * v)
+    if len(city) > SIDES:
+        first += distances_to_box_beyond(box, city)
+    return w0 * first + w1 * second
+
+
+@compiled
+def distances_to_box_beyond(box: Array, city: Array) -> float:
+    """Return the sum of the distances to a box in all planes beyond the second."""
+    total = 0.0
+    for d in range(SIDES, len(city), 2):
+        x = max(box[0, d] - city[d], 0.0, city[d] - box[1, d])
+        y = max(box[0, d + 1] - city[d + 1], 0.0, city[d + 1] - box[1, d + 1])
+        total += np.sqrt(x * x + y * y)
+    return total
 
 
 @inlined

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from paretour import Client
 
+from service.instance import Instance, tour_lengths
 from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 N = 12
@@ -170,10 +171,16 @@ def test_a_job_and_the_client(client: httpx.Client) -> None:
         assert job.result().lengths.shape[1] == 4
 
 
-def test_of_many_cities_two_objectives_alone_are_planned() -> None:
-    limits = replace(LIMITS, several_cities=9)
+@pytest.mark.parametrize("ends", [{}, {"closed": False, "start": 3}])
+def test_thousands_of_stops_are_planned(ends: dict[str, Any]) -> None:
+    places = np.random.default_rng(0).random((2_500, 6)).round(4)
+    limits = replace(LIMITS, cities=2_500, body_bytes=2_000_000, network_cities=N, seconds=2)
     with serving(app_of(limits=limits)) as address:
-        refused = problem(
-            httpx.post(f"{address}/front", json={"coordinates": cities(3)}), 413, "too-many-cities"
-        )
-    assert (refused["limit"], refused["actual"]) == (9, N)
+        request = {"coordinates": places.tolist(), "time_limit": 1.5, **ends}
+        answer = httpx.post(f"{address}/front", json=request, timeout=60).json()
+    assert answer["terminated"] == "time_limit"
+    instance = Instance(coordinates=places, **ends)
+    tours = np.array([each["tour"] for each in answer["front"]])
+    assert (np.sort(tours, axis=1) == np.arange(2_500)).all()
+    reported = [each["lengths"] for each in answer["front"]]
+    np.testing.assert_allclose(reported, tour_lengths(instance, tours), rtol=1e-9)

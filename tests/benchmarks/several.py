@@ -46,6 +46,7 @@ SIZES = {  # by the name of the instances: kind of plane, cities, objectives, ho
     "500 uniform": (uniform, 500, 3, 1, 10.0),
     "1000 uniform": (uniform, 1000, 3, 1, 10.0),
     "2000 uniform": (uniform, 2000, 3, 1, 30.0),
+    "5000 uniform": (uniform, 5000, 3, 1, 60.0),
 }
 KRO_SECONDS = 10.0
 

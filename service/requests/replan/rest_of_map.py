@@ -43,7 +43,7 @@ def rest_of_map(
     anywhere = "cost_layers" in changes or coverage.cost_layers is not None
     cells, request = _all_places(known, coverage, request, anywhere)
     rest = rest_of_way(front, request)
-    n, most = len(rest.stops), limits.most_places(coverage.objectives, shared=False)
+    n, most = len(rest.stops), limits.most_places(shared=False)
     if n > most:
         raise too_many_cities("add", most, n)
     check_amounts(request, n, limits)

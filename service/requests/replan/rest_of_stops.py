@@ -107,7 +107,7 @@ def _hours_of_rest(
 def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:
     """Raise a refusal of a part of the request where the rest has too many stops."""
     kind = kind_of(sources)
-    most = limits.most_cities(kind, len(sources))
+    most = limits.most_cities(kind)
     if len(rest.stops) > most:
         unless = " unless all costs are distances in planes" if kind == "matrices" else ""
         detail = f"{part} must leave at most {most} stops{unless}, got {len(rest.stops)}"

@@ -55,7 +55,7 @@ def _bounds(costs: list[Costs], weights: Array) -> Iterator[tuple[int, float]]:
         shares = (1 - np.arange(STEPS) / STEPS) ** 2
         block = max(1, BLOCK // len(start) ** 2)
         for begin in range(0, STEPS, block):
-            ascend(weighted, 1.0, 0.0, ascent, shares[begin : begin + block])
+            ascend(weighted, 1.0, 1.0, ascent, shares[begin : begin + block])
             yield k, float(ascent.best_bound[0])
         penalties.append(ascent.best_penalties)
 

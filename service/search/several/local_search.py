@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from service.jit import compiled
 from service.search.candidates import Scalarization
 from service.search.local_search import (
+    SPIKE,
     improve_at,
     least_gain,
     perturb,
     random_below,
-    spiked,
     sum_afresh,
 )
 from service.search.several.archive import BlockArchive, insert, weighted_sum
@@ -50,19 +50,20 @@ def iterate(state: StateOfSeveral, scalarization: Scalarization, steps: int) -> 
     Every tour on the way is offered to the archive.
     """
     working = state.working
-    value = working.length[0]
+    value = working.length[0] + working.length[1]
     threshold = least_gain(scalarization, value)
     save(working)
     for _ in range(steps):
         perturb(working, scalarization, state.random)
-        rounded = spiked(working, working.saved_length[0], 1.0)
+        rounded = working.length[0] + working.length[1] > SPIKE * value
         while working.ring[1] > 0:
             if improve_at(working, scalarization, dequeue(working), threshold):
                 offer(state, working)
         if rounded:
             sum_afresh(working, scalarization)
-        if working.length[0] <= value + threshold:
-            value = working.length[0]
+        reached = working.length[0] + working.length[1]
+        if reached <= value + threshold:
+            value = reached
             save(working)
         else:
             restore(working)
@@ -99,7 +100,7 @@ def search_from_points(
 
     Args:
         state: Of the search.
-        scalarization: The weighted sum, as the first of two costs.
+        scalarization: The weighted sum, in two costs.
         weights: Its weights, shape (m,).
         least: The least weighted sum found so far.
         rounds: The number of points.

@@ -1,7 +1,8 @@
 """The schedule of a search for three or four objectives: which weight, and from which tours.
 
 First every weight gets a tour by descent, from the best one known under it. Then each in turn has
-its tour improved by iterated local search, and the front near to it is searched from its points.
+its tour improved by what is better in those of other weights and by iterated local search, and the
+front near to it is searched from its points.
 Up to some hundred cities every tour on the way is offered to the archive.
 """
 
@@ -16,11 +17,9 @@ from service.search.archive import make_archive as make_sorted_archive
 from service.search.candidates import Scalarization
 from service.search.closing import closed_tours, opened_tours
 from service.search.hypervolume import hypervolume
-from service.search.local_search import least_gain
-from service.search.pareto_local_search import LARGE, SearchState, WeightedCandidates
+from service.search.pareto_local_search import SearchState, WeightedCandidates
 from service.search.several.archive import (
     accepts,
-    best_row,
     insert,
     make_archive,
     rows_of,
@@ -30,6 +29,7 @@ from service.search.several.costs import (
     sum_lengths,
     weighted_costs,
 )
+from service.search.several.descents import DescentsOfSeveral
 from service.search.several.local_search import (
     StateOfSeveral,
     iterate,
@@ -38,16 +38,14 @@ from service.search.several.local_search import (
 )
 from service.search.several.weights import WeightedSums, search_weights
 from service.search.starts.constructed_tour import constructed_tour
-from service.search.three_opt.choice import LocalSearch, TwoOptSearch, choose_local_searches
-from service.search.working_tour import enqueue_cities, make_working_tour
+from service.search.three_opt.choice import TwoOptSearch, choose_local_searches
+from service.search.working_tour import make_working_tour
 
 Array = NDArray[np.float64]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 LONG_BLOCK = 50  # the same by three-opt
-DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
-OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
 STEPS = 10  # of the iterated local search from each point
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 # Iterations under each weight as shares of n, by the round: of its best tour, and from points.
@@ -79,9 +77,8 @@ class SearchOfSeveral:
     ) -> None:
         self.instance = instance
         self.reference_point = reference_point
-        self._touched = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
         self._costs = make_objective_costs(instance)
-        self._n = len(self._costs.table)
+        self._n = len(self._costs.planes)
         self._sums = WeightedSums(self._costs, search_weights(instance))
         self._weights = self._sums.weights
         self._archive = make_archive(self._n, instance.objectives, capacity)
@@ -91,9 +88,12 @@ class SearchOfSeveral:
             make_working_tour(self._n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
-        self._descent, self._local_search = choose_local_searches(
+        descent, self._local_search = choose_local_searches(
             self._state_of_two(), touched is not None
         )
+        cities = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
+        self._descents = DescentsOfSeveral(instance, self._state, self._sums, descent, cities)
+        self._constructing = touched is None
         self._lengths = np.empty(instance.objectives)
 
     def _state_of_two(self) -> SearchState:
@@ -158,7 +158,8 @@ class SearchOfSeveral:
 
     def construct(self) -> None:
         """Add a nearest-neighbour tour under the first weight, at most O(n^2)."""
-        self.add(opened_tours(self.instance, self._constructed(0)[np.newaxis]))
+        tour = constructed_tour(self.instance, self._sums.scalarization(0))
+        self.add(opened_tours(self.instance, tour[np.newaxis]))
 
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.
@@ -166,7 +167,9 @@ class SearchOfSeveral:
         Ends when the search has converged.
         """
         for k in range(len(self._weights)):
-            yield from self._descend(k, k < CONSTRUCTIONS and self._touched is None)
+            yield from self._rank(k)
+            construct = k < CONSTRUCTIONS and self._constructing
+            yield from self._descents.descend(k, self._sums.scalarization(k), construct)
         rounds = iter(ROUNDS)
         share, quiet = next(rounds), 0
         while quiet < PATIENCE * self._n:
@@ -180,17 +183,23 @@ class SearchOfSeveral:
 
     def _take_turn(self, k: int, own: float, gaps: float) -> Iterator[int]:
         """Improve the best tour under weight k, and search from points of the front near to it."""
-        for _ in self._sums.rank(k):
-            yield 0
+        yield from self._rank(k)
         scalarization = self._sums.scalarization(k)
+        if self._descents.assembling:
+            yield from self._descents.assemble(k, scalarization)
         if own:
             yield from self._improve_best(k, scalarization, max(1, int(own * self._n)))
         if gaps:
             yield from self._search_near(k, scalarization, max(STEPS, int(gaps * self._n)))
 
+    def _rank(self, k: int) -> Iterator[int]:
+        """Rank the candidates under weight k, unless they are."""
+        for _ in self._sums.rank(k):
+            yield 0
+
     def _improve_best(self, k: int, scalarization: Scalarization, steps: int) -> Iterator[int]:
         """Run iterated local search from the best tour known under weight k."""
-        self._load_best(k, scalarization, self._local_search)
+        self._descents.load_best(k, scalarization, self._local_search)
         if isinstance(self._local_search, TwoOptSearch):
             for done in range(0, steps, BLOCK):
                 block = min(steps - done, BLOCK)
@@ -205,62 +214,9 @@ class SearchOfSeveral:
 
     def _search_near(self, k: int, scalarization: Scalarization, steps: int) -> Iterator[int]:
         """Run iterated local search by two-opt under weight k from points of the front."""
-        weights, least = self._weights[k], self._least(k)
+        weights, least = self._weights[k], self._descents.least(k)
         for done in range(0, steps, BLOCK):
             block = min(steps - done, BLOCK)
             rounds = max(1, block // STEPS)
             search_from_points(self._state, scalarization, weights, least, rounds, STEPS)
             yield block
-
-    def _descend(self, k: int, construct: bool) -> Iterator[int]:
-        """Descend to a local optimum under weight k from the best tour known."""
-        for _ in self._sums.rank(k):
-            yield 0
-        scalarization = self._sums.scalarization(k)
-        local_search = self._descent
-        constructed = self._load_best(k, scalarization, local_search, construct)
-        working = local_search.working
-        enqueue_cities(working, working.tour if self._touched is None else self._touched)
-        threshold = least_gain(scalarization, working.length[0])
-        offering = self._n >= LARGE and not constructed
-        block = 1 + self._n // OFFERS if offering else DESCENT_BLOCK
-        while local_search.descend(scalarization, threshold, block) == 0:
-            if offering:
-                offer(self._state, working)
-            yield 0
-        offer(self._state, working)
-        yield 1
-
-    def _load_best(
-        self,
-        k: int,
-        scalarization: Scalarization,
-        local_search: LocalSearch,
-        construct: bool = False,
-    ) -> bool:
-        """Load the best tour known under weight k; a constructed one where that is better.
-
-        Returns whether it was constructed.
-        """
-        row = best_row(self._archive, self._weights[k])
-        least = np.inf
-        if row >= 0:
-            least = float(self._archive.points[row] @ self._weights[k])
-            local_search.load(self._archive.tours[row], least, 0.0)
-        if not construct and row >= 0:
-            return False
-        tour = self._constructed(k, scalarization)
-        sum_lengths(self._costs, tour, self._lengths)
-        value = float(self._lengths @ self._weights[k])
-        if value < least:
-            local_search.load(tour, value, 0.0)
-        return value < least
-
-    def _least(self, k: int) -> float:
-        """Return the least weighted sum under weight k of the tours found so far."""
-        row = best_row(self._archive, self._weights[k])
-        return float(self._archive.points[row] @ self._weights[k])
-
-    def _constructed(self, k: int, scalarization: Scalarization | None = None) -> NDArray[np.int32]:
-        """Return a tour by nearest neighbours under weight k."""
-        return constructed_tour(self.instance, scalarization or self._sums.scalarization(k))

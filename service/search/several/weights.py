@@ -40,7 +40,7 @@ class WeightedSums:
     def __init__(self, costs: ObjectiveCosts, weights: Array) -> None:
         self.weights = weights
         self._costs = costs
-        n = len(costs.table)
+        n = len(costs.planes)
         width = min(CANDIDATES_PER_CITY, n - 1)
         self._candidates = np.zeros((len(weights), n, width), np.int32)
         self._candidate_costs = np.zeros((len(weights), n, width))
@@ -51,13 +51,21 @@ class WeightedSums:
         if self._ranked[k]:
             return
         scalarization = self.scalarization(k)
-        pool = make_candidate_pool(len(self._costs.table))
-        yield from fill_in_blocks(pool, scalarization.costs, np.array([[1.0, 0.0]]))
+        pool = make_candidate_pool(len(self._costs.planes))
+        yield from fill_in_blocks(pool, scalarization.costs, np.ones((1, 2)))
         rank_candidates(pool, scalarization)
         self._ranked[k] = True
         yield
 
+    def nearest(self, k: int, count: int) -> NDArray[np.intp]:
+        """Return the `count` weights nearest to weight k, the nearest first, without itself."""
+        shares = self.weights / self.weights.max(axis=0)
+        shares /= shares.sum(axis=1, keepdims=True)
+        away = ((shares - shares[k]) ** 2).sum(axis=1)
+        away[k] = np.inf
+        return away.argsort(kind="stable")[:count]
+
     def scalarization(self, k: int) -> Scalarization:
-        """Return the weighted sum of weight k as the first of two costs, and its candidates."""
+        """Return the weighted sum of weight k as the sum of two costs, and its candidates."""
         costs = weighted_costs(self._costs, self.weights[k])
-        return Scalarization(costs, self._candidates[k], self._candidate_costs[k], 1.0, 0.0)
+        return Scalarization(costs, self._candidates[k], self._candidate_costs[k], 1.0, 1.0)

@@ -87,7 +87,7 @@ def test_a_front_covers_the_tours_it_began_with(kind: str, ends: str, objectives
     assert covers(found.points, tour_lengths(instance, tours))
 
 
-@pytest.mark.parametrize("n", [40, 300, 600])
+@pytest.mark.parametrize("n", [40, 300, 600, 2_500])
 @pytest.mark.parametrize("ends", ["closed", "both"])
 def test_cities_of_all_numbers_are_planned(n: int, ends: str) -> None:
     instance = uniform(n, objectives=3)
@@ -108,6 +108,12 @@ def test_the_same_iterations_give_the_same_front(objectives: int) -> None:
     )
     assert np.array_equal(first.tours, again.tours)
     assert not np.array_equal(first.points, other.points)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_tours_that_take_over_from_others_stay_on_the_front(kind: str) -> None:
+    instance = small_integers(kind, 160, 0, 3)  # enough cities for tours to be assembled
+    assert is_front(instance, improve(instance, no_tours(160), iterations=3_000))
 
 
 def test_it_ends_at_its_deadline_with_what_it_has() -> None:
