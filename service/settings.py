@@ -218,7 +218,7 @@ class Settings(BaseSettings):
     max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = 2**21
     """the most path cells, or stops of tours, of an answer"""
     max_survey_seconds: Seconds = 10.0
-    """seconds to find the paths between the places of a map, if no time_limit is longer"""
+    """processor seconds for the paths between places of a map, if no time_limit is longer"""
     max_preferences: Annotated[int, _whole(1, _MOST_TOURS)] = 200
     """the most preferences of a request"""
     max_repairs: Annotated[int, _whole(0, _MOST_TOURS)] = 200

@@ -1,4 +1,7 @@
-"""Bound the time of a survey: it is refused as soon as it is clear that it would take too long."""
+"""Bound the time of a survey: it is refused as soon as it is clear that it would take too long.
+
+The time is that of the processor, so that other work on a busy machine does not count.
+"""
 
 import math
 import time
@@ -6,7 +9,7 @@ from collections.abc import Callable
 
 from service.errors import Refusal
 
-_LOOKED = 0.1  # of the seconds allowed: then what is left is estimated
+_LOOKED = 0.1  # of the seconds allowed: after as long, what is left is estimated
 _CLEARLY = 1.5  # an estimate is off by less than this factor
 
 
@@ -14,7 +17,7 @@ class Pace:
     """The time that the searches of a survey take.
 
     Args:
-        seconds: The most that all searches may take.
+        seconds: The most processor time of this thread that all searches may take.
         stop: Returns whether the survey is to end.
         cells: The number of free cells, for the refusal.
         places: The number of places, for the refusal.
@@ -23,7 +26,7 @@ class Pace:
     def __init__(
         self, seconds: float, stop: Callable[[], bool], *, cells: int, places: int
     ) -> None:
-        self._began = time.monotonic()
+        self._began = time.thread_time()
         self._seconds, self._stop = seconds, stop
         self._cells, self._places = cells, places
 
@@ -36,14 +39,14 @@ class Pace:
             Refusal: The time is over, or will clearly be over before all searches are done. Raised
                 by that function.
         """
-        began, done = time.monotonic(), 0
+        began, done = time.thread_time(), 0
 
         def before_search() -> bool:
             nonlocal done
-            now = time.monotonic()
-            spent = now - self._began
-            estimated = began - self._began + (now - began) * searches / max(done, 1)
-            clear = spent > _LOOKED * self._seconds and estimated > _CLEARLY * self._seconds
+            now = time.thread_time()
+            spent, here = now - self._began, now - began
+            estimated = began - self._began + here * searches / max(done, 1)
+            clear = here > _LOOKED * self._seconds and estimated > _CLEARLY * self._seconds
             if clear or spent > self._seconds:
                 raise self._refusal(max(estimated, spent))
             done += 1

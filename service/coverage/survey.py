@@ -156,7 +156,7 @@ def survey(
         coverage: The task.
         max_places: The greatest number of places that a spacing may give.
         stop: Called once for each place, and before and after; True ends the survey.
-        seconds: The most that the searches for paths may take.
+        seconds: The most processor time that the searches for paths may take.
 
     Raises:
         InvalidCoverage: No cell is free, a place or a pose is not free or cannot be reached, or the

@@ -116,7 +116,8 @@ PROBLEMS: Mapping[str, Problem] = {
     "survey-too-long": Problem(
         422,
         "the paths between {places} places over {cells} free cells must be found within {limit:g}"
-        " s, and take longer: give about {fitting} places, larger cells, or a longer time_limit",
+        " s of a processor, and take longer: give about {fitting} places, larger cells, or a longer"
+        " time_limit",
         ("POST /coverage", *_REPLAN),
     ),
     "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),

@@ -25,7 +25,7 @@ class Limits:
         matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
         network_cities: Stops for which a network builds tours.
-        survey_seconds: Seconds to find the paths between the places of a map.
+        survey_seconds: Processor seconds to find the paths between the places of a map.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops

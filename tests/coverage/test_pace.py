@@ -19,13 +19,20 @@ def never() -> bool:
     return False
 
 
+def search() -> None:
+    """Take SEARCH seconds of the processor."""
+    began = time.thread_time()
+    while time.thread_time() < began + SEARCH:
+        pass
+
+
 def searches_until_refused(pace: Pace, searches: int) -> int:
     """Return the number of searches of SEARCH seconds until the refusal; all without one."""
     before_search = pace.of(searches)
     for done in range(searches):
         if is_refused(before_search):
             return done
-        time.sleep(SEARCH)
+        search()
     return searches
 
 
@@ -47,10 +54,10 @@ def test_what_clearly_takes_too_long_is_refused_early() -> None:
 
 def test_what_is_estimated_too_low_is_refused_at_the_limit() -> None:
     before_search = Pace(0.1, never, cells=9, places=9).of(1)
-    began = time.monotonic()
+    began = time.thread_time()
     while not is_refused(before_search):
-        time.sleep(SEARCH)
-    assert time.monotonic() - began > 0.1
+        search()
+    assert time.thread_time() - began > 0.1
 
 
 def test_time_that_one_kind_of_search_took_is_missing_to_the_next() -> None:
@@ -77,3 +84,18 @@ def test_a_survey_is_refused_with_the_places_that_fit(detours: bool) -> None:
         survey(room, 1000, never, 1e-6)
     assert raised.value.limit == 1e-6
     assert "about 2 places" in str(raised.value)
+
+
+def test_time_that_the_thread_waits_does_not_count() -> None:
+    before_search = Pace(0.05, never, cells=9, places=9).of(2)
+    time.sleep(0.2)
+    assert not is_refused(before_search)
+
+
+def test_one_search_that_takes_long_is_not_taken_for_all() -> None:
+    pace = Pace(1.0, never, cells=9, places=9)
+    assert searches_until_refused(pace, 10) == 10  # a fifth of the time
+    before_search = pace.of(100)
+    before_search()
+    search()
+    assert not is_refused(before_search)
