@@ -145,7 +145,8 @@ function show(state) {
 function plan() {
   way = null;
   replanForm.show(null);
-  return run((mine) => mine.plan(input.request));
+  const onGrid = kindOf(input.asked).onGrid;
+  return run((mine) => mine.plan(input.request), onGrid ? "The paths between the places of the map are being found." : undefined);
 }
 
 /** Plans the rest of the selected tour. */

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from PIL import Image
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from service.requests.maps.fields import MapRequest
 from tests.helpers.browsing import (
@@ -257,3 +257,21 @@ def test_costs_beside_a_map_are_its_objective_and_unknown_cells_are_told(opened:
     opened.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(opened)
     assert shown_front(opened)["objectives"][1]["name"] == "noise"
+
+
+def test_a_map_that_takes_too_long_is_refused_in_the_words_of_the_page(opened: Page) -> None:
+    refused = {"code": "survey-too-long", "detail": "the paths take longer: give about 40 places"}
+    headers = {"Content-Type": "application/problem+json"}
+    asked: list[float] = []
+
+    def refuse(route: Route) -> None:
+        asked.append(json.loads(route.request.post_data or "{}")["time_limit"])
+        route.fulfill(status=422, headers=headers, body=json.dumps({"status": 422, **refused}))
+
+    office = {"grid": [[0] * 9] * 4, "cell_size": 2, "spacing": 4, "cost_layer": [[1] * 9] * 4}
+    open_request(opened, {**office, "time_limit": 5})
+    opened.route("**/coverage", refuse)
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    expect(opened.locator("#request-fault")).to_contain_text("give about 40 places")
+    assert asked == [0, 5]  # a longer time limit admits larger maps
+    opened.unroute("**/coverage")
