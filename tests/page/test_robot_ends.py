@@ -19,6 +19,7 @@ from tests.helpers.browsing import (
     shown_front,
     wait_until_planned,
 )
+from tests.page.test_stops_on_the_map import slide_finger
 
 pytestmark = needs_chromium
 
@@ -243,6 +244,42 @@ def test_poses_of_an_opened_request_are_drawn_and_sent_again(opened: Page) -> No
     assert "start" not in body
     for ring, name in (("start", "start_pose"), ("end", "end_pose")):
         assert shown_cell(opened, ring) == cell_of_pose(poses[name], TURNED)  # type: ignore[arg-type]
+
+
+def test_an_end_that_no_path_leads_to_is_refused_at_its_field(opened: Page) -> None:
+    closed = [[int(column == 6) for column in range(COLUMNS)] for _ in range(ROWS)]
+    open_office(opened, grid=closed, spacing=1.5, places=None)
+    opened.get_by_label("End elsewhere").fill("5.25, 1.25")
+    opened.get_by_label("Start", exact=True).fill("0.25, 0.25")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    fault = opened.locator("#end-fault")
+    expect(fault).to_contain_text("End elsewhere must be reachable from start")
+    expect(opened.get_by_label("End elsewhere")).to_have_attribute("aria-invalid", "true")
+
+
+def test_a_radius_that_is_typed_holds_for_ends_at_once(opened: Page) -> None:
+    open_office(opened)
+    opened.locator("#robot_radius").fill("0.6")
+    opened.locator("#robot_radius").press("Tab")
+    drag(opened, (0, 0), (4, 5))
+    assert "within 0.6 m of an obstacle" in status(opened)
+    assert shown_cell(opened, "start") == (0, 0)
+
+
+def test_a_finger_moves_the_start_that_it_has_chosen(browser: Browser, released: str) -> None:
+    page = browser.new_page(viewport={"width": 1440, "height": 1200}, has_touch=True)
+    page.goto(released)
+    wait_until_planned(page)
+    open_office(page)
+    begin, end = pixel(page, (0, 0)), pixel(page, (2, 3))
+    slide_finger(page, begin, end)
+    assert shown_cell(page, "start") == (0, 0)  # it scrolls
+    page.locator("#grid").scroll_into_view_if_needed()
+    begin, end = pixel(page, (0, 0)), pixel(page, (2, 3))
+    page.touchscreen.tap(*begin)
+    slide_finger(page, begin, end)
+    assert shown_cell(page, "start") == (2, 3)
+    page.close()
 
 
 def test_on_a_large_map_an_end_is_moved_by_one_cell(opened: Page) -> None:

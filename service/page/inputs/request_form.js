@@ -49,7 +49,7 @@ export class RequestForm {
    * @param {Service} service reads what is typed
    * @param {{ onEdited: (instance: object, fit: boolean) => void, onEnds: (instance: object) => void,
    *   onShaded: (instance: object) => void, settled: () => Promise<boolean> }} told called with other stops or costs;
-   *   with other ends that were typed; with the layer that shades the map; and to read what was typed, or show why that
+   *   with what was typed that moves or limits the ends on a map; with the layer that shades the map; and to read what was typed, or show why that
    *   is not possible
    */
   constructor(form, service, { onEdited, onEnds, onShaded, settled }) {
@@ -67,7 +67,7 @@ export class RequestForm {
     });
     this.#fleet = new FleetForm(this.#table, (changed) => this.#change(changed));
     element("cities").addEventListener("input", () => this.#typed());
-    for (const name of ["start", "end", "open"]) form[name].addEventListener("change", () => onEnds(this.instance));
+    for (const name of ["start", "end", "open", "cell_size", "robot_radius"]) form[name].addEventListener("change", () => onEnds(this.instance));
     element("rounded").addEventListener("change", () => this.#edited(false));
     element("add").addEventListener("click", () => this.#onceRead(() => this.#add()));
   }

@@ -1,6 +1,6 @@
 /** Show each fault of an error at its field. */
 
-const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives" };
+const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives", start_pose: "start", end_pose: "end" };
 for (const member of ["tour", "done", "remove", "add", "position", "now"]) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
@@ -122,6 +122,7 @@ const SAID = [
   [/^objectives\/([0-3])\/unit must be s\b.*?, got/, (_, axis) => `the ${NTH[axis]} objective must be in s, as tours leave at a time of day; its unit is`],
   [/^objectives\/[0-3]\/over_the_day\/(\d+)\/[01]/, (_, at) => `number ${counted(at)} of the rush hours`],
   [/^clock must be the name of an objective.*/, () => "times must be those of one of both objectives"],
+  [/\b(start|end)_pose\b/g, (_, role) => role],
   [/^end must not be the start.*/, () => "end must not be the start; leave it empty for a tour that returns"],
   [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or add it on the map"],
 ];
