@@ -8,7 +8,7 @@ import { FileNotes } from "./opening/file_notes.js";
 import { formOf, kindOf } from "./common/kinds.js";
 import { keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
-import { UNNAMED, namesIn } from "./common/objectives.js";
+import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
@@ -130,7 +130,7 @@ function ended() {
 
 function show(state) {
   if (state.answer) {
-    if (state.answer.objectives || state.answer.scale?.length > 2) objectives = withUnits(namesIn(state.answer), input.instance);
+    objectives = namesOf(state.answer);
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);
@@ -140,6 +140,13 @@ function show(state) {
     }
   }
   say(sentence(state));
+}
+
+/** The names of the objectives of an answer; those on the page where the service had none, as when the rest of a tour is planned. */
+function namesOf({ objectives: named, scale }) {
+  if (!named && !(scale?.length > 2)) return objectives;
+  const found = withUnits(namesIn({ objectives: named, scale }), input.instance);
+  return isUnnamed(found) && found.length === objectives.length ? objectives : found;
 }
 
 function plan() {
@@ -389,7 +396,12 @@ equipment.then((map) => map?.roads === false && offerNoRoads());
 
 /** Opens what the address names, or else the first example, unless the user opened or typed something meanwhile. */
 async function start() {
-  examples.offer(await service.get("examples/index.json"));
+  try {
+    examples.offer(await service.get("examples/index.json"));
+  } catch (error) {
+    say("");
+    return fail(error);
+  }
   if ((await openLinked()) || shown) return;
   if (reading) awaited = examples.first;
   else planExample(examples.first);

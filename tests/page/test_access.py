@@ -48,3 +48,13 @@ def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
         wait_until_planned(page)
         expect(page.locator("#key-fault")).to_be_empty()
         expect(page.get_by_label("A choice of")).to_be_visible()
+
+
+def test_the_page_says_that_the_service_is_away_when_it_opens(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, "about:blank") as page:
+        page.route("**/examples/index.json", lambda route: route.abort())
+        page.goto(released)
+        expect(page.locator("#request-fault")).to_have_text("The service does not answer.")
+        expect(page.locator("#status")).to_be_empty()

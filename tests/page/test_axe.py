@@ -1,12 +1,22 @@
 """Accessibility by axe: the page, the guide and the reference, on phone, tablet and desk."""
 
+import re
+from collections.abc import Callable
 from typing import Any, Literal
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.accessibility import load_axe, unfold, violations
-from tests.helpers.browsing import DESK, PHONE, needs_chromium, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    DESK,
+    PHONE,
+    needs_chromium,
+    open_files,
+    open_page,
+    plan_city_deliveries,
+    wait_until_planned,
+)
 
 TABLET, WIDE = 768, 1920
 SETTLED = 500  # ms after a change of the scheme
@@ -36,6 +46,61 @@ def test_axe_finds_nothing_serious_in_the_reference(browser: Browser, released: 
         assert [found for found in findings(page) if found[0] in ("serious", "critical")] == []
         page.emulate_media(color_scheme="dark")
         expect(page.locator("html.dark-mode")).to_be_visible()
+
+
+def replanned(page: Page) -> None:
+    plan_city_deliveries(page)
+    page.locator("#order > summary").click()
+    page.locator("#replanning > summary").click()
+    page.get_by_label("Visited up to").fill(page.locator("#order li").nth(9).inner_text())
+    page.get_by_role("button", name="Replan", exact=True).click()
+    expect(page.locator("#legend .before")).to_be_visible()
+
+
+def refused_replanning(page: Page) -> None:
+    page.locator("#replanning > summary").click()
+    page.get_by_label("Visited up to").fill("nowhere")
+    page.get_by_role("button", name="Replan", exact=True).click()
+    expect(page.locator("#replan-fault")).to_be_visible()
+
+
+def refused_file(page: Page) -> None:
+    table = {"name": "orders.csv", "mimeType": "text/csv", "buffer": b"name,street\nA,Mill Lane\n"}
+    page.get_by_label("Open files").set_input_files([table])  # type: ignore[list-item]
+    expect(page.locator("#file-fault")).to_be_in_viewport()
+
+
+def opened(page: Page) -> None:
+    rows = "".join(f"order-{k},24.9{k},60.1{k},{k}\n" for k in range(9))
+    open_files(page, {"orders.csv": f"id,lon,lat,risk\n{rows}"})
+    expect(page.locator("#count")).to_have_text("9 stops")
+    expect(page.locator("#order")).to_be_hidden()
+
+
+def refused_request(page: Page) -> None:
+    opened(page)
+    page.get_by_label("Start", exact=True).fill("nowhere")
+    page.get_by_role("button", name="Plan", exact=True).click()
+    expect(page.locator("#start-fault")).to_be_in_viewport(ratio=1)
+
+
+def service_away(page: Page) -> None:
+    page.route(re.compile("/front$"), lambda route: route.abort())
+    page.get_by_role("button", name="Plan", exact=True).click()
+    expect(page.locator("#request-fault")).to_have_text("The service does not answer.")
+
+
+STATES = [replanned, refused_replanning, refused_file, opened, refused_request, service_away]
+
+
+@pytest.mark.parametrize("reach", STATES, ids=lambda reach: reach.__name__)
+def test_axe_finds_nothing_in_a_state_of_the_page(
+    browser: Browser, released: str, reach: Callable[[Page], None]
+) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        reach(page)
+        assert findings(page) == []
 
 
 def findings(page: Page) -> list[Any]:

@@ -6,6 +6,7 @@ const TIMES = ["driving", "service", "waiting", "lateness", "overtime", "longest
 const THINGS = ["people", "pedestrians", "accidents", "vehicles", "stops", "orders", "parcels", "customers", "visits", "turns", "crossings"];
 
 const SHORT = 16; // letters
+const NTH = ["first", "second", "third", "fourth"]; // what the service calls objectives without names
 
 /** The name of an objective that has none. */
 export const unnamed = (axis) => ({ name: `length ${axis + 1}`, unit: "" });
@@ -14,6 +15,9 @@ export const unnamed = (axis) => ({ name: `length ${axis + 1}`, unit: "" });
 export const DISTANCE = { name: "distance", unit: "m" };
 
 export const UNNAMED = [unnamed(0), unnamed(1)];
+
+/** Whether the service named these objectives, since the request did not. */
+export const isUnnamed = (objectives) => objectives.every(({ name }, axis) => name === NTH[axis]);
 
 /** The names in a request or an answer; where it has none, UNNAMED, or as many as its scale has numbers. */
 export function namesIn({ objectives, scale }) {

@@ -9,17 +9,19 @@ const FIELD_OF_CODE = { unauthorized: "key" };
 export function showFaults(problem) {
   clearFaults();
   const faults = faultsOf(problem);
-  let first = null;
+  let [first, told] = [null, null];
   for (const { pointer = "", detail } of faults) {
     const [member, row, part] = pointer.split("/").slice(1);
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const said = seen(document.getElementById(`${field}-fault`)) ?? document.getElementById("request-fault");
     const cell = cellOf(member, row, part);
+    told ??= said;
     said.textContent ||= sentence(cell ? ofCell(detail, cell) : inWords(detail, field));
     if (cell) cell.setAttribute("aria-invalid", "true");
     first ??= cell ?? (member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row, part));
   }
   first?.focus();
+  told?.scrollIntoView({ block: "nearest" }); // the focus alone may leave it beyond the edge of the form
 }
 
 /** Requests for plans do not have all fields of the form. */
@@ -38,12 +40,12 @@ export function clearFaults() {
 /** Says what is wrong with one field. */
 export function showFault(field, detail) {
   clearFaults();
-  tellFault(field, detail);
+  tellFault(field, detail).scrollIntoView({ block: "nearest" });
 }
 
-/** Says what is wrong with one field beside what is said of others. */
+/** Says what is wrong with one field beside what is said of others; returns where that is said. */
 export function tellFault(field, detail) {
-  document.getElementById(`${FIELD_OF[field] ?? field}-fault`).textContent = sentence(detail);
+  return Object.assign(document.getElementById(`${FIELD_OF[field] ?? field}-fault`), { textContent: sentence(detail) });
 }
 
 /** The cell of the table of stops or vehicles that a fault is about; null if there is none. */

@@ -319,7 +319,7 @@ export class Result {
 
   /** The order of a tour's stops; of a plan each vehicle has its own. */
   #order() {
-    element("order").hidden = Boolean(this.#kind.movers && this.#selected);
+    element("order").hidden = !this.#selected || Boolean(this.#kind.movers);
     if (!element("order").open || element("order").hidden) return;
     const hours = hoursOf(this.#selected);
     element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visitItem(name, hours[at])));
