@@ -399,7 +399,7 @@ async function start() {
   try {
     examples.offer(await service.get("examples/index.json"));
   } catch (error) {
-    say("");
+    if (!shown) open({ coordinates: [] });
     return fail(error);
   }
   if ((await openLinked()) || shown) return;

@@ -22,6 +22,8 @@ export class PlanLine {
   }
 
   #say() {
+    element("will-plan").hidden = !this.#objectives.length;
+    if (!this.#objectives.length) return;
     const [first, ...others] = this.#objectives.map(({ name }) => name);
     const traded = [titled({ name: first }), others.join(" and ")].join(" against ");
     const seconds = Number(this.#form.time_limit.value);

@@ -16,6 +16,7 @@ const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "wai
  * @param {{ movers: object | null, asked: object }} known what moves along the routes of a plan, and the request
  */
 export function noteOn(objectives, axis, item, { movers, asked }) {
+  if (!item) return ""; // units are known from the answer on
   const objective = objectives[axis];
   const of = movers && !objective.measure ? ofRoutes(objective, axis, item, { movers, asked }) : "";
   return [unitOf(objective), of].filter(Boolean).join("; ");
@@ -24,14 +25,14 @@ export function noteOn(objectives, axis, item, { movers, asked }) {
 /** A unit that is too long to stand beside a number, or what a number without one is. */
 function unitOf(objective) {
   if (isCounted(objective) || objective.measure) return "";
-  if (objective.unit?.startsWith(`${objective.name} ×`)) return `${objective.unit}: the column times metres, added up`;
+  if (objective.unit?.startsWith(`${objective.name} ×`)) return "what a metre costs near the stops, times the metres";
   return shortUnit(objective) ? "" : objective.unit || OWN;
 }
 
 /** Which routes are counted: those of all movers, or the longest one, with its parts as far as they are known. */
 function ofRoutes(objective, axis, item, { movers, asked }) {
-  if (!isLongest(objective)) return item?.routes.length > 1 ? `all ${movers.words} together` : "";
-  return (item && isTime(objective) && partsOf(item, axis, objective, { movers, asked })) || "";
+  if (!isLongest(objective)) return item.routes.length > 1 ? `all ${movers.words} together` : "";
+  return (isTime(objective) && partsOf(item, axis, objective, { movers, asked })) || "";
 }
 
 /** The longest route by name, and what its time is spent on; null if that is not known. */
