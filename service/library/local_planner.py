@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
@@ -78,9 +79,7 @@ class LocalPlanner:
     def _planned(self, parse: Callable[[], Task], plan: Plan, display: Display) -> Planned:
         try:
             task = parse()
-            if task.actor in self.runner.actors:
-                self.runner.actors[task.actor].load()  # before the clock of its time limit starts
-            self._load(task, display)
+            self._load_all(task, display)
             with interrupt_flag() as interrupted, display.planning(plan.seconds) as show:
                 run = partial(
                     self.runner.run,
@@ -94,6 +93,18 @@ class LocalPlanner:
         except Refusal as error:
             raise Refused(error.document("")) from None
         return Planned(task, document, interrupted())
+
+    def _load_all(self, task: Task, display: Display) -> None:
+        """Load what a task needs before the clock of its time limit starts.
+
+        Its network is opened meanwhile, which holds no lock of Python.
+        """
+        with ThreadPoolExecutor(1) as threads:
+            actor = self.runner.actors.get(task.actor or "")
+            opening = threads.submit(actor.load) if actor else None
+            self._load(task, display)
+            if opening is not None:
+                opening.result()
 
     def _load(self, task: Task, display: Display) -> None:
         """Compile what a task needs, or load it, and show how far that is."""
