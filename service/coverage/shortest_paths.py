@@ -49,8 +49,6 @@ class DijkstraState(NamedTuple):
     buckets: NDArray[np.int32]  # (3, cells), by the whole part of a cell's length, modulo 3
     sizes: Cells  # (3,)
     is_target: Mask  # (cells,)
-    reached: NDArray[np.int32]  # (cells,), the cells that have a path
-    reached_size: Cells  # (1,)
 
 
 class ShortestPaths:
@@ -70,16 +68,13 @@ class ShortestPaths:
             np.empty((3, cells), np.int32),  # a step leads at most two buckets ahead
             np.zeros(3, np.int64),
             np.zeros(cells, np.bool_),
-            np.empty(cells, np.int32),
-            np.zeros(1, np.int64),
         )
 
     def find(self, source: int, targets: Cells) -> PathTree:
         """Return the shortest paths from a source to targets, shape (n,), and to all nearer cells.
 
-        Cells are given by their numbers. The tree holds until the next search. O(cells reached).
+        Cells are given by their numbers. The tree holds until the next search. O(cells).
         """
-        _forget(self._state)
         _search(self._state, source, targets)
         return self._state.tree
 
@@ -169,21 +164,13 @@ def warm_up() -> None:
 
 
 @compiled
-def _forget(state: DijkstraState) -> None:
-    """Take the paths of the last search away."""
-    for k in range(state.reached_size[0]):
-        cell = state.reached[k]
-        state.tree.length[cell], state.tree.predecessor[cell] = np.inf, -1
-    state.reached_size[0] = 0
-
-
-@compiled
 def _search(state: DijkstraState, source: int, targets: Cells) -> None:
     missing = mark(state.is_target, targets)
     state.sizes[:] = 0
     tree = state.tree
+    tree.length[:], tree.predecessor[:] = np.inf, -1  # of the last search
     tree.length[source], tree.diagonals[source], tree.cost[source] = 0.0, 0, 0.0
-    _enqueue(state, source, np.inf)
+    _enqueue(state, source)
     now = 0
     while missing > 0 and state.sizes[0] + state.sizes[1] + state.sizes[2] > 0:
         for k in range(state.sizes[now % 3]):
@@ -274,15 +261,11 @@ def _relax(state: DijkstraState, cell: int, beside: int, length: float, diagonal
     tree.length[beside], tree.diagonals[beside] = length, tree.diagonals[cell] + diagonal
     tree.cost[beside], tree.predecessor[beside] = cost, cell
     if known >= int(length) + 1:
-        _enqueue(state, beside, known)
+        _enqueue(state, beside)
 
 
 @inlined
-def _enqueue(state: DijkstraState, cell: int, known: float) -> None:
-    """Put a cell into the bucket of its length, which was this before."""
-    if known == np.inf:
-        state.reached[state.reached_size[0]] = cell
-        state.reached_size[0] += 1
+def _enqueue(state: DijkstraState, cell: int) -> None:
     bucket = int(state.tree.length[cell]) % 3
     state.buckets[bucket, state.sizes[bucket]] = cell
     state.sizes[bucket] += 1
