@@ -118,7 +118,7 @@ def test_the_first_screen_says_what_every_colour_means(example: Page) -> None:
 def test_change_leads_to_what_will_be_planned(example: Page) -> None:
     heads = example.locator("#comparison tbody:first-of-type th").all_inner_texts()
     first, second = (re.split("[,\n]", head)[0] for head in heads[:2])
-    said = re.compile(rf"^{first} against {second.lower()}.*, in \d s\. Change$")
+    said = re.compile(rf"^{first} against {second.lower()}.*, \d s of planning\. Change$")
     expect(example.locator("#will-plan")).to_have_text(said)
     example.get_by_role("button", name="Change", exact=True).click()
     assert example.evaluate("Boolean(document.activeElement.closest('.asked'))")

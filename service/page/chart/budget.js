@@ -53,7 +53,7 @@ export class Budget {
   /** The budget in words, or how to set one. */
   get said() {
     if (this.#front.length < 2) return "";
-    if (!this.#limit) return "For a budget, drag a handle on the edge of the chart.";
+    if (!this.#limit) return "To set a limit, drag a handle on the edge of the chart.";
     const { axis, most } = this.#limit;
     const objective = this.#objectives[axis];
     return `Budget: ${amount(most, objective)}${forWhat(objective)}.`;

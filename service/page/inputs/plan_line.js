@@ -27,7 +27,7 @@ export class PlanLine {
     const [first, ...others] = this.#objectives.map(({ name }) => name);
     const traded = [titled({ name: first }), others.join(" and ")].join(" against ");
     const seconds = Number(this.#form.time_limit.value);
-    element("will-plan").firstElementChild.textContent = `${traded}${seconds > 0 ? `, in ${duration(seconds)}` : ""}.`;
+    element("will-plan").firstElementChild.textContent = `${traded}${seconds > 0 ? `, ${duration(seconds)} of planning` : ""}.`;
   }
 
   /** Puts the cursor into the first field of the objectives, or where they cannot be changed, of the settings. */
