@@ -38,7 +38,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
         wait_until_planned(page)
         expect(page.locator("#count")).to_have_text("60 stops")
         expect(page.locator("#about", has_text="OpenStreetMap contributors (ODbL)")).to_be_visible()
-        expect(page.get_by_role("row", name="People met")).to_be_visible()
+        expect(row(page, "People met")).to_be_visible()
         first, second = page.locator(".plane").all()
         expect(first).to_be_visible()
         expect(second).to_be_hidden()
@@ -156,11 +156,11 @@ def test_a_pinned_tour_stays_beside_the_selected_one(planned: Page) -> None:
     planned.get_by_role("button", name="Pin to compare").click()
     slider.press("End")
     wait_for_next_frame(planned)
-    selected, pinned, difference = planned.get_by_role("row", name="Risk").get_by_role("cell").all()
+    selected, pinned, difference = row(planned, "Risk").get_by_role("cell").all()
     assert number(selected) < number(pinned)
     expect(difference).to_contain_text("\N{MINUS SIGN}")
     planned.get_by_role("button", name="Unpin").click()
-    expect(planned.get_by_role("row", name="Risk").get_by_role("cell")).to_have_count(1)
+    expect(row(planned, "Risk").get_by_role("cell")).to_have_count(1)
 
 
 def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
@@ -298,7 +298,12 @@ def test_on_a_phone_the_result_stands_above_the_form(page: Page, width: int) -> 
 
 def figure(page: Page, name: str) -> float:
     wait_for_next_frame(page)
-    return number(page.get_by_role("row", name=name).get_by_role("cell").first)
+    return number(row(page, name).get_by_role("cell").first)
+
+
+def row(page: Page, name: str) -> Locator:
+    """Return the row of a length beside the selected tour; the table of stops has others."""
+    return page.locator("#comparison").get_by_role("row", name=name)
 
 
 def number(cell: Locator) -> float:

@@ -29,7 +29,8 @@ def test_find_the_least_risk_within_five_per_cent_more_distance(planned: Page) -
     line.press("ArrowLeft")
     assert 0 < more_distance(planned) <= 5
     within = [lengths for lengths in front if round(100 * (lengths[0] / front[0][0] - 1), 1) <= 5]
-    expect(planned.get_by_role("row", name="Risk")).to_contain_text(to_three_digits(within[-1][1]))
+    risk = planned.locator("#comparison").get_by_role("row", name="Risk")
+    expect(risk).to_contain_text(to_three_digits(within[-1][1]))
 
 
 def more_distance(page: Page) -> float:
