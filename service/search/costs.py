@@ -32,8 +32,8 @@ class Costs(NamedTuple):
     A forbidden leg costs more than any tour without one, under both objectives. So a tour that has
     one is dominated by every tour that has none.
 
-    Those of open routes have one more city, city 0, which comes before the instance's. Each plane
-    beyond the second adds its distances to the first cost.
+    Those of open routes have one more city, city 0, which comes before the instance's. Of more
+    than two planes the first cost is the sum of the distances in all, and the second is 0.
     """
 
     cities: Array  # (n, 4), or (n, 2 p) with p planes, p > 2
@@ -93,19 +93,13 @@ def step_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
             closing = closing_cost(costs.closing, i, j)
             return closing, closing
         if cities.shape[1] > SIDES:
-            return costs_in_planes(cities, i, j)
+            total = 0.0
+            for d in range(0, cities.shape[1], 2):
+                total += distance(cities, d, i, j)
+            return total, 0.0
     x, y = cities[i, 0] - cities[j, 0], cities[i, 1] - cities[j, 1]
     u, v = cities[i, 2] - cities[j, 2], cities[i, 3] - cities[j, 3]
     return np.sqrt(x * x + y * y), np.sqrt(u * u + v * v)
-
-
-@compiled
-def costs_in_planes(cities: Array, i: int, j: int) -> tuple[float, float]:
-    """Return both costs of a step where there are more than two planes."""
-    first, second = distance(cities, 0, i, j), distance(cities, 2, i, j)
-    for d in range(SIDES, cities.shape[1], 2):
-        first += distance(cities, d, i, j)
-    return first, second
 
 
 @inlined

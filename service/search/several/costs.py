@@ -60,7 +60,7 @@ def _costs_under(instance: Instance, m: int) -> Array:
 
 
 def weighted_costs(costs: ObjectiveCosts, weights: Array) -> Costs:
-    """Return costs whose sum is the weighted one, weights (m,); of a table the second is 0."""
+    """Return the costs whose first is the weighted sum and whose second is 0; weights (m,)."""
     n = len(costs.planes)
     largest = np.array([weights @ costs.largest, 0.0])
     if not len(costs.table):
