@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -35,14 +34,6 @@ REQUEST: dict[str, Any] = {
     "time_limit": 0.1,
 }
 HOURS = [[7.0 * HOUR, 1], [7.5 * HOUR, 1.6], [9.5 * HOUR, 1.1]]
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A page for all of these tests, each of which opens its stops."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 def opened(page: Page, **members: Any) -> Page:
