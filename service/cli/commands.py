@@ -4,6 +4,7 @@ Each command imports the modules that it needs when it runs, so that --help and 
 are fast.
 """
 
+import os
 import sys
 from functools import partial
 from typing import Annotated
@@ -217,6 +218,10 @@ def serve(
     workers: options.Workers = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
+    if not any(name.upper() == "PARETOUR_REDIS_URL" for name in os.environ):
+        from service.jobs.workers import fork_server
+
+        fork_server.start()  # now: it imports as long as this process does
     from service import server
     from service.cli.configuration import load_settings, load_with
     from service.cli.errors import exit_on_error

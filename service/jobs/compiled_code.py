@@ -25,7 +25,7 @@ from service import jit, own_code
 from service.coverage import detours
 from service.jobs.parts import Compiling, Part
 from service.kinds import fleet
-from service.over_the_day import warm_up as over_the_day
+from service.over_the_day import warm_up as day
 from service.replanning import insertion
 from service.search import warm_up as search
 from service.search.several import warm_up as several
@@ -49,28 +49,33 @@ class _Work(NamedTuple):
 
 
 _WORK: Mapping[Part, _Work] = {
-    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 30),
-    Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 30),
-    Part.MAPS: _Work(detours.warm_up, (detours.warm_up,), 3),
+    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 20),
+    Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 20),
+    Part.MAPS: _Work(detours.warm_up, (detours.warm_up,), 2),
     Part.CHANGES: _Work(insertion.warm_up, (insertion.warm_up,), 1),
-    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 10),
-    Part.SEVERAL_OBJECTIVES: _Work(several.warm_up, (several.warm_up,), 25),
-    Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 12),
-    Part.OVER_THE_DAY: _Work(over_the_day.warm_up, (over_the_day.warm_up,), 12),
+    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 6),
+    Part.SEVERAL_OBJECTIVES: _Work(several.warm_up, (several.warm_up,), 15),
+    Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 8),
+    Part.OVER_THE_DAY: _Work(day.warm_up, (day.descent, day.beside_descent), 20),
 }
 _PIECES = [(part, piece) for part, work in _WORK.items() for piece in work.pieces]
-_A_FUNCTION = 0.25  # seconds that one of the functions takes, on average
+_A_FUNCTION = 0.19  # seconds that one of the functions takes, on average
 _TELL_EVERY = 0.25  # seconds
 _FUNCTION = 255  # the sign for a function
 
 
-def warm_up(parts: Collection[Part] = tuple(Part), tell: Told = lambda _: None) -> None:
-    """Compile parts, or load them from the cache.
+def warm_up(
+    parts: Collection[Part] = tuple(Part),
+    tell: Told = lambda _: None,
+    before_compiling: Callable[[], object] = lambda: None,
+) -> None:
+    """Load parts from the cache, or compile them.
 
     Args:
         parts: The parts.
         tell: Called with each part once it is loaded, and while some are compiled a few times a
             second with how far that is.
+        before_compiling: Called once all parts that are in the cache are loaded.
     """
     missing = []
     for part in (each for each in Part if each in parts):
@@ -78,6 +83,7 @@ def warm_up(parts: Collection[Part] = tuple(Part), tell: Told = lambda _: None) 
             tell(part)
         else:
             missing.append(part)
+    before_compiling()
     if not missing:
         return
     processes = len(os.sched_getaffinity(0)) if jit.CACHED else 1

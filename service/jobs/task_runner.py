@@ -36,10 +36,8 @@ class TaskRunner:
     search: SearchFunction | None = None
 
     def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
-        """Open the networks, and compile parts of the code or load them from the cache."""
-        for actor in self.actors.values():
-            actor.load()
-        warm_up(parts, tell)
+        """Load parts of the code from the cache, open the networks, and compile the other parts."""
+        warm_up(parts, tell, before_compiling=self._open_networks)
 
     @property
     def infos(self) -> Mapping[str, ActorInfo]:
@@ -51,6 +49,10 @@ class TaskRunner:
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
         return RUNS[task.kind](task, Tools(self.actors, self.limits, self.search), stop, report)
+
+    def _open_networks(self) -> None:
+        for actor in self.actors.values():
+            actor.load()
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""

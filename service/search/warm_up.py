@@ -19,7 +19,7 @@ from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
 from service.search.local_search import least_gain
-from service.search.pareto_local_search import WEIGHTS, fill_gaps
+from service.search.pareto_local_search import WEIGHTS, fill_gaps, scalarization_at
 from service.search.schedule import Search
 from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import LocalSearch, ThreeOptSearch
@@ -55,6 +55,7 @@ def beside_two_opt() -> None:
     instance = _instance(coordinates=True)
     search = _search(instance)
     insert(search.state.archive, (1.0, 1.0), _TOUR)
+    scalarization_at(search.state, 0)
     for _ in search.pool_candidates():
         pass
     scalarization = search.descents.scalarization(0)

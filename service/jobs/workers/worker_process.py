@@ -1,12 +1,10 @@
 """Worker processes: what runs tasks in one, the loop around it, and its handle in the service."""
 
 import asyncio
-import multiprocessing
 import os
 import pickle
 import resource
 import signal
-import tempfile
 import time
 import traceback
 from asyncio import StreamReader, StreamWriter
@@ -22,6 +20,7 @@ from typing import Protocol
 from service.extensions.names import NO_EXTENSIONS, Extensions
 from service.front import Progress
 from service.jobs.parts import Compiling, Part
+from service.jobs.workers import fork_server
 from service.jobs.workers.messages import (
     Do,
     Done,
@@ -47,12 +46,6 @@ _REPORT_TOURS = 100  # at most in a reported front
 _REPORT_SECONDS = 0.25  # at least between two reports
 _REPORT_SHARE = 0.05  # the share of the time that reports may take
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
-
-_CONTEXT = multiprocessing.get_context("forkserver")
-_CONTEXT.set_forkserver_preload(["service.jobs.workers.preloaded"])
-# Python puts the socket of the fork server at TMPDIR/pymp-12345678/listener-12345678.
-_LONGEST_FOLDER = 107 - 32  # bytes; the path of a socket has at most 107
-_SHORT_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 class Runner(Protocol):
@@ -258,7 +251,7 @@ class WorkerProcess:
 
     @classmethod
     async def start(cls, make_runner: MakeRunner) -> "WorkerProcess":
-        """Start a process, which sends Started once its networks are loaded.
+        """Start a process, which sends Stage.STARTED once it takes tasks.
 
         Raises:
             OSError: No descriptors or processes are left.
@@ -268,10 +261,10 @@ class WorkerProcess:
                 own_tasks, tasks = _socket_pair(ours, theirs)
                 own_signals, signals = _socket_pair(ours, theirs)
                 arguments = (tasks, signals, make_runner)
-                process = _CONTEXT.Process(
+                fork_server.start()
+                process = fork_server.CONTEXT.Process(
                     target=run_worker, args=arguments, name="planner", daemon=True
                 )
-                _use_short_temporary_folder()
                 process.start()
             results, writing = await asyncio.open_connection(sock=own_tasks)
             ours.callback(writing.close)
@@ -307,13 +300,6 @@ class WorkerProcess:
         self._tasks.close()
         self._signals.close()
         await asyncio.to_thread(self._process.join)
-
-
-def _use_short_temporary_folder() -> None:
-    """Use a temporary folder with a shorter path where a socket in this one could not be opened."""
-    if len(os.fsencode(tempfile.gettempdir())) > _LONGEST_FOLDER:
-        usable = (each for each in _SHORT_FOLDERS if os.access(each, os.W_OK | os.X_OK))
-        tempfile.tempdir = next(usable, tempfile.tempdir)
 
 
 def _socket_pair(ours: ExitStack, theirs: ExitStack) -> tuple[socket, socket]:
