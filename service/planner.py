@@ -148,7 +148,8 @@ def _constructed(constructor: Constructor, instance: Instance, options: PlanOpti
     """Return the constructor's tours."""
     repairs = options.repairs
     if options.fewer_repairs:
-        repairs = min(repairs, repairs_worth(constructor.estimate.inputs, instance.n))
+        inputs = constructor.estimate.inputs
+        repairs = min(repairs, repairs_worth(inputs, instance.n, instance.objectives))
     limit = options.time_limit if options.time_limit > 0 else None
     within = SHARE * limit if limit is not None and options.fewer else None
     return construct(constructor, instance, options.directions, repairs, within=within, limit=limit)

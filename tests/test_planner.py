@@ -233,7 +233,9 @@ def test_repairs_make_open_routes_better(actor: OnnxActor, ends: RouteEnds) -> N
 def test_fewer_repairs_are_as_many_as_are_worth_their_time(actor: OnnxActor) -> None:
     instance = random_instance(60)
     default = PlanOptions(directions=spread(20), size=100, repairs=200, fewer_repairs=True)
-    worth = replace(default, repairs=repairs_worth("coordinates", 60), fewer_repairs=False)
+    worth = replace(
+        default, repairs=repairs_worth("coordinates", 60, objectives=2), fewer_repairs=False
+    )
     least = replace(default, repairs=1)
     fronts = [plan(actor, instance, each) for each in (default, worth, least)]
     np.testing.assert_array_equal(fronts[0].points, fronts[1].points)

@@ -10,19 +10,25 @@ TOURS_REPAIRED = 2  # for each preference: the tour, and one that was visited on
 # where there are many cities, and fewer of them are worth it.
 _LEAST: dict[Kind, int] = {"coordinates": 3, "matrices": 2}
 _CITIES: dict[Kind, int] = {"coordinates": 8, "matrices": 3}  # for each repair of few
+# Under more than two objectives repairs gain more: `python -m tests.benchmarks tri`.
+_CITIES_UNDER_SEVERAL: dict[Kind, int] = {"coordinates": 5, "matrices": 3}
 _FIRST, _CITIES_OF_MANY = 20, 40  # of many: these, and cities for each one more
 _MOST = 75
 
 
-def repairs_worth(inputs: Kind, n: int) -> int:
+def repairs_worth(inputs: Kind, n: int, objectives: int) -> int:
     """Return how many repairs of tours of n cities are worth their time.
 
     Args:
         inputs: The kind of instance that the network reads.
         n: The number of cities.
+        objectives: The number of objectives.
 
-    >>> [repairs_worth("coordinates", n) for n in (20, 200, 1000, 5000)]
+    >>> [repairs_worth("coordinates", n, objectives=2) for n in (20, 200, 1000, 5000)]
     [3, 25, 45, 75]
+    >>> [repairs_worth("coordinates", n, objectives=3) for n in (20, 200, 1000, 5000)]
+    [4, 25, 45, 75]
     """
-    of_few, of_many = n // _CITIES[inputs], _FIRST + n // _CITIES_OF_MANY
+    cities = _CITIES if objectives == 2 else _CITIES_UNDER_SEVERAL
+    of_few, of_many = n // cities[inputs], _FIRST + n // _CITIES_OF_MANY
     return max(_LEAST[inputs], min(of_few, of_many, _MOST))

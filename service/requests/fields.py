@@ -153,8 +153,8 @@ class PlanFields(SearchFields):
         description="how often the network cuts each of its tours open and joins it again, which"
         " never makes the tour worse; tours found on the way count for the front, too. By"
         " default 0 with a time limit, else as many as are worth their time: with"
-        " coordinates an eighth of the number of cities and at least 3, with matrices a"
-        " third and at least 2",
+        " coordinates an eighth of the number of cities and at least 3, a fifth under more than"
+        " two objectives, with matrices a third and at least 2",
     )
     arrivals: bool = Field(
         default=False, description="whether each tour comes with both its lengths up to each stop"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from service.construction.repairs import repairs_worth
+from service.instance import Kind
 from service.settings import Settings
 
 N = 30
@@ -53,7 +54,8 @@ def test_repairs_make_the_networks_front_better(released: str, kind: str) -> Non
 @pytest.mark.parametrize("kind", ["coordinates", "matrices"])
 def test_without_a_time_limit_the_network_repairs_by_default(released: str, kind: str) -> None:
     path, body = REQUESTS[kind]
-    repairs = repairs_worth("matrices" if kind == "matrices" else "coordinates", N)
+    inputs: Kind = "matrices" if kind == "matrices" else "coordinates"
+    repairs = repairs_worth(inputs, N, objectives=2)
     by_default = asked(released, path, {**body, **ALONE, "augment": 8})
     as_many = asked(released, path, {**body, **ALONE, "repairs": repairs})
     assert by_default["front"] == as_many["front"]

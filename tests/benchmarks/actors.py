@@ -109,7 +109,7 @@ def _builders(actor: OnnxActor) -> dict[str, Build]:
 
 def _repaired(actor: OnnxActor, instance: Instance) -> NDArray[np.integer]:
     angles = fan(PREFERENCES)
-    repairs = repairs_worth(actor.info.inputs, instance.n)
+    repairs = repairs_worth(actor.info.inputs, instance.n, instance.objectives)
     return plan(
         actor,
         instance,

@@ -101,7 +101,7 @@ def planned(
 ) -> Tours:
     """The front of a constructor's tours, as they are or repaired, after so much search."""
     # The time of the network comes on top of the seconds of search.
-    repairs = repairs_worth("matrices", instance.n) if repaired else 0
+    repairs = repairs_worth("matrices", instance.n, instance.objectives) if repaired else 0
     tours = constructor.tours(instance, from_angles(fan(TOURS)), repairs)
     demand = PlanOptions(
         directions=spread(TOURS), size=TOURS, time_limit=seconds, initial_tours=tours

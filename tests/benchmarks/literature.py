@@ -84,7 +84,9 @@ def _built(repairs: int, actor: OnnxActor, instance: Instance, demand: PlanOptio
 
 
 def _repaired(actor: OnnxActor, instance: Instance, demand: PlanOptions) -> Front:
-    return _built(repairs_worth("coordinates", instance.n), actor, instance, demand)
+    return _built(
+        repairs_worth("coordinates", instance.n, instance.objectives), actor, instance, demand
+    )
 
 
 def _within(seconds: float, actor: OnnxActor, instance: Instance, demand: PlanOptions) -> Front:

@@ -124,7 +124,9 @@ def _session(content: bytes) -> onnxruntime.InferenceSession:
 SUMS = "weighted sums by the search"
 ROWS: dict[str, Method] = {
     "PA-One": partial(_built, lambda _: 0),
-    "PA-One, repaired": partial(_built, partial(repairs_worth, "coordinates")),
+    "PA-One, repaired": partial(
+        _built, partial(repairs_worth, "coordinates", objectives=OBJECTIVES)
+    ),
     f"PA-One, {MANY} repairs": partial(_built, lambda _: MANY),
     SUMS: _searched,
     **{f"search, {each:g} s": partial(_whole_front, each) for each in SEARCHED},
