@@ -4,12 +4,18 @@ import hashlib
 import os
 import pty
 import re
+import signal
+import time
+from pathlib import Path
 
+import psutil
 import pytest
 import typer
 
 from service.cli.commands import key, serve, work
 from tests.helpers.command import started
+
+INTERRUPTED = 130
 
 
 def test_a_key_is_printed_with_its_entry(capsys: pytest.CaptureFixture[str]) -> None:
@@ -49,6 +55,23 @@ def test_on_a_terminal_a_service_says_in_plain_lines_where_it_is_and_when_it_is_
     assert re.search(rb"running on http://127\.0\.0\.1:\d{2,5}", shown)
     assert b"loading the search" in shown
     assert b'{"' not in shown
+
+
+def test_ctrl_c_while_a_service_starts_ends_it_without_a_word(tmp_path: Path) -> None:
+    with (
+        (tmp_path / "stderr").open("w+") as stderr,
+        started("serve", "--port", 0, stderr=stderr.fileno()) as running,
+    ):
+        process = psutil.Process(running.pid)
+        while len(children := process.children()) < 2:  # one of multiprocessing's, and the forking
+            time.sleep(0.01)
+        for each in (*children, process):  # as a terminal does
+            each.send_signal(signal.SIGINT)
+        running.wait()
+        psutil.wait_procs(children)
+        stderr.seek(0)
+        assert stderr.read() == ""
+    assert running.returncode == INTERRUPTED
 
 
 def test_without_redis_there_is_no_worker_to_ask_after(

@@ -6,8 +6,9 @@ this module imports none of these.
 
 import multiprocessing
 import os
+import signal
 import tempfile
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
 
 CONTEXT = multiprocessing.get_context("forkserver")
 CONTEXT.set_forkserver_preload(["service.jobs.workers.preloaded"])
@@ -17,8 +18,16 @@ _SHORT_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def start() -> None:
-    """Start the process unless it runs, and return before it has imported anything."""
+    """Start the process unless it runs, and return before it has imported anything.
+
+    An interrupt from a terminal goes to it too, and does not concern it: it ends with this process.
+    """
     if len(os.fsencode(tempfile.gettempdir())) > _LONGEST_FOLDER:
         usable = (each for each in _SHORT_FOLDERS if os.access(each, os.W_OK | os.X_OK))
         tempfile.tempdir = next(usable, tempfile.tempdir)
-    forkserver.ensure_running()
+    resource_tracker.ensure_running()  # else it is started by the next, and allows interrupts again
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # which it inherits
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
