@@ -73,27 +73,14 @@ def parts_of(task: Task) -> frozenset[Part]:
 
 def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
     """Return the parts that a search for tours through stops needs."""
-    if stops.hours is not None:
-        return _of_means(stops, task) | {Part.OVER_THE_DAY, Part.SEVERAL_OBJECTIVES}
-    return _of_means(stops, task)
-
-
-def _of_means(stops: Stops, task: Task) -> frozenset[Part]:
-    """Return the parts that stops need whose costs do not change over the day."""
-    if len(stops.sources) > OBJECTIVES:
-        return _of_several(stops, replanned=task.earlier is not None)
-    few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
-    parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
-    if stops.n >= _MANY[stops.kind]:
-        parts.add(Part.MANY_CITIES)
-    if task.earlier is not None:
-        parts.add(Part.CHANGES)
-    return frozenset(parts)
-
-
-def _of_several(stops: Stops, *, replanned: bool) -> frozenset[Part]:
-    """Return the parts that stops under three or four objectives need."""
-    parts = {Part.FEW_CITIES, Part.MORE_CITIES, Part.SEVERAL_OBJECTIVES}
-    if stops.n >= _MANY[stops.kind]:
-        parts.add(Part.MANY_CITIES)
-    return frozenset(parts | {Part.CHANGES} if replanned else parts)
+    several, replanned = len(stops.sources) > OBJECTIVES, task.earlier is not None
+    few = stops.kind == "coordinates" and stops.n < _THREE_OPT and not several and not replanned
+    needed = {
+        Part.FEW_CITIES: True,
+        Part.MORE_CITIES: not few,
+        Part.CHANGES: replanned,
+        Part.SEVERAL_OBJECTIVES: several or stops.hours is not None,
+        Part.MANY_CITIES: stops.n >= _MANY[stops.kind],
+        Part.OVER_THE_DAY: stops.hours is not None,
+    }
+    return frozenset(part for part, is_needed in needed.items() if is_needed)
