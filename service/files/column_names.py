@@ -5,32 +5,48 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 
 # By field, the names that people give it, the best names first; without accents, units and signs.
+# English and German, then French, Italian, Spanish, Portuguese, Dutch and Finnish.
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
     " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
-    " stop ref reference code key name stopname customer kunde node city label site no nr number",
-    "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond",
-    "latitude": "latitude lat latitud breitengrad breite latd",
+    " stop ref reference code key name stopname customer kunde node city label site no nr number"
+    " commande numerocommande ordine numeroordine pedido numeropedido bestelling tilaus"
+    " tilausnumero arret fermata parada halte client cliente klant asiakas nom nome nombre naam"
+    " nimi",
+    "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond"
+    " longitudine lengtegraad pituusaste",
+    "latitude": "latitude lat latitud breitengrad breite latd latitudine breedtegraad leveysaste",
     "place": "wkt wktgeom geom geometry thegeom point location coordinates coords coordinate latlon"
     " latlng latlong position gps",
     "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
     "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
     "demand": "demand qty quantity load amount pallets parcels packages pieces cartons crates boxes"
     " items weight volume menge"
-    " bedarf gewicht demanda cantidad kg",
+    " bedarf gewicht demanda cantidad kg quantite poids colis quantita peso colli carico"
+    " bultos paquetes carga quantidade volumes hoeveelheid paketten maara paino",
     "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
-    " twstart twfrom twopen readytime ready earliest open opens opening from begin von start",
+    " twstart twfrom twopen readytime ready earliest open opens opening from begin von start"
+    " heuredebut debut ouverture orainizio inizio apertura horainicio inicio desde abertura"
+    " begintijd starttijd alkaa alku",
     "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
-    " duedate duetime latest close closes closing to until end bis",
-    "window": "window timewindow tw deliverywindow zeitfenster windows timewindows deliverywindows",
+    " duedate duetime latest close closes closing to until end bis"
+    " heurefin fin fermeture orafine chiusura horafin hasta cierre horafim fim fechamento"
+    " eindtijd paattyy loppu",
+    "window": "window timewindow tw deliverywindow zeitfenster windows timewindows deliverywindows"
+    " creneau creneauhoraire fenetre fasciaoraria finestra finestraoraria ventana ventanahoraria"
+    " franjahoraria janela janelahoraria janeladetempo tijdvenster tijdslot aikaikkuna",
     "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
-    " servicezeit standzeit",
+    " servicezeit standzeit tempsservice tempsdeservice duree temposervizio tempodiservizio durata"
+    " tiemposervicio tiempodeservicio duracion temposervico tempodeservico duracao servicetijd"
+    " lostijd duur palveluaika kesto",
     "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
     "release": "release releasetime releasedate availablefrom readyatdepot",
     "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
     " qualifications qualification",
     "vehicle": "vehicle vehicleid vehiclename van vanid driver driverid drivername truck truckid"
-    " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer",
+    " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer vehicule camion"
+    " chauffeur veicolo furgone autista vehiculo conductor veiculo motorista voertuig ajoneuvo"
+    " kuljettaja",
     "prize": "prize",
     "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
 }
