@@ -39,7 +39,7 @@ BOXES = """selector => [...document.querySelectorAll(selector)]
   .map(({ left, top, right, bottom }) => [left, top + scrollY, right, bottom + scrollY])"""
 # The share of the first screen's results that cards cover, as points every ten pixels see it.
 COVERED = """() => {
-  const boxes = [".front", ".numbers", ".maps"]
+  const boxes = [".front", ".numbers", ".stuck"]
     .map(name => document.querySelector(name).getBoundingClientRect());
   const [left, top] = ["left", "top"].map(side => Math.min(...boxes.map(box => box[side])));
   const [right, bottom] = ["right", "bottom"].map(side => Math.max(...boxes.map(box => box[side])));

@@ -9,6 +9,8 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.helpers.browsing import (
+    DESK,
+    PHONE,
     copied,
     needs_chromium,
     open_files,
@@ -21,6 +23,7 @@ from tests.helpers.browsing import (
 pytestmark = needs_chromium
 
 N = 14
+LEAST_TRACK = 150  # pixels
 ROUNDED = 0.005  # relative: what the page says to three digits
 
 
@@ -110,6 +113,45 @@ def test_limits_leave_the_best_of_what_they_allow(page: Page) -> None:
     least = lengths[lengths[:, 0] <= most + 1e-9, 2].min()
     assert shown(page)[2] == pytest.approx(least, rel=ROUNDED)
     assert shown(page)[0] <= most * (1 + ROUNDED)
+
+
+def test_limits_leave_a_chosen_tour_selected_that_is_within_them(page: Page) -> None:
+    lengths = front_of(page)
+    page.get_by_role("button", name="Least way within the limits").click()
+    shortest = shown(page)
+    assert shortest[0] == pytest.approx(lengths[:, 0].min(), rel=ROUNDED)
+    limit(page, "Way").press("ArrowLeft")
+    assert shown(page) == shortest
+    page.get_by_role("button", name="Least climb within the limits").click()
+    least = lengths[lengths[:, 0] <= float(limit(page, "Way").input_value()) + 1e-9, 2].min()
+    assert shown(page)[2] == pytest.approx(least, rel=ROUNDED)
+
+
+def test_limits_stay_when_the_front_is_planned_again(page: Page) -> None:
+    for name in ("Way", "Climb"):
+        limit(page, name).press("Home")
+        for _ in range(5):
+            limit(page, name).press("ArrowRight")
+    limits = [float(limit(page, name).input_value()) for name in ("Way", "Climb")]
+    page.get_by_role("button", name="Plan", exact=True).click()
+    expect(page.locator("#status")).not_to_contain_text("Done")
+    wait_until_planned(page)
+    kept = [float(limit(page, name).input_value()) for name in ("Way", "Climb")]
+    assert kept == pytest.approx(limits, rel=0.01)
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+def test_a_slider_keeps_its_width_while_a_limit_is_set(page: Page, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 900})
+    slider = limit(page, "Way")
+    widths = []
+    for key in ("Escape", "Home"):
+        slider.press(key)
+        box = slider.bounding_box()
+        assert box is not None
+        widths.append(box["width"])
+    assert widths[0] == widths[1] >= LEAST_TRACK
+    page.set_viewport_size({"width": DESK, "height": 900})
 
 
 def test_a_limit_stops_where_the_others_leave_nothing(page: Page) -> None:

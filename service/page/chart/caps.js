@@ -1,9 +1,11 @@
 /** Limits on three or more objectives: a slider each, whose track shows what is left within the other limits. */
 
-import { amount } from "../common/amounts.js";
-import { titled } from "../common/objectives.js";
+import { amount, figure, leastOf, wordsOf } from "../common/amounts.js";
+import { isTime, titled } from "../common/objectives.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
+
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
 export class Caps {
   #element;
@@ -11,19 +13,26 @@ export class Caps {
   #rows = []; // of each objective: its slider, and what is said beside it
   #front = [];
   #objectives = [];
-  #limits = []; // of each objective, Infinity where there is none
+  #wanted = []; // the limit of each objective, Infinity where there is none
+  #limits = []; // the same, without those that no tour of the front is within
+  #onLeast;
 
-  /** @param {() => void} onLimits called when a limit has changed */
-  constructor(element, onLimits) {
+  /**
+   * @param {() => void} onLimits called when a limit has changed
+   * @param {(index: number) => void} onLeast called with the tour within the limits that has the least of an objective
+   */
+  constructor(element, onLimits, onLeast) {
     this.#element = element;
     this.#onLimits = onLimits;
+    this.#onLeast = onLeast;
   }
 
-  /** Shows a front under its objectives; limits stay where a front of as many was shown before. */
+  /** Shows a front under its objectives; limits stay where a front of as many was shown before, even if drafts between are beyond them. */
   show(front, objectives) {
-    const same = this.#limits.length === objectives.length;
+    const same = this.#wanted.length === objectives.length;
     this.#front = front;
-    this.#limits = same ? this.#limits : objectives.map(() => Infinity);
+    this.#wanted = same ? this.#wanted : objectives.map(() => Infinity);
+    this.#limits = [...this.#wanted];
     if (!same || objectives.some(({ name }, at) => name !== this.#objectives[at]?.name)) this.#make(objectives);
     this.#objectives = objectives;
     this.#loosen();
@@ -32,18 +41,18 @@ export class Caps {
 
   /** Removes all limits. */
   forget() {
-    this.#limits = [];
+    [this.#wanted, this.#limits] = [[], []];
     this.#front = [];
   }
 
   /** Whether each tour of the front is within all limits. */
   get within() {
-    return this.#front.map((tour) => this.#allows(tour));
+    return this.#front.map((tour) => this.allows(tour));
   }
 
   /** The tour within all limits that has the least sum of losses. */
   get middle() {
-    const sums = this.#front.map((tour) => (this.#allows(tour) ? tour.losses.reduce((sum, loss) => sum + loss, 0) : Infinity));
+    const sums = this.#front.map((tour) => (this.allows(tour) ? tour.losses.reduce((sum, loss) => sum + loss, 0) : Infinity));
     return sums.indexOf(Math.min(...sums));
   }
 
@@ -55,25 +64,27 @@ export class Caps {
   }
 
   /** Removes the limits that a chosen tour is beyond. */
-  release({ lengths }) {
-    if (lengths.every((value, axis) => value <= this.#limits[axis])) return;
-    this.#limits = this.#limits.map((most, axis) => (lengths[axis] <= most ? most : Infinity));
+  release(tour) {
+    if (this.allows(tour)) return;
+    this.#limits = this.#limits.map((most, axis) => (tour.lengths[axis] <= most ? most : Infinity));
+    this.#wanted = [...this.#limits];
     this.#draw();
   }
 
-  #allows({ lengths }, but = -1) {
+  /** Whether a tour is within all limits, but that of one objective. */
+  allows({ lengths }, but = -1) {
     return lengths.every((value, axis) => axis === but || value <= this.#limits[axis]);
   }
 
   /** The lengths under one objective of the tours within the limits of all others, ascending. */
   #left(axis) {
-    const found = this.#front.filter((tour) => this.#allows(tour, axis)).map(({ lengths }) => lengths[axis]);
+    const found = this.#front.filter((tour) => this.allows(tour, axis)).map(({ lengths }) => lengths[axis]);
     return found.sort((a, b) => a - b);
   }
 
   /** Removes limits in another front until it has a tour within them. */
   #loosen() {
-    while (this.#front.length && !this.#front.some((tour) => this.#allows(tour))) {
+    while (this.#front.length && !this.#front.some((tour) => this.allows(tour))) {
       this.#limits[this.#limits.findLastIndex(Number.isFinite)] = Infinity;
     }
   }
@@ -85,11 +96,14 @@ export class Caps {
       slider.addEventListener("input", () => this.#set(axis, Number(slider.value)));
       slider.addEventListener("change", () => this.#draw());
       slider.addEventListener("keydown", (event) => this.#step(axis, event));
-      return { slider, said };
+      const least = Object.assign(document.createElement("button"), { type: "button", textContent: wordsOf(objective).least });
+      least.setAttribute("aria-label", `${capital(leastOf(objective))} within the limits`);
+      least.addEventListener("click", () => this.#onLeast(this.#front.findIndex((tour) => this.allows(tour) && tour.lengths[axis] === this.#left(axis)[0])));
+      return { slider, said, least };
     });
-    const parts = this.#rows.flatMap(({ slider, said }, axis) => {
+    const parts = this.#rows.flatMap(({ slider, said, least }, axis) => {
       const label = Object.assign(document.createElement("label"), { htmlFor: slider.id, textContent: titled(objectives[axis]) });
-      return [label, slider, said];
+      return [label, said, least, slider];
     });
     this.#element.replaceChildren(...parts);
   }
@@ -109,6 +123,7 @@ export class Caps {
   #set(axis, wanted) {
     const left = this.#left(axis);
     this.#limits[axis] = wanted >= this.#ends(axis)[1] ? Infinity : Math.max(wanted, left[0]);
+    this.#wanted = [...this.#limits];
     this.#draw();
     this.#onLimits();
   }
@@ -119,8 +134,8 @@ export class Caps {
   }
 
   #draw() {
-    this.#rows.forEach(({ slider, said }, axis) => {
-      slider.disabled = this.#front.length < 2;
+    this.#rows.forEach(({ slider, said, least: button }, axis) => {
+      slider.disabled = button.disabled = this.#front.length < 2;
       if (!this.#front.length) return;
       const [least, most] = this.#ends(axis);
       const left = this.#left(axis);
@@ -138,6 +153,7 @@ export class Caps {
   }
 
   #amount(axis, value) {
-    return amount(value, this.#objectives[axis]);
+    const objective = this.#objectives[axis];
+    return isTime(objective) ? figure(value, objective) : amount(value, objective);
   }
 }

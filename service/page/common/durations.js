@@ -3,12 +3,12 @@
 export const SECONDS = new Map(Object.entries({ s: 1, second: 1, seconds: 1, min: 60, minute: 60, minutes: 60, h: 3600, hour: 3600, hours: 3600 }));
 const [MINUTE, HOUR, EXACT] = [60, 3600, 600]; // seconds; below the last one, seconds are said too
 
-/** How long this is, such as "45 s", "2 min 30 s", "12 min" or "1 h 5 min". */
-export function duration(seconds) {
+/** How long this is, such as "45 s", "2 min 30 s", "12 min" or "1 h 5 min"; with `exact` also "12 min 5 s". */
+export function duration(seconds, { exact = false } = {}) {
   const whole = Math.round(seconds);
   if (!whole) return "0 min";
   if (whole < MINUTE) return `${whole} s`;
-  if (whole < EXACT) return parts(Math.floor(whole / MINUTE), "min", whole % MINUTE, "s");
+  if (whole < (exact ? HOUR : EXACT)) return parts(Math.floor(whole / MINUTE), "min", whole % MINUTE, "s");
   const minutes = Math.round(whole / MINUTE);
   return whole < HOUR ? `${minutes} min` : parts(Math.floor(minutes / MINUTE), "h", minutes % MINUTE, "min");
 }

@@ -12,6 +12,8 @@ export class SeveralObjectives {
   #front = [];
   #objectives = [];
   #noun = null;
+  #selected = null; // the lengths of the selected tour
+  #chosen = false; // by a person: then limits leave it selected where it is within them
 
   /**
    * @param {(index: number) => void} onSelect called with the tour to select
@@ -19,14 +21,17 @@ export class SeveralObjectives {
    */
   constructor({ onSelect, onPreview }) {
     const chosen = (index) => {
+      this.#chosen = true;
       this.#caps.release(this.#front[index]);
       onSelect(index);
       this.#draw();
     };
-    this.#caps = new Caps(element("caps"), () => {
-      onSelect(this.#caps.middle);
+    const limited = () => {
+      this.#chosen &&= this.#selected !== null && this.#caps.allows({ lengths: this.#selected });
+      if (!this.#chosen) onSelect(this.#caps.middle);
       this.#draw();
-    });
+    };
+    this.#caps = new Caps(element("caps"), limited, chosen);
     this.#scatter = new Scatter(element("scatter"), element("scatter-choices"), { onSelect: chosen, onPreview });
   }
 
@@ -41,6 +46,7 @@ export class SeveralObjectives {
   /** Makes room for the chart of two objectives. */
   hide() {
     this.#caps.forget();
+    this.#chosen = false;
     this.#turn(false);
   }
 
@@ -51,6 +57,7 @@ export class SeveralObjectives {
 
   /** Marks a tour as "selected", "pinned" or "previewed"; null removes the mark. */
   mark(name, lengths) {
+    if (name === "selected") this.#selected = lengths;
     this.#scatter.mark(name, lengths);
   }
 
@@ -60,7 +67,8 @@ export class SeveralObjectives {
   }
 
   #turn(shown) {
-    element("several").hidden = !shown;
+    element("several").hidden = element("how-of-several").hidden = !shown;
+    element("how-of-two").hidden = shown;
     for (const name of OF_TWO) document.querySelector(`.front ${name}`).hidden = shown;
   }
 }
