@@ -90,10 +90,7 @@ def _in_planes(columns: Columns) -> Reading:
     if planes and ({"x", "y"} <= set(named) or (table.heading and len(free) > 4)):
         planes = all(re.match("[xy]|[uv]$|x?lon|y?lat", name) for name in _others(columns))
     if not planes:
-        came = f"{len(free)} columns: {', '.join(quoted(columns.names[at]) for at in free[:8])}"
-        demand = "must have 4, 6 or 8 columns, x and y in each plane, or columns named lon and lat"
-        hint = "; one plane needs a second file with the other" if len(free) == 2 else ""
-        raise source.refusal(f"{demand}, got {came}{hint}")
+        raise source.refusal(_no_places(columns, free))
     for at, name in zip(free, _IN_PLANES, strict=False):
         columns.fields[at] = name
     rows = columns.numbers(free)
@@ -108,6 +105,30 @@ def _in_planes(columns: Columns) -> Reading:
     ]
     stops = [{"id": each} for each in ids]
     return source.reading("front", {"stops": stops, "objectives": objectives})
+
+
+def _no_places(columns: Columns, free: list[int]) -> str:
+    """Return the sentence on a table without places: what is needed, what was found, what to do."""
+    needed = (
+        "must say where each stop is: in columns named lat and lon,"
+        " or in 4, 6 or 8 columns of numbers, x and y of each plane"
+    )
+    table, names = columns.table, columns.names[:8]
+    words = not all(map(columns.are_numbers, free))
+    first = (table.heading or table.rows[0][1])[0]
+    if table.width == 1:
+        came = f"a single column, which begins with {quoted(first)}"
+    elif table.heading is None:
+        came = f"{table.width} columns without names"
+    else:
+        came = f"columns named {', '.join(map(quoted, names))}"
+    if table.width == 1 and (sign := re.search(r"[^\w\s.+-]", first)):
+        came += f". If {sign[0]} separates its columns, write sep={sign[0]} as the first line"
+    elif words or not free:
+        came += ". Look up the places of names and addresses first (geocoding)"
+    elif len(free) == 2:
+        came += ". One plane needs a second file with the other one"
+    return f"{needed}; got {came}"
 
 
 def _located(columns: Columns) -> Reading:
@@ -230,8 +251,13 @@ def part_of(source: Source, table: Table) -> Part:
         free = list(range(count))
         columns.fields[0] = None
     if len(free) not in (2, count):
-        demand = "must have 2 columns, x and y, or as many as rows"
-        raise source.refusal(f"{demand}, got {count} rows of {len(free)}")
+        demand = (
+            "must have columns named lat and lon, or 2 columns of numbers, x and y,"
+            " or as many columns of costs as rows"
+        )
+        rows = "1 row" if count == 1 else f"{count} rows"
+        wide = "1 column" if len(free) == 1 else f"{len(free)} columns"
+        raise source.refusal(f"{demand}; got {rows} of {wide if free else 'ids alone'}")
     ids = ids_of(columns) if "id" in columns.fields else None
     if len(free) == 2 != count:
         return Part(name, count, ids, {"coordinates": columns.numbers(free)})

@@ -10,7 +10,10 @@ from itertools import islice
 from service.files.reading import Source, quoted
 
 Row = tuple[int, list[str]]  # the number of a row, as a spreadsheet counts, and its fields
-_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas"}
+_SEPARATORS = {
+    **{";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas"},
+    **{"^": "carets", "~": "tildes"},
+}  # in the order in which they are tried
 _SAMPLE = 2**16  # characters by which the separator is recognised
 _SAMPLE_ROWS = 50
 _LARGEST = 1e150  # the same limit as in requests
@@ -73,7 +76,7 @@ def table_of_csv(source: Source, text: str) -> Table:
         named = _SEPARATORS.get(separator, quoted(separator))
         source.note("separator", f"Fields are separated by {named}.")
     if separator is None:
-        rows: Iterable[list[str]] = (line.split() for line in body.splitlines())
+        rows: Iterable[list[str]] = _spaced_rows(body)
     else:
         rows = _csv_rows(source, body, separator)
     return table_of(source, rows, 2 if declared else 1)
@@ -82,7 +85,7 @@ def table_of_csv(source: Source, text: str) -> Table:
 def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) -> Table:
     """Return the table with these rows of fields; `first` is the number of the first row.
 
-    Rows without any text are left out, with a note.
+    Rows without any text are left out, with a note, and so are titles above the heading.
 
     Raises:
         UnreadableFile: It has no rows, rows of different lengths, or too many fields.
@@ -101,6 +104,7 @@ def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) ->
         source.note("empty-rows", f"{_counted(empty, 'row')} without text left out.")
     if not rows:
         raise source.refusal("must have a row for each stop, got none")
+    _take_titles(source, rows)
     heading = _take_heading(source, rows)
     if not rows:
         raise source.refusal("must have a row for each stop below its heading, got none")
@@ -129,12 +133,45 @@ def _separator(text: str) -> str | None:
     return most if max(widths[most], default=0) > 1 else None
 
 
+def _spaced_rows(text: str) -> Iterable[list[str]]:
+    """Return rows whose fields have white space between; or of one field, if they are texts.
+
+    They are texts, such as addresses, if each is in quotation marks, or if their numbers of words
+    differ and few have two numbers.
+    """
+    lines = text.splitlines()
+    rows = [line.split() for line in lines]
+    below = [row for row in rows if row][1:]
+    tabular = [row for row in below if sum(number_in(word) is not None for word in row) > 1]
+    differ = len({len(row) for row in below}) > 1 and 2 * len(tabular) < len(below)
+    if differ or (below and all(re.fullmatch(r'\s*("[^"]*"\s*)?', line) for line in lines[1:])):
+        return ([line.strip().strip('"')] for line in lines)
+    return rows
+
+
 def _csv_rows(source: Source, text: str, separator: str) -> Iterator[list[str]]:
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         yield from reader
     except csv.Error as error:
         raise source.refusal(f"must be CSV: {error}, at line {reader.line_num}") from None
+
+
+def _take_titles(source: Source, rows: list[Row]) -> None:
+    """Take away rows of a single text that stand above a heading of several words, with a note.
+
+    The row below the heading must have a number, so that the words are no row of the table.
+    """
+    first = next((at for at, (_, row) in enumerate(rows) if sum(map(bool, row)) > 1), 0)
+    if not 0 < first < len(rows) - 1:
+        return
+    heading, below = (
+        [number_in(field) is not None for field in row] for _, row in rows[first : first + 2]
+    )
+    if not any(heading) and any(below):
+        titles = ", ".join(quoted("".join(row)) for _, row in rows[:first])
+        source.note("title", f"Above the heading, {titles} was taken for a title and left out.")
+        del rows[:first]
 
 
 def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
@@ -180,7 +217,9 @@ def _squared(source: Source, heading: list[str] | None, rows: list[Row]) -> list
     for number, row in rows:
         short = width - len(row)
         if any(row[width:]) or (short > 0 and heading is None):
-            demand = f"row {number} must have {width} fields, as the first row"
-            raise source.refusal(f"{demand}, got {len(row)}")
+            fields = "1 field" if width == 1 else f"{width} fields"
+            hint = "; a text with a separator in it needs quotation marks" if width == 1 else ""
+            demand = f"row {number} must have {fields}, as the first row"
+            raise source.refusal(f"{demand}, got {len(row)}{hint}")
         squared.append((number, row[:width] + [""] * short))
     return squared

@@ -140,6 +140,11 @@ def test_rows_that_are_pasted_go_into_their_box(opened: Page) -> None:
             "id,lon,lat\na,24.9,60.1\nb,east,60.2\n",
             "row 3, column 'lon' must be a number, got 'east'",
         ),
+        (
+            "list.csv",
+            "Customer\nAnna\nBob\n",
+            "must say where each stop is: in columns named lat and lon, or in 4, 6 or 8 columns",
+        ),
         ("stops.csv", "id;lon;lat\na;24,9;60\na;25;60\n", "row 3, column 'id' must be an id"),
         (
             "points.geojson",
