@@ -194,7 +194,7 @@ def test_a_third_objective_is_chosen_from_a_list_and_planned(fleet: Page) -> Non
     # What is the second objective now can no longer be the third.
     fleet.get_by_label("First objective against").select_option("Vehicles used")
     assert len(curl_body(fleet, "fleet")["objectives"]) == 2
-    third.select_option("Load times distance")
+    third.select_option("Load carried")
     assert curl_body(fleet, "fleet")["objectives"][2]["measure"] == "load_distance"
     third.select_option("nothing else")
     assert len(curl_body(fleet, "fleet")["objectives"]) == 2

@@ -2,19 +2,22 @@
 
 import { SECONDS, duration } from "./durations.js";
 import { counted, difference, length, rounded } from "./numbers.js";
-import { isCounted, isLongest, isOfThings, isTime, namesThings, shortUnit } from "./objectives.js";
+import { isCounted, isLongest, isOfThings, isTime, namesThings, perUnit, shortUnit } from "./objectives.js";
 
 const FEW = 10; // things; from there on nobody counts tenths
 
 /** A value to six digits, where a title beside it has the unit. */
 export function figure(value, objective) {
   if (isCounted(objective) || (isOfThings(objective) && Math.abs(value) >= FEW)) return length(Math.round(value));
-  return isTime(objective) ? duration(value * SECONDS.get(objective.unit), { exact: true }) : length(value);
+  return isTime(objective) ? duration(value * SECONDS.get(objective.unit), { exact: true }) : length(value / perUnit(objective));
 }
 
 /** The same to three digits, as people compare it with others; a time to seconds or minutes, which is rounded once. */
-export const compared = (value, objective) =>
-  isTime(objective) ? duration(value * SECONDS.get(objective.unit)) : figure(isCounted(objective) ? value : rounded(value), objective);
+export function compared(value, objective) {
+  if (isTime(objective)) return duration(value * SECONDS.get(objective.unit));
+  const unit = perUnit(objective);
+  return figure(isCounted(objective) ? value : rounded(value / unit) * unit, objective);
+}
 
 /** A value to three digits with its unit, such as "7 vehicles", "12 min" or "340 m". */
 export function amount(value, objective) {

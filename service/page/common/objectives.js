@@ -43,6 +43,12 @@ export const isLongest = ({ over, measure }) => over === "max" || measure === "l
 /** Whether this is a time in a known unit. */
 export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || TIMES.includes(measure));
 
+/** The units of loads that are carried so far, or for so long. */
+export const [LOAD_KM, LOAD_HOURS] = ["load × km", "load × hours"];
+
+/** How many of what the service counts in are one of the unit. */
+export const perUnit = ({ measure, unit }) => (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1;
+
 /** The unit, if it is short enough to stand beside a number. */
 export const shortUnit = ({ unit }) => (unit && unit.length < SHORT ? unit : "");
 

@@ -1,7 +1,7 @@
 /** The measures of a plan, as rows of a table. */
 
 import { titled, withUnit } from "../common/objectives.js";
-import { clockUnit, costsOf, loadUnit, unitOfRoutes } from "./units.js";
+import { clockUnit, loadUnit, unitOfRoutes } from "./units.js";
 
 const NAMES = {
   vehicles: "Vehicles used",
@@ -14,7 +14,7 @@ const NAMES = {
   shortest: "Shortest route",
   imbalance: "Longest less shortest",
   unassigned: "Prizes left out",
-  load_distance: "Load ×", // what the first costs are
+  load_distance: "Load carried",
 };
 
 /**
@@ -27,8 +27,7 @@ export function measuresOf({ measures = {}, lengths }, objectives, request) {
   const shown = Object.keys(NAMES).filter((name) => name in measures && !named(name));
   return shown.map((measure) => {
     const unit = unitsOf(objectives, request)[measure] ?? "";
-    const name = measure === "load_distance" ? `${NAMES[measure]} ${costsOf(objectives).name}` : NAMES[measure];
-    const objective = { name, unit, measure };
+    const objective = { name: NAMES[measure], unit, measure };
     return { name: withUnit(objective), objective, value: (plan) => plan.measures[measure] };
   });
 }

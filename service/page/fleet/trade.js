@@ -14,7 +14,7 @@ export const AGAINST = {
   overtime: { title: "Overtime", name: "overtime", vehicles: "max_overtime" },
   lateness: { title: "Lateness", name: "lateness", stops: "due" },
   imbalance: { title: "Longest less shortest route", name: "imbalance" },
-  load_distance: { title: "Load times distance", name: "load times distance", vehicles: "capacity" },
+  load_distance: { title: "Load carried", name: "load carried", vehicles: "capacity" },
 };
 const COSTS = ["max", "sum"];
 

@@ -1,5 +1,7 @@
 /** The units of a fleet's times, and of objectives that are measures of plans. */
 
+import { LOAD_HOURS, LOAD_KM } from "../common/objectives.js";
+
 /** The unit of the clock of a request: that of an objective, or of times that are not an objective; "" if it is not known. */
 export function clockUnit({ clock, objectives }) {
   const source = typeof clock === "string" ? objectives?.find(({ name }) => name === clock) : clock;
@@ -15,13 +17,10 @@ export function unitOfRoutes(request) {
   return request.clock || !compared ? clockUnit(request) : unitOf(compared);
 }
 
-/** The first objective that is the sum of costs, and no measure of plans. */
-export const costsOf = (objectives) => objectives.find(({ measure }) => !measure) ?? objectives[0];
-
-/** The unit of loads times the first costs. */
+/** The unit of what is carried: the load times the first costs, which are how far or for how long. */
 export function loadUnit(objectives) {
-  const { unit } = costsOf(objectives);
-  return unit ? `load·${unit}` : "";
+  const { name, unit } = objectives.find(({ measure }) => !measure) ?? objectives[0];
+  return { m: LOAD_KM, s: LOAD_HOURS }[unit] ?? `load × ${unit || name}`;
 }
 
 /** These objectives with units for those that are measures of plans of a request. */
