@@ -93,9 +93,7 @@ def _pictured_map(
     """Return the map in a picture after the file that it is named after, and the picture."""
     said = [source for source in sources if source.file.is_yaml]
     if len(said) > 1:
-        names = " and ".join(each.name for each in said)
-        demand = "open one map.yaml, and other pictures as costs without theirs"
-        raise UnreadableFile(f"{said[0].name}: {demand}, got {names}")
+        raise _second_yaml(said)
     how, named = {"cell_size": _CELL}, pictures
     if said:
         how, image = _interpretation(said[0])
@@ -110,6 +108,23 @@ def _pictured_map(
         picture.note("picture", f"It is taken for the map, which map.yaml calls {quoted(image)}.")
     found = _map(picture.name, how, picture.file.data, picture.bounds.cells)
     return (said or [picture])[0], picture, found
+
+
+def _second_yaml(said: Sequence[Source]) -> UnreadableFile:
+    """Return the exception for a second map.yaml, such as that of a mask of Nav2.
+
+    What a mask means, and so whether its cells are costs, is said by the filter that uses it.
+    """
+    read = [(*_interpretation(each), each) for each in said]
+    # Of Nav2's own files the map is in mode trinary, and masks are in mode scale or raw.
+    (_, map_image, main), (_, image, other), *_ = sorted(
+        read, key=lambda each: each[0]["mode"] != "trinary"
+    )
+    return UnreadableFile(
+        f"{other.name}: a map has one map.yaml, got {main.name} as well. To read the mask"
+        f" {quoted(image)} as a cost layer, white 0 to black 1 for each metre, open it without"
+        f" {other.name}. To keep robots out of cells, draw them black in {quoted(map_image)}"
+    )
 
 
 def with_grid(reading: Reading, cells: int) -> Reading:

@@ -121,7 +121,19 @@ def test_a_picture_of_costs_is_dark_where_they_are_high() -> None:
         ),
         ({"a.csv": csv(np.where(COSTS == 9, np.nan, COSTS))}, "a.csv: row 2.*number, got 'nan'"),
         ({"a.png": png(SHADES.astype(np.uint16))}, "a.png: must have 8 bits a channel or fewer"),
-        ({"a.yaml": yaml("a.pgm"), "a.pgm": pgm(SHADES)}, "open one map.yaml, .*without theirs"),
+        (
+            {"a.yaml": yaml("a.pgm"), "a.pgm": pgm(SHADES)},
+            "office.yaml: a map has one map.yaml, got a.yaml as well",
+        ),
+        (
+            {"keepout.yaml": yaml("keepout.pgm", mode="scale"), "keepout.pgm": pgm(SHADES)},
+            "keepout.yaml: a map has one map.yaml, got office.yaml as well. To read the mask"
+            " 'keepout.pgm' as a cost layer, .* open it without keepout.yaml. .* in 'office.pgm'",
+        ),
+        (
+            {"a_speed.yaml": yaml("a_speed.pgm", mode="raw"), "a_speed.pgm": pgm(SHADES)},
+            "a_speed.yaml: .* got office.yaml as well.* open it without a_speed.yaml",
+        ),
         ({f"{at}.csv": csv(COSTS) for at in range(4)}, "must have at most 3 cost layers, got 4"),
         ({"arena.map": ARENA.encode()}, "a map must come once, got it as arena.map and as office"),
     ],
