@@ -22,7 +22,7 @@ from service.files.reading import (
 from service.files.tables import Table
 from service.objectives import MOST_OBJECTIVES
 from service.requests.maps.fields import MapRequest
-from service.requests.maps.pictures import UNKNOWN, darkness, read_picture
+from service.requests.maps.pictures import UNKNOWN, read_darkness
 from service.requests.validation import parse_json
 
 _CELL = 0.05  # metres: the usual cell size of robots' maps
@@ -30,7 +30,8 @@ _OCTILE_CELL = 1.0  # metres: maps of games have no size
 _MOST_LAYERS = MOST_OBJECTIVES - 1
 _OF_MESSAGE = ("occupancy_grid", "obstacle_from", "unknown")
 _OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
-_DIGITS = 3  # of a cost that is the shade of a pixel
+_BITS = 8  # of most pictures' pixels
+_DIGITS, _DEEP_DIGITS = 3, 5  # of a cost that is the shade of a pixel of 8 or 16 bits
 
 
 class _Map(NamedTuple):
@@ -176,11 +177,13 @@ def _refuse_other_pictures(pictures: Sequence[Source]) -> None:
 def _shades(source: Source) -> Rows:
     """Return the costs in a picture, 0 where it is white to 1 where it is black."""
     try:
-        channels = read_picture(source.file.data, source.bounds.cells)
+        shades, bits = read_darkness(source.file.data, source.bounds.cells)
     except Refusal as refusal:
         raise _unreadable(source.name, refusal) from None
-    source.note("cost-layer", "Costs are read from its shades: white 0, black 1 for each metre.")
-    costs: list[list[float]] = darkness(channels).round(_DIGITS).tolist()
+    deep = "" if bits == _BITS else f" Of {bits} bits, white is {2**bits - 1} and black 0."
+    sentence = f"Costs are read from its shades: white 0, black 1 for each metre.{deep}"
+    source.note("cost-layer", sentence)
+    costs: list[list[float]] = shades.round(_DIGITS if bits == _BITS else _DEEP_DIGITS).tolist()
     return costs
 
 

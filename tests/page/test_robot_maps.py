@@ -131,7 +131,7 @@ def test_a_message_of_ros_is_read_as_the_service_reads_it(opened: Page) -> None:
         ({"a.yaml": yaml_of(HOW[0], "origin: [0, 0, 0]")}, "open both together"),
         ({"a.yaml": b"image: a.pgm\n", "a.pgm": pgm(shades())}, "must have resolution"),
         ({"a.pgm": b"P5\n4 4\n255\nshort"}, "must be a PGM file with 16 bytes"),
-        ({"a.pgm": b"P5\n4 4\n70000\n"}, "must be a PGM file with white as 1 to 255"),
+        ({"a.pgm": b"P5\n4 4\n70000\n"}, "must be a PGM file with white as 1 to 65535"),
         ({"a.pgm": pgm(shades()), "b.pgm": pgm(shades())}, "open both together, got 2 files"),
         (
             {"a.yaml": yaml_of(HOW[0], "origin: [0, 0]"), "a.pgm": pgm(shades())},

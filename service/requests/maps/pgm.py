@@ -12,15 +12,21 @@ SIGNATURES = (b"P5", b"P2")
 _LONGEST_HEADER = 4096  # bytes, with its comments
 _GAP = rb"(?:\s|#[^\n]*\n)+"
 _HEADER = re.compile(rb"P[25]" + 3 * (_GAP + rb"(\d{1,10})") + rb"\s")
-_MOST_SHADE = 255  # one byte a cell
-_MOST_BYTES = 8  # of a cell in a plain file: three digits and some white space
+_BYTE = 255  # the largest shade that is one byte in a binary file
+_MOST_SHADE = 65_535  # two bytes
+_MOST_DIGITS = len(str(_MOST_SHADE))
+_MOST_BYTES = 8  # of a cell in a plain file: its digits and some white space
+
+Shades = NDArray[np.uint8] | NDArray[np.uint16]
 
 
-def read_pgm(content: bytes, most_cells: int) -> NDArray[np.uint8]:
-    """Return the shades in a PGM file, black 0 to white 255, shape (rows, columns).
+def read_pgm(content: bytes, most_cells: int) -> Shades:
+    """Return the shades in a PGM file, shape (rows, columns).
+
+    Black is 0. White is 255, or 65535 if the file has more than 256 shades.
 
     Raises:
-        Refusal: The file is not PGM with a byte for each cell, or has too many cells.
+        Refusal: The file is not PGM, or has too many cells.
     """
     header = _HEADER.match(content[:_LONGEST_HEADER])
     if header is None:
@@ -30,22 +36,26 @@ def read_pgm(content: bytes, most_cells: int) -> NDArray[np.uint8]:
     if not 0 < white <= _MOST_SHADE:
         raise _malformed(f"white as 1 to {_MOST_SHADE}, got {white}")
     raster = content[header.end() :]
-    read = _read_binary if content.startswith(b"P5") else _read_plain
-    shades = read(raster, rows * columns).reshape(rows, columns)
+    depth = np.uint8 if white <= _BYTE else np.uint16
+    cells = rows * columns
+    binary = content.startswith(b"P5")
+    read = _read_binary(raster, cells, depth) if binary else _read_plain(raster, cells)
+    shades = read.reshape(rows, columns)
     if shades.max() > white:
         raise _malformed(f"no shade over white, which is {white}, got {shades.max()}")
-    if white == _MOST_SHADE:
-        return shades
-    return np.rint(shades / white * _MOST_SHADE).astype(np.uint8)
+    most = np.iinfo(depth).max
+    scaled = shades if white == most else np.rint(shades / white * most)
+    return scaled.astype(np.uint8) if depth is np.uint8 else scaled.astype(np.uint16)
 
 
-def _read_binary(raster: bytes, cells: int) -> NDArray[np.uint8]:
-    if len(raster) != cells:
-        raise _malformed(f"{cells} bytes after its header, got {len(raster)}")
-    return np.frombuffer(raster, np.uint8)
+def _read_binary(raster: bytes, cells: int, depth: type[np.uint8] | type[np.uint16]) -> Shades:
+    size = np.dtype(depth).itemsize
+    if len(raster) != size * cells:
+        raise _malformed(f"{size * cells} bytes after its header, got {len(raster)}")
+    return np.frombuffer(raster, np.dtype(depth).newbyteorder(">"))
 
 
-def _read_plain(raster: bytes, cells: int) -> NDArray[np.uint8]:
+def _read_plain(raster: bytes, cells: int) -> NDArray[np.int64]:
     most = _LONGEST_HEADER + _MOST_BYTES * cells
     if len(raster) > most:
         raise _malformed(f"at most {most} bytes after its header, got {len(raster)}")
@@ -53,12 +63,9 @@ def _read_plain(raster: bytes, cells: int) -> NDArray[np.uint8]:
     if len(numbers) != cells:
         came = "more" if len(numbers) > cells else len(numbers)
         raise _malformed(f"{cells} numbers after its header, got {came}")
-    if not all(len(number) <= 3 and number.isdigit() for number in numbers):
-        raise _malformed("numbers of at most three digits after its header")
-    shades = np.array([int(number) for number in numbers], np.int64)
-    if shades.max() > _MOST_SHADE:
-        raise _malformed(f"no shade over {_MOST_SHADE}, got {shades.max()}")
-    return shades.astype(np.uint8)
+    if not all(len(number) <= _MOST_DIGITS and number.isdigit() for number in numbers):
+        raise _malformed(f"numbers of at most {_MOST_DIGITS} digits after its header")
+    return np.array([int(number) for number in numbers], np.int64)
 
 
 def _malformed(demand: str) -> Refusal:

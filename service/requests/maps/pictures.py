@@ -26,6 +26,7 @@ Occupancy = NDArray[np.int8]  # (rows, columns), free 0 to occupied 100
 UNKNOWN = -1
 _OCCUPIED = 100
 _WHITE = 255
+_DEEP_WHITE = 65_535  # of pictures with 16 bits a pixel
 _UNKNOWN_GREY = 205
 _SCALE = 99  # occupancy in mode scale goes from 0 up to this, between the thresholds
 _LUMA = (19595, 38470, 7471)  # weights of red, green and blue (ITU-R BT.601), of 2 ** 16
@@ -54,9 +55,36 @@ class Interpretation:
 def read_picture(content: bytes, most_cells: int) -> Channels:
     """Return the channels of a PNG or PGM file: grey or colours, and maybe alpha.
 
+    Of a picture with 16 bits a pixel, they are scaled to 8.
+
     Raises:
         Refusal: The file is neither, cannot be read, or has too many cells.
     """
+    return _of_bytes(_read(content, most_cells))
+
+
+def read_darkness(content: bytes, most_cells: int) -> tuple[Shades, int]:
+    """Return how dark each pixel of a PNG or PGM file looks, and its bits for each channel.
+
+    White is 0 and black is 1; transparency is ignored.
+
+    Raises:
+        Refusal: The file is neither, cannot be read, or has too many cells.
+    """
+    channels = _read(content, most_cells)
+    if channels.dtype == np.uint16:
+        return (_DEEP_WHITE - channels[:, :, 0].astype(np.float64)) / _DEEP_WHITE, 16
+    return (_WHITE - _luma(_of_bytes(channels))) / _WHITE, 8
+
+
+def _of_bytes(channels: Channels | NDArray[np.uint16]) -> Channels:
+    """Return channels of 8 bits; those of 16 are scaled."""
+    if channels.dtype == np.uint8:
+        return channels.astype(np.uint8, copy=False)
+    return np.rint(channels / _DEEP_WHITE * _WHITE).astype(np.uint8)
+
+
+def _read(content: bytes, most_cells: int) -> Channels | NDArray[np.uint16]:
     if content.startswith(PNG_SIGNATURE):
         return read_png(content, most_cells)
     if content.startswith(PGM_SIGNATURES):
@@ -78,11 +106,6 @@ def occupancy(channels: Channels, how: Interpretation) -> Occupancy:
         values = _scale(shades, how)
     values[alpha < _WHITE] = UNKNOWN
     return values
-
-
-def darkness(channels: Channels) -> Shades:
-    """Return how dark each pixel looks, 0 white to 1 black; transparency is ignored."""
-    return (_WHITE - _luma(channels)) / _WHITE
 
 
 def _split(channels: Channels) -> tuple[Channels, Channels]:

@@ -24,14 +24,15 @@ _BESIDE_CONTENT = 12  # bytes of a chunk: its length, its kind and its checksum
 _PICTURE = (b"IHDR", b"PLTE", b"IDAT", b"IEND")
 _MOST_CHUNKS = 20_000  # a large map has some thousand
 # Modes of Pillow, and that in which their channels are a byte each.
+_DEEP_GREY = "I;16"  # the mode of 16 bits a pixel
 _MODES = {"1": "L", "L": "L", "LA": "LA", "P": "RGB", "RGB": "RGB", "RGBA": "RGBA"}
 
 
-def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8]:
+def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.uint16]:
     """Return the channels of a picture, shape (rows, columns, channels).
 
-    They are grey, grey and alpha, three colours, or three colours and alpha. The transparency of a
-    palette is not read.
+    They are grey, grey and alpha, three colours, or three colours and alpha, of 8 bits; grey alone
+    may have 16 bits. The transparency of a palette is not read.
 
     Args:
         content: The file, which begins with the signature of PNG.
@@ -53,15 +54,17 @@ def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8]:
         raise invalid("grid", f"must be a PNG file that can be read: {reason}") from None
 
 
-def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8]:
+def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.uint16]:
     with Image.open(BytesIO(picture), formats=["PNG"]) as image:
         check_size(*image.size, most_cells)  # what the decoder is going to unpack
-        if image.mode not in _MODES:
-            raise invalid("grid", f"must have 8 bits a channel or fewer, got {image.mode}")
+        if image.mode not in (*_MODES, _DEEP_GREY):
+            raise invalid("grid", f"must be grey or in colours (RGB), got mode {image.mode}")
         size = image.size
         image.load()
         if image.size != size:
             raise invalid("grid", f"must have one size, got {size} and {image.size}")
+        if image.mode == _DEEP_GREY:
+            return np.asarray(image, np.uint16)[:, :, np.newaxis]
         channels = np.asarray(image.convert(_MODES[image.mode]))
     return channels if channels.ndim == 3 else channels[:, :, np.newaxis]
 

@@ -42,6 +42,18 @@ def test_shades_are_those_that_pillow_reads(
 
 
 @pytest.mark.parametrize(
+    "content",
+    [
+        b"P5 3 1 65535\n\x00\x00\x01\x00\xff\xff",
+        b"P2 3 1 65535\n0 256 65535",
+    ],
+)
+def test_shades_of_two_bytes_are_read(content: bytes) -> None:
+    assert read_pgm(content, 3).tolist() == [[0, 256, 65535]]
+    assert read_pgm(b"P5 1 1 1000\n\x01\xf4", 1).tolist() == [[round(65535 / 2)]]
+
+
+@pytest.mark.parametrize(
     ("content", "sentence"),
     [
         (b"P5", "with a header of width, height and white within 4096 bytes"),
@@ -51,17 +63,18 @@ def test_shades_are_those_that_pillow_reads(
         (b"P5 3 2 255 " + b"9" * 5000, "6 bytes after its header, got 5000"),
         (b"P5 " + b"9" * 5000 + b" 2 255\n", "with a header of"),
         (b"P5 #" + b"x" * 5000 + b"\n3 2 255\n123456", "with a header of"),
-        (b"P5\n3 2\n0\n123456", "white as 1 to 255, got 0"),
-        (b"P5\n3 2\n65535\n123456123456", "white as 1 to 255, got 65535"),
+        (b"P5\n3 2\n0\n123456", "white as 1 to 65535, got 0"),
+        (b"P5\n3 2\n65536\n123456123456", "white as 1 to 65535, got 65536"),
+        (b"P5\n3 2\n65535\n123456", "12 bytes after its header, got 6"),
         (b"P5\n3 2\n255\n12345", "6 bytes after its header, got 5"),
         (b"P5\n3 2\n255\r\n123456", "6 bytes after its header, got 7"),
         (b"P5\n3 2\n48\n123456", "no shade over white, which is 48, got 54"),
         (b"P2\n3 2\n255\n1 2 3 4 5", "6 numbers after its header, got 5"),
         (b"P2\n3 2\n255\n1 2 3 4 5 6 7", "6 numbers after its header, got more"),
-        (b"P2\n3 2\n255\n1 2 3 4 5 -6", "numbers of at most three digits"),
-        (b"P2\n3 2\n255\n1 2 3 4 5 1_6", "numbers of at most three digits"),
-        (b"P2\n3 2\n255\n1 2 3 4 5 " + b"9" * 4000, "numbers of at most three digits"),
-        (b"P2\n3 2\n255\n1 2 3 4 5 256", "no shade over 255, got 256"),
+        (b"P2\n3 2\n255\n1 2 3 4 5 -6", "numbers of at most 5 digits"),
+        (b"P2\n3 2\n255\n1 2 3 4 5 1_6", "numbers of at most 5 digits"),
+        (b"P2\n3 2\n255\n1 2 3 4 5 " + b"9" * 4000, "numbers of at most 5 digits"),
+        (b"P2\n3 2\n255\n1 2 3 4 5 256", "no shade over white, which is 255, got 256"),
         (b"P2\n3 2\n255\n" + b" " * 4145, "at most 4144 bytes after its header, got 4145"),
     ],
 )

@@ -103,3 +103,13 @@ def test_a_picture_is_png_or_pgm() -> None:
 def test_another_format_is_refused(content: bytes) -> None:
     with pytest.raises(Refusal, match="grid must be a PNG or PGM file"):
         read_picture(content, 256)
+
+
+def test_a_map_of_16_bits_is_read_as_one_of_8() -> None:
+    shades = np.array([[0, 100, 205, 255]], np.uint8)
+    file = io.BytesIO()
+    Image.fromarray(shades.astype(np.uint16) * 257).save(file, "PNG")
+    deep = file.getvalue()
+    how = Interpretation(mode="trinary", occupied_thresh=0.65, free_thresh=0.25)
+    assert occupancy(read_picture(deep, 4), how).tolist() == [[100, -1, -1, 0]]
+    np.testing.assert_array_equal(read_picture(deep, 4)[:, :, 0], shades)
