@@ -10,6 +10,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_files,
+    saved,
     shown_front,
     wait_until_planned,
 )
@@ -69,6 +70,23 @@ def test_the_layer_that_shades_the_map_is_chosen_and_sent_nowhere(window: Page) 
     assert shading(window) != before
     assert shown_front(window)["id"] == front  # it stays
     assert "shaded" not in curl_body(window, "coverage")
+
+
+def test_axis_and_table_say_what_is_counted_of_a_layer(window: Page) -> None:
+    open_office(window, cost_layers=LAYERS[:1])
+    window.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(window)
+    name = "Noise \N{MULTIPLICATION SIGN} m"
+    assert f">{name}<" in saved(window, "SVG").decode()
+    heading = window.locator("#comparison tbody:first-of-type th").last
+    expect(heading).to_have_text(f"{name}what each metre costs, added up along the way")
+
+
+def test_the_compromise_has_a_line_to_its_point(window: Page) -> None:
+    open_office(window, cost_layers=LAYERS[:1])
+    label = window.locator(".label.knee")
+    line = label.evaluate("label => getComputedStyle(label, '::after').borderRightWidth")
+    assert line == "1px"
 
 
 def test_a_layer_is_named(window: Page) -> None:

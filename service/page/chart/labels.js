@@ -42,6 +42,7 @@ export class Labels {
     if (!places.length) return;
     const boxes = this.#buttons.map((button, which) => this.#boxOf(button, which, places[which], axis));
     const [first, knee, last] = boxes;
+    this.#buttons[1].classList.toggle("above", knee.top < places[1][1]);
     this.#buttons[1].hidden = this.#isEnd || touch(knee, first) || touch(knee, last);
     this.#buttons.forEach((button, which) => (button.style.translate = `${boxes[which].left}px ${boxes[which].top}px`));
   }

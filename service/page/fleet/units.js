@@ -23,9 +23,10 @@ export function loadUnit(objectives) {
   return { m: LOAD_KM, s: LOAD_HOURS }[unit] ?? `load × ${unit || name}`;
 }
 
-/** These objectives with units for those that are measures of plans of a request. */
+/** These objectives with units for those that are measures of plans of a request, or cost layers of its map. */
 export function withUnits(objectives, request) {
   const time = clockUnit(request ?? {});
   const units = { lateness: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives) };
-  return objectives.map((each) => (each.measure && !each.unit ? { ...each, unit: units[each.measure] ?? "" } : each));
+  const unit = ({ name, measure }) => (measure ? (units[measure] ?? "") : request?.grid ? `${name} × m` : "");
+  return objectives.map((each) => (each.unit ? each : { ...each, unit: unit(each) }));
 }

@@ -25,7 +25,7 @@ export function noteOn(objectives, axis, item, { movers, asked }) {
 /** A unit that is too long to stand beside a number, or what a number without one is. */
 function unitOf(objective) {
   if (isCounted(objective) || objective.measure) return "";
-  if (objective.unit?.startsWith(`${objective.name} ×`)) return "what a metre costs near the stops, times the metres";
+  if (objective.unit?.startsWith(`${objective.name} ×`)) return "what each metre costs, added up along the way";
   return shortUnit(objective) ? "" : objective.unit || OWN;
 }
 
