@@ -25,7 +25,6 @@ _LARGEST_COST = 2.0  # scaled, of a forbidden leg or an outlier: networks were t
 _MARGIN = 0.25  # around the unit square, in which cities far from all others are put
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
 _JITTER = 1e-6  # relative: inputs with ties are joined one pair after another, and take minutes
-_OPENING = 1.0  # seconds that it takes to open the largest of the released networks
 _SAMPLED = 32  # rows of matrices, in which ties are looked for
 
 
@@ -43,7 +42,6 @@ class OnnxActor:
         content = path.read_bytes()
         self.info = read_actor_info(content, path)
         self.estimate = CallEstimate(self.info.inputs)
-        self.estimate.opening = _OPENING
         self._open = partial(_open_session, content, path, threads)
         self._session: onnxruntime.InferenceSession | None = None
         self._loading = Lock()
@@ -59,7 +57,6 @@ class OnnxActor:
         with self._loading:
             if self._session is None:
                 self._session = self._open()
-                self.estimate.opening = 0.0
 
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
         """Return tours, shape (k, n), one for each preference, shape (k, m), by one inference.

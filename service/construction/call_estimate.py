@@ -37,14 +37,10 @@ class CallEstimate:
 
     Args:
         inputs: The kind of instance that the network reads.
-
-    Attributes:
-        opening: The seconds for which the next call may wait until the network is open.
     """
 
     def __init__(self, inputs: Kind) -> None:
         self.inputs = inputs
-        self.opening = 0.0
         self._formula = _FORMULAS[inputs]
         self._factor = 1.0  # of this network on this machine, against the formula
 
@@ -57,15 +53,14 @@ class CallEstimate:
     def fitting(self, n: int, seconds: float) -> int:
         """Return the greatest number of preferences whose call is estimated to take so long."""
         least, each, power, first, *_ = self._formula
-        left = (seconds - self.opening) / self._factor
-        fitting = math.floor((left - least) / (each * n**power) - first)
-        if fitting < 1 and not self.opening:
+        fitting = math.floor((seconds / self._factor - least) / (each * n**power) - first)
+        if fitting < 1:
             self._factor = max(min(self._factor, 1.0), _FORGOTTEN * self._factor)
         return max(fitting, 0)
 
     def fitting_repairs(self, n: int, k: int, seconds: float) -> int:
         """Return the greatest number of repairs in a call that is estimated to take so long."""
-        left = seconds - self.opening - self.seconds(n, k)
+        left = seconds - self.seconds(n, k)
         return max(math.floor(left / (self._factor * self._repair(n, k))), 0)
 
     def correct(self, n: int, k: int, seconds: float, repairs: int = 0) -> None:

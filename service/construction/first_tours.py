@@ -100,7 +100,7 @@ def _honoured(
         tours = _tours_within(constructor, instance, preferences, repairs, limit)
         if len(tours):
             return tours
-    late = limit + _LATE_SECONDS + estimate.opening + _LATE_CALLS * estimate.seconds(n, k)
+    late = limit + _LATE_SECONDS + _LATE_CALLS * estimate.seconds(n, k)
     return _tours_within(constructor, instance, preferences, 0, late)
 
 
@@ -134,16 +134,13 @@ def _tours_within(
 def _timed_tours(
     constructor: Constructor, instance: Instance, preferences: Array, repairs: int
 ) -> Tours:
-    """Return the tours of one call; correct the estimate by its time, if the network was open."""
+    """Return the tours of one call, and correct the estimate by the time that it took."""
 
     def build(closed: Instance, directions: Array) -> Tours:
         return constructor.tours(closed, directions, repairs)
 
-    estimate = constructor.estimate
-    is_open = not estimate.opening
     began = time.perf_counter()
     tours = built_tours(build, instance, preferences).astype(np.int64)
     seconds = time.perf_counter() - began
-    if is_open:
-        estimate.correct(instance.n, len(preferences), seconds, repairs)
+    constructor.estimate.correct(instance.n, len(preferences), seconds, repairs)
     return tours

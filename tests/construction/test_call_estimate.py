@@ -41,16 +41,3 @@ def test_a_network_that_was_slow_is_tried_again_later() -> None:
     fitting = [estimate.fitting(200, 0.05) for _ in range(100)]
     assert fitting[0] == 0
     assert max(fitting) == 1  # and from there on calls correct it
-
-
-@given(KINDS, CITIES, PREFERENCES, st.integers(0, 1000))
-def test_the_call_that_opens_a_network_is_estimated_to_take_longer(
-    kind: Kind, n: int, k: int, repairs: int
-) -> None:
-    estimate = CallEstimate(kind)
-    seconds = estimate.seconds(n, k, repairs)
-    estimate.opening = 1.0
-    assert estimate.fitting(n, 0.9) == 0
-    assert estimate.fitting_repairs(n, k, 1.0 + seconds * (1 + 1e-9)) in (repairs, repairs - 1)
-    estimate.opening = 0.0
-    assert estimate.fitting_repairs(n, k, seconds * (1 + 1e-9)) == repairs
