@@ -45,7 +45,9 @@ class TaskRunner:
         return {name: actor.info for name, actor in self.actors.items()}
 
     def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
-        """Return the front of a task."""
+        """Return the front of a task. Its time limit begins once its network is open."""
+        if task.actor in self.actors:
+            self.actors[task.actor].load()
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
         return RUNS[task.kind](task, Tools(self.actors, self.limits, self.search), stop, report)
