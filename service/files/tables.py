@@ -10,10 +10,15 @@ from itertools import islice
 from service.files.reading import Source, quoted
 
 Row = tuple[int, list[str]]  # the number of a row, as a spreadsheet counts, and its fields
+# In the order in which they are tried.
 _SEPARATORS = {
-    **{";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas"},
-    **{"^": "carets", "~": "tildes"},
-}  # in the order in which they are tried
+    ";": "semicolons",
+    "\t": "tabs",
+    "|": "bars",
+    ",": "commas",
+    "^": "carets",
+    "~": "tildes",
+}
 _SAMPLE = 2**16  # characters by which the separator is recognised
 _SAMPLE_ROWS = 50
 _LARGEST = 1e150  # the same limit as in requests
