@@ -351,7 +351,7 @@ async function openLinked() {
   if (!link) return false;
   if (!(await openAsked(link))) return true;
   const carried = keptAnswer(link, input.instance, input.ids);
-  result.want(link.balance, carried?.front[0]);
+  result.want(link.balance, carried?.front[0], link.asked?.limits);
   const request = link.asked?.request || examples.chosen ? input.request : null;
   const known = { request, searched: input.asked.time_limit !== 0, carried };
   await run((mine) => stored(mine, link.id, known));

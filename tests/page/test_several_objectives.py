@@ -208,6 +208,21 @@ def test_two_tours_are_compared(page: Page) -> None:
     page.get_by_role("button", name="Unpin").click()
 
 
+def test_a_link_carries_the_limits_and_the_tour(page: Page, browser: Browser) -> None:
+    for _ in range(3):
+        limit(page, "Way").press("ArrowLeft")
+    page.get_by_role("button", name="Fewest people met within the limits").click()
+    most, tour = limit(page, "Way").input_value(), shown(page)
+    said = page.locator("#caps-said").inner_text()
+    with open_page(browser, copied(page, "link")) as other:
+        wait_until_planned(other)
+        expect(other.locator("#caps-said")).to_have_text(said)
+        assert limit(other, "Way").input_value() == most
+        assert shown(other) == tour
+        limit(other, "Climb").press("Home")  # which that tour is beyond
+        assert shown(other) != tour
+
+
 def test_what_is_taken_along_has_all_three(page: Page) -> None:
     lines = saved(page, "csv").decode().splitlines()
     assert lines[0] == "way (m),people met (people),climb (m),tour"

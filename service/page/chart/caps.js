@@ -39,6 +39,17 @@ export class Caps {
     this.#draw();
   }
 
+  /** The limit of each objective, null where there is none. */
+  get limits() {
+    return this.#wanted.map((most) => (Number.isFinite(most) ? most : null));
+  }
+
+  /** Sets the limits of the next front, from a link: they are dropped unless there is one, or null, for each objective. */
+  want(limits) {
+    const known = Array.isArray(limits) && limits.every((most) => most === null || Number.isFinite(most));
+    this.#wanted = known ? limits.map((most) => most ?? Infinity) : [];
+  }
+
   /** Removes all limits. */
   forget() {
     [this.#wanted, this.#limits] = [[], []];

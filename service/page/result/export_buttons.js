@@ -85,9 +85,9 @@ export class ExportButtons {
   }
 
   async #copyLink(shown, button) {
-    const { asked, example, objectives, balance } = shown;
+    const { asked, example, objectives, balance, limits } = shown;
     const chosen = chosenOf(this.#shown, this.#item(shown), Boolean(asked));
-    const carried = { request: example ? undefined : (asked ?? undefined), objectives, chosen };
+    const carried = { request: example ? undefined : (asked ?? undefined), objectives, limits, chosen };
     const { hash, whole } = await fragment(this.#shown.id, balance, carried, example);
     history.replaceState(null, "", hash);
     say(whole || !carried.request ? "" : ALONE);

@@ -7,8 +7,9 @@ const MOST = 16000; // characters, beyond which chats, mail and some servers cut
  *
  * @param {string} id of the front
  * @param {number | undefined} balance of the selected tour
- * @param {{ request?: object, objectives: object[], chosen: object }} asked the request, unless it is that of the
- *   example or not known; the names of the objectives; and the selected tour or plan, as of `chosenOf`
+ * @param {{ request?: object, objectives: object[], limits?: (number | null)[], chosen: object }} asked the request, unless
+ *   it is that of the example or not known; the names of the objectives; the limits on three or more of them; and the
+ *   selected tour or plan, as of `chosenOf`
  * @param {string | null} example the file of the example
  * @returns {Promise<{ hash: string, whole: boolean }>} `whole` says whether the request was short enough; the
  *   selected tour is left out only if it alone is too long

@@ -188,10 +188,11 @@ export class Result {
   /** Rings a clicked place that is not a stop yet; null removes the rings. */
   wait = (plane, place) => this.#maps.wait(plane, place);
 
-  /** The tour or plan to select in the next front, or if it is not there, the balance. */
-  want(balance, linked = null) {
+  /** The tour or plan to select in the next front, or if it is not there, the balance; and the limits of several objectives. */
+  want(balance, linked = null, limits = null) {
     this.#balance = balance ?? MIDDLE;
     this.#linked = linked;
+    if (limits) this.#several.want(limits);
   }
 
   /** What is exported: a picture, the selected tour or plan with its balance, and whether its lines can follow the streets. */
@@ -199,7 +200,8 @@ export class Result {
     const driven = Boolean(this.#routed) && this.#maps.driven;
     const movers = this.#kind.movers ?? null;
     const selected = this.#selected && { item: this.#selected, round: movers ? [] : this.#names(), movers };
-    return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, driven, selected };
+    const limits = this.#objectives.length > 2 ? this.#several.limits : undefined;
+    return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, limits, driven, selected };
   }
 
   /** The names of the stops of the selected tour, back to its start where it is closed. */

@@ -55,6 +55,17 @@ export class SeveralObjectives {
     return this.#caps.middle;
   }
 
+  /** The limits, as of Caps. */
+  get limits() {
+    return this.#caps.limits;
+  }
+
+  /** Sets the limits of the next front, in which a person chose the tour that is selected. */
+  want(limits) {
+    this.#caps.want(limits);
+    this.#chosen = true;
+  }
+
   /** Marks a tour as "selected", "pinned" or "previewed"; null removes the mark. */
   mark(name, lengths) {
     if (name === "selected") this.#selected = lengths;
