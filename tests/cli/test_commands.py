@@ -204,7 +204,7 @@ WRONG = [
     (["coverage", "none.yaml"], "none.yaml: No such file"),
     (["coverage", "README.md", "--start-pose", "1;2"], "--start-pose must be numbers with commas"),
     (["front", EXAMPLE, "--url", "ftp://x"], "--url must be a URL"),
-    (["coverage", "README.md"], "README.md: row 3 must have 1 fields"),
+    (["coverage", "README.md"], "README.md: row 3 must have 1 field,"),
 ]
 
 

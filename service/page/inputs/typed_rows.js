@@ -66,7 +66,7 @@ const prepared = (text) => text.replace(/^\s*\n/gm, "").replace(/^\s*(?=\d)/, "+
 
 /** The same refusal, of the stop and the number that it is about. */
 function aboutRow({ message }) {
-  const detail = message.replace(/^rows: /, "").replace(/^must have 4, 6 or 8 columns.*/s, FOUR).replace(/(?<=must have \d+ )fields/, "items");
+  const detail = message.replace(/^rows: /, "").replace(/^must say where each stop is.*/s, FOUR).replace(/(?<=must have \d+ )field/, "item");
   const [place, row, column] = /^row (\d+)(?:, column '([1-4])')?/.exec(detail) ?? [];
   if (!place) return refusal(detail);
   return refusal(detail.replace(place, `coordinates/${row - 1}${column ? `/${column - 1}` : ""}`), row - 1);
