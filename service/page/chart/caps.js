@@ -1,11 +1,9 @@
 /** Limits on three or more objectives: a slider each, whose track shows what is left within the other limits. */
 
 import { amount, figure, leastOf, wordsOf } from "../common/amounts.js";
-import { isTime, titled } from "../common/objectives.js";
+import { capital, isTime, titled } from "../common/objectives.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
-
-const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
 export class Caps {
   #element;

@@ -26,7 +26,10 @@ export function namesIn({ objectives, scale }) {
   return objectives.map(({ name, unit, measure, over }) => ({ name, unit: typeof unit === "string" ? unit : "", ...(measure && { measure }), ...(over === "max" && { over }) }));
 }
 
-export const titled = ({ name }) => name[0].toUpperCase() + name.slice(1);
+export const titled = ({ name }) => capital(name);
+
+/** A text with a capital letter at its beginning. */
+export const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
 /** Whether this is the number of vehicles. */
 export const isCounted = ({ measure }) => measure === "vehicles";

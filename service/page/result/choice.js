@@ -1,7 +1,7 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
 import { amount, wordsOf } from "../common/amounts.js";
-import { isCounted, isLongest, namesThings, shortUnit } from "../common/objectives.js";
+import { capital, isCounted, isLongest, namesThings, shortUnit } from "../common/objectives.js";
 
 /** The sentence about the tour of a link whose front the service no longer keeps; `noun` is what the front called it. */
 export const choiceKept = ({ one }) =>
@@ -47,8 +47,6 @@ function ofSeveral(front, tour, objectives) {
   const more = front.some(({ lengths }) => lengths.some((value, axis) => value < tour.lengths[axis])) ? " than the best of each" : "";
   return capital(`${said.slice(0, -1).join(", ")} and ${said.at(-1)}${more}.`);
 }
-
-const capital = (sentence) => sentence[0].toUpperCase() + sentence.slice(1);
 
 /** What the best of all is under one objective, such as "the least driving". */
 const theLeast = (objective) => `the ${isLongest(objective) ? `${objective.name} at its shortest` : `${wordsOf(objective).least} ${objective.name}`}`;

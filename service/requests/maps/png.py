@@ -23,8 +23,8 @@ _HEADER_LENGTH = 13
 _BESIDE_CONTENT = 12  # bytes of a chunk: its length, its kind and its checksum
 _PICTURE = (b"IHDR", b"PLTE", b"IDAT", b"IEND")
 _MOST_CHUNKS = 20_000  # a large map has some thousand
-# Modes of Pillow, and that in which their channels are a byte each.
-_DEEP_GREY = "I;16"  # the mode of 16 bits a pixel
+_DEEP_GREY = "I;16"  # Pillow's mode of 16 bits a pixel
+# Pillow's other modes, and that in which their channels are a byte each.
 _MODES = {"1": "L", "L": "L", "LA": "LA", "P": "RGB", "RGB": "RGB", "RGBA": "RGBA"}
 
 
