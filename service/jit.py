@@ -32,11 +32,11 @@ import secrets
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from functools import partial
+from functools import cache, partial
 from hashlib import sha256
 from itertools import count
 from pathlib import Path
-from typing import Any, NoReturn, ParamSpec, TypeVar
+from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
 import numba
 from llvmlite import binding
@@ -44,6 +44,8 @@ from numba import types
 from numba.core import caching, config
 from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import get_host_cpu_features
+
+from service.native_code import generate_late
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -77,6 +79,7 @@ def _compile_for_the_level() -> None:
 
 
 _compile_for_the_level()
+generate_late()
 _PACKAGE = Path(__file__).parent
 
 
@@ -203,16 +206,45 @@ def allocating(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _kernel(function: Callable[P, R], **options: bool) -> Callable[P, R]:
-    """Compile a function at its first call with each combination of argument types."""
-    options |= {"nogil": True, "no_cfunc_wrapper": True}
-    compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
-    kernel = compile_lazily(cache=CACHED, error_model="numpy", **options)(function)
-    if not config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+    """Compile a function at its first call with each combination of argument types.
+
+    It is compiled apart for Python, which needs native code, and for other kernels, which need
+    none.
+    """
+    kernel = _dispatcher(function, **options)
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+        return cast("Callable[P, R]", kernel)
+    if "no_cpython_wrapper" in options:
         kernel.get_call_template = partial(_call_template, kernel.get_call_template)
-        if "no_cpython_wrapper" in options:
-            _refuse_python(kernel)
-    typed: Callable[P, R] = kernel
-    return typed
+        _refuse_python(kernel)
+    else:
+        part = cache(partial(_part_of, kernel, options))
+        kernel.get_call_template = partial(
+            _call_template, lambda *types: part().get_call_template(*types)
+        )
+        kernel.get_overload = lambda signature: part().get_overload(signature)
+    return cast("Callable[P, R]", kernel)
+
+
+def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
+    """Return what compiles a kernel as a part of others, and caches it in a file of its own."""
+    part = _dispatcher(kernel.py_func, no_cpython_wrapper=True, **options)
+    part._compiling_counter = kernel._compiling_counter  # noqa: SLF001  # where it calls itself
+    if CACHED:
+        kept = part._cache  # noqa: SLF001  # numba has no option for it
+        base = f"{kept._impl.filename_base}-part"  # noqa: SLF001
+        kept._cache_file = caching.IndexDataCacheFile(  # noqa: SLF001
+            kept.cache_path,
+            base,
+            kept._impl.locator.get_source_stamp(),  # noqa: SLF001
+        )
+    return part
+
+
+def _dispatcher(function: Callable[P, R], **options: bool) -> Any:
+    compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
+    options |= {"nogil": True, "no_cfunc_wrapper": True}
+    return compile_lazily(cache=CACHED, error_model="numpy", **options)(function)
 
 
 def _call_template(template: Any, types: Sequence[Any], named: Mapping[str, Any]) -> Any:

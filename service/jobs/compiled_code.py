@@ -8,6 +8,7 @@ pipe, one after another, and ends when its standard input does. All processes re
 pipe. To another they write a number when a piece is done, and a sign for each function.
 """
 
+import gc
 import os
 import subprocess
 import sys
@@ -49,17 +50,19 @@ class _Work(NamedTuple):
 
 
 _WORK: Mapping[Part, _Work] = {
-    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 20),
-    Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 20),
+    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 14),
+    Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
     Part.MAPS: _Work(detours.warm_up, (detours.warm_up,), 2),
     Part.CHANGES: _Work(insertion.warm_up, (insertion.warm_up,), 1),
-    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 6),
-    Part.SEVERAL_OBJECTIVES: _Work(several.warm_up, (several.warm_up,), 15),
-    Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 8),
-    Part.OVER_THE_DAY: _Work(day.warm_up, (day.descent, day.beside_descent), 20),
+    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 5),
+    Part.SEVERAL_OBJECTIVES: _Work(
+        several.warm_up, (several.local_search, several.beside_local_search), 11
+    ),
+    Part.OVER_THE_DAY: _Work(day.warm_up, (day.warm_up,), 9),
+    Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 5),
 }
 _PIECES = [(part, piece) for part, work in _WORK.items() for piece in work.pieces]
-_A_FUNCTION = 0.19  # seconds that one of the functions takes, on average
+_A_FUNCTION = 0.115  # seconds that one of the functions takes, on average
 _TELL_EVERY = 0.25  # seconds
 _FUNCTION = 255  # the sign for a function
 
@@ -229,7 +232,12 @@ def _end_with_parent() -> None:
 
 
 def _compile_pieces(queue: int, done: int) -> None:
-    """Compile the pieces whose numbers are in a pipe, and say to another what is done."""
+    """Compile the pieces whose numbers are in a pipe, and say to another what is done.
+
+    Compiling makes objects that stay, so Python seldom looks for those that could go.
+    """
+    gc.freeze()
+    gc.set_threshold(20_000)
     with install_listener("numba:compile", _Count(lambda: os.write(done, bytes([_FUNCTION])))):
         while number := os.read(queue, 1):
             _, compile_piece = _PIECES[number[0]]

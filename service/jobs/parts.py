@@ -28,8 +28,8 @@ class Part(Enum):
     CHANGES = "changes"
     FLEETS = "fleets"
     SEVERAL_OBJECTIVES = "several-objectives"  # three and four
-    MANY_CITIES = "many-cities"
     OVER_THE_DAY = "over-the-day"
+    MANY_CITIES = "many-cities"
 
 
 @dataclass(frozen=True)

@@ -162,7 +162,7 @@ class DaySearch:
         """Descend from the best tour under a weight, then iterate from there."""
         first_time = index not in self._searches
         if first_time:
-            self._searches[index] = self.weighted_search(index)
+            self._searches[index] = self._weighted_search(index)
         search = self._searches[index]
         row = best_row(self._archive, search.weights)
         value = self._archive.points[row] @ search.weights
@@ -187,8 +187,7 @@ class DaySearch:
             take(search, tour, departure)
             insert_driven(self._archive, self._traffic, tour, departure)
 
-    def weighted_search(self, index: int) -> WeightedSearch:
-        """Return a search for short tours under the weight of this index."""
+    def _weighted_search(self, index: int) -> WeightedSearch:
         return make_weighted_search(
             self._traffic,
             self._instance.penalised_matrices,

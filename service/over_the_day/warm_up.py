@@ -1,8 +1,4 @@
-"""Compile the search over the day, or load it from the cache.
-
-Two processes compile it side by side. So it has two pieces, which share little: the descent, and
-what a search needs besides.
-"""
+"""Compile the search over the day, or load it from the cache."""
 
 import math
 from itertools import islice
@@ -10,7 +6,6 @@ from itertools import islice
 import numpy as np
 
 from service.over_the_day.day import CostsOfDay, Day
-from service.over_the_day.descent import descend, improved_at_ends, perturb, save, take
 from service.over_the_day.search import WEIGHTS, DaySearch
 
 _N = 12  # cities: too many to try all tours
@@ -25,25 +20,8 @@ def warm_up() -> None:
         search.driven(search.found()[1], math.inf)
 
 
-def descent() -> None:
-    """Compile the descent, and then what is still missing."""
-    descend(_search(_N, begun=False).weighted_search(0), 0)
-    warm_up()
-
-
-def beside_descent() -> None:
-    """Compile what a search needs besides the descent."""
-    search = _search(_N)
-    weighted = search.weighted_search(0)
-    take(weighted, search.found()[1][0], 0.0)
-    save(weighted)
-    perturb(weighted)
-    search.driven(search.found()[1], math.inf)
-    improved_at_ends(weighted, 0)  # last: it calls what the other piece begins with
-
-
-def _search(n: int, begun: bool = True) -> DaySearch:
-    """Return a search of n cities, with a tour to begin with unless told otherwise."""
+def _search(n: int) -> DaySearch:
+    """Return a search of n cities, with a tour to begin with."""
     cities = np.arange(float(n))
     matrix = np.outer(cities, cities) % 7.0
     costs = [
@@ -51,6 +29,5 @@ def _search(n: int, begun: bool = True) -> DaySearch:
         CostsOfDay.constant(matrix),
     ]
     search = DaySearch(Day(costs, clock=0, service=cities, earliest=0.0, latest=1.0), 0)
-    if begun:
-        search.add(np.arange(n)[np.newaxis])
+    search.add(np.arange(n)[np.newaxis])
     return search

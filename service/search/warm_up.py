@@ -10,7 +10,7 @@ import numpy as np
 
 from service.instance import Instance
 from service.search import candidates
-from service.search.archive import insert
+from service.search.archive import dominated_area
 from service.search.best_subset import best_subset
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.candidates import Scalarization, rank_candidates
@@ -18,7 +18,7 @@ from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
-from service.search.local_search import least_gain
+from service.search.local_search import least_gain, offer, sum_afresh
 from service.search.pareto_local_search import WEIGHTS, fill_gaps, scalarization_at
 from service.search.schedule import Search
 from service.search.starts.constructed_tour import constructed_tour
@@ -54,13 +54,16 @@ def beside_two_opt() -> None:
     """Compile what a search by two-opt needs besides: archive, candidates, bound, enumeration."""
     instance = _instance(coordinates=True)
     search = _search(instance)
-    insert(search.state.archive, (1.0, 1.0), _TOUR)
-    scalarization_at(search.state, 0)
     for _ in search.pool_candidates():
         pass
     scalarization = search.descents.scalarization(0)
     rank_candidates(search.pool, scalarization)
-    constructed_tour(instance, scalarization)
+    search.add(_TOUR[np.newaxis])
+    search.not_covered(_TOUR[np.newaxis])
+    scalarization_at(search.state, 0)
+    search.descents.load_start(search.local_search, scalarization)
+    _offer(search, search.local_search, scalarization)
+    dominated_area(search.state.archive, *search.corner)
     exact_tours(_instance(coordinates=True, n=5))
     best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
     hypervolume_bound(instance, instance.reference_point)
@@ -78,7 +81,7 @@ def more_cities() -> None:
 def three_opt() -> None:
     """Compile the local search by three-opt."""
     search = _search(_instance(coordinates=True))
-    _descend(search, ThreeOptSearch(search.state, make_undoable_tour(search.n)))
+    _descend(search, _three_opt(search))
 
 
 def beside_three_opt() -> None:
@@ -87,6 +90,7 @@ def beside_three_opt() -> None:
     tour, scalarization = _TOUR.copy(), search.descents.scalarization(WEIGHTS // 2)
     _rank_candidates(scalarization)
     assemble((tour, tour.copy(), tour[::-1].copy()), scalarization, 0.0, search.state.random)
+    _offer(search, _three_opt(search), scalarization)
     matrices = _instance(coordinates=False)
     hypervolume_bound(matrices, matrices.reference_point)
 
@@ -101,6 +105,17 @@ def many_cities() -> None:
 
 def _search(instance: Instance) -> Search:
     return Search(instance, 0, instance.reference_point)
+
+
+def _three_opt(search: Search) -> ThreeOptSearch:
+    return ThreeOptSearch(search.state, make_undoable_tour(search.n))
+
+
+def _offer(search: Search, local_search: LocalSearch, scalarization: Scalarization) -> None:
+    """Offer a local optimum to the archive."""
+    local_search.load(_TOUR, *lengths(scalarization.costs, _TOUR))
+    sum_afresh(local_search.working, scalarization)
+    offer(local_search.working, scalarization, search.state.archive)
 
 
 def _descend(search: Search, local_search: LocalSearch) -> None:
@@ -125,8 +140,7 @@ def _rank_candidates(scalarization: Scalarization) -> None:
 def _step_through_three_opt(instance: Instance) -> None:
     """Take a few steps of the search of many cities."""
     search = _search(instance)
-    three_opt = ThreeOptSearch(search.state, make_undoable_tour(search.n))
-    search.local_search = search.descents.local_search = three_opt
+    search.local_search = search.descents.local_search = _three_opt(search)
     for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
         pass
     for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):

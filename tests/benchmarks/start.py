@@ -27,29 +27,29 @@ def main(arguments: list[str]) -> None:
     with tempfile.TemporaryDirectory() as cache:
         began = time.monotonic()
         settings = {"NUMBA_CACHE_DIR": cache, "NUMBA_DISABLE_JIT": "0"}
-        with serve_process(settings) as service:
+        with serve_process(settings) as service, httpx.Client(base_url=service.url) as client:
             measured = {
-                "network alone, s": _answered(service, began, time_limit=0, repairs=0),
-                "with a search, s": _answered(service, began, time_limit=0.1),
-                "all compiled, s": _all_compiled(service, began),
+                "network alone, s": _answered(client, began, time_limit=0, repairs=0),
+                "with a search, s": _answered(client, began, time_limit=0.1),
+                "all compiled, s": _all_compiled(client, began),
                 "processor, s": _processor_seconds(service),
             }
     print(json.dumps(measured, indent=1))
 
 
-def _answered(service: ServeProcess, began: float, **options: float) -> float:
+def _answered(client: httpx.Client, began: float, **options: float) -> float:
     """Ask for a front until there is one, and return the seconds since the service was started."""
     coordinates = np.random.default_rng(0).random((CITIES, 4)).tolist()
     body = {"coordinates": coordinates, **options}
-    while (answer := httpx.post(f"{service.url}/front", json=body, timeout=60)).status_code == 503:
+    while (answer := client.post("/front", json=body, timeout=60)).status_code == 503:
         time.sleep(PAUSE)
     answer.raise_for_status()
     return round(time.monotonic() - began, 1)
 
 
-def _all_compiled(service: ServeProcess, began: float) -> float:
+def _all_compiled(client: httpx.Client, began: float) -> float:
     """Wait until everything is compiled, and return the seconds since the service was started."""
-    while "compiling" in httpx.get(f"{service.url}/health/ready").json():
+    while "compiling" in client.get("/health/ready").json():
         time.sleep(PAUSE)
     return round(time.monotonic() - began, 1)
 

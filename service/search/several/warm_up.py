@@ -1,6 +1,10 @@
-"""Compile the search for three and four objectives, or load it from the cache."""
+"""Compile the search for three and four objectives, or load it from the cache.
+
+Two processes compile it side by side. So it has two pieces, which share little.
+"""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.search.best_subset import best_subset
@@ -13,16 +17,36 @@ _N = 12  # cities: too many to enumerate
 
 
 def warm_up() -> None:
-    """Compile it by searches that use all of it; what two objectives need as well is there."""
+    """Compile it all; what two objectives need as well is there."""
+    local_search()
+    beside_local_search()
+
+
+def local_search() -> None:
+    """Compile searches."""
+    for instance in _instances():
+        improve(instance, np.arange(_N)[np.newaxis], iterations=3_000, capacity=16)
+
+
+def beside_local_search() -> None:
+    """Compile what follows a search, and the enumeration of few cities."""
+    best_subset(np.eye(3), 2, np.full(3, 2.0))
+    hypervolume(np.eye(3), np.full(3, 2.0))
+    for instance in _instances():
+        hypervolume_bound(instance, instance.reference_point)
+    for objectives in (3, 4):
+        exact_tours(Instance(coordinates=_planes(objectives)[:5]))
+
+
+def _instances() -> tuple[Instance, Instance]:
+    """Return an instance by coordinates, and one by matrices."""
     cities = np.arange(float(_N))
-    planes = np.stack([cities, cities**2 % 11, cities**2 % 7, cities, cities % 5, cities], axis=1)
-    instance = Instance(coordinates=planes)
     matrices = np.triu(np.outer(cities, cities) % np.array([7.0, 5.0, 3.0]).reshape(3, 1, 1))
-    for each in (instance, Instance(matrices=matrices)):
-        found = improve(each, np.arange(_N)[np.newaxis], iterations=3_000, capacity=16)
-        best_subset(found.points, 2, each.reference_point)
-        hypervolume(found.points, each.reference_point)
-        hypervolume_bound(each, each.reference_point)
-    exact_tours(Instance(coordinates=planes[:5]))
-    four = np.concatenate((planes, planes[:, :2]), axis=1)[:5]
-    exact_tours(Instance(coordinates=four))
+    return Instance(coordinates=_planes(3)), Instance(matrices=matrices)
+
+
+def _planes(objectives: int) -> NDArray[np.float64]:
+    """Return coordinates of cities, shape (_N, 2 m)."""
+    cities = np.arange(float(_N))
+    steps = np.arange(1.0, 2 * objectives + 1)
+    return np.outer(cities, steps) % (2 * steps + 9)
