@@ -1,8 +1,8 @@
 """Import the modules of all workers once, in the process that forks them.
 
 Workers then start with these modules, and with the compiled code if an earlier process left it in
-the cache. If not, one worker compiles it later: that takes minutes, and there are no workers, not
-even for requests of the network alone, until this module is imported.
+the cache. If not, one worker compiles it later: that takes most of a minute, and there are no
+workers, not even for requests of the network alone, until this module is imported.
 
 Do not import the service or ONNX Runtime: a fork copies the locks of their threads, but not the
 threads.

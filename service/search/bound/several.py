@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from service.instance import Instance
 from service.preferences import lattice, spread_out
@@ -74,6 +73,8 @@ def volume_above(weights: Array, lowest: Array) -> float:
 
     Weights, shape (k, m), are positive; lowest has shape (k,).
     """
+    from scipy import spatial  # imported late: it takes 0.2 s, and two objectives do without
+
     sums = weights.sum(axis=1)
     room = (sums - lowest) / sums  # on the diagonal, from the corner (1, ..., 1)
     if room.min() <= 0:
@@ -92,5 +93,5 @@ def volume_above(weights: Array, lowest: Array) -> float:
         )
     )
     inside = np.full(weights.shape[1], 1 - min(1.0, float(room.min())) / 2)
-    corners = HalfspaceIntersection(half_spaces, inside).intersections
-    return min(1.0, float(ConvexHull(corners).volume) * (1 + SLACK))
+    corners = spatial.HalfspaceIntersection(half_spaces, inside).intersections
+    return min(1.0, float(spatial.ConvexHull(corners).volume) * (1 + SLACK))
