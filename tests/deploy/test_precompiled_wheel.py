@@ -12,8 +12,7 @@ from zipfile import ZipFile
 import numba
 import pytest
 
-from service import jit
-from tests.helpers.processors import ANOTHER_NAME, WITHOUT_AVX2
+from tests.helpers.processors import ANOTHER_NAME, WITHOUT_AVX2, of_the_level
 
 ROOT = Path(__file__).parents[2]
 BUILD = """
@@ -83,9 +82,8 @@ def loaded(installed: Path, cache: Path, processor: str) -> dict[str, int]:
     return json.loads(ran.stdout)
 
 
+@of_the_level
 def test_a_processor_of_another_name_compiles_nothing(installed: Path, tmp_path: Path) -> None:
-    if jit.config.CPU_NAME is None:
-        pytest.skip("this processor is not of the level that is compiled for")
     found = loaded(installed, tmp_path / "cache", ANOTHER_NAME)
     assert found["loaded"] > 0
     assert found["compiled"] == 0

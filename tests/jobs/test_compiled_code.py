@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from service import jit
-from tests.helpers.processors import ANOTHER_NAME
+from tests.helpers.processors import ANOTHER_NAME, of_the_level
 
 PLANS = """
 import json, sys
@@ -71,10 +70,9 @@ def test_tasks_need_no_more_compiled_code_than_their_parts() -> None:
     assert json.loads(ran.stdout) == {}
 
 
+@of_the_level
 @pytest.mark.usefixtures("compiled")
 def test_a_processor_of_another_name_loads_all_that_was_compiled() -> None:
-    if jit.config.CPU_NAME is None:
-        pytest.skip("this processor is not of the level that is compiled for")
     load = """
 from service.jobs.compiled_code import load_from_cache
 from service.jobs.parts import Part

@@ -81,8 +81,7 @@ def test_a_function_is_compiled_anew_where_one_that_it_calls_has_changed(tmp_pat
     """numba looks at the module of the function alone."""
     modules = tmp_path / "service" / "search"
     modules.mkdir(parents=True)
-    for name in ("jit.py", "native_code.py"):
-        shutil.copy(Path(service.__file__).parent / name, modules.parent)
+    shutil.copytree(Path(service.__file__).parent / "jit", modules.parent / "jit")
     (modules.parent / "__init__.py").touch()
     (modules / "outer.py").write_text(
         "from service.jit import compiled\nfrom service.search.inner import inner\n"

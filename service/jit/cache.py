@@ -1,0 +1,156 @@
+"""The cache of compiled code on disk, from which later processes load it.
+
+numba numbers what it compiles, from 1 in each process, to tell functions of one name apart: those
+inside np.sort from those inside np.argsort. Of two cached by different processes with the same
+number, whichever is loaded first is called in the other's place, and the process dies
+(numba#10486). So each process begins at a random number, far from those of all others.
+
+numba compiles a function anew where its own module has changed, but not where a function that it
+calls has. So what is cached belongs to one state of all modules with compiled code.
+
+Nor does numba expect two processes to save code of one function at once: both would take the same
+file. So they do it one after another, and an index never names a file that is not written yet.
+
+A wheel or an image can carry compiled code in the folder PRECOMPILED. Its name says for which
+processes it is, and others do not look into it: they use numba's own cache.
+"""
+
+import fcntl
+import os
+import secrets
+import sys
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
+from hashlib import sha256
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numba
+from llvmlite import binding
+from numba.core import caching, config
+from numba.core.bytecode import FunctionIdentity
+from numba.core.codegen import get_host_cpu_features
+
+from service.jit.processor import compile_for_the_level
+
+compile_for_the_level()
+
+
+def _number_from_a_random_number() -> None:
+    FunctionIdentity._unique_ids = count(secrets.randbits(64))  # noqa: SLF001  # it has no setter
+
+
+_number_from_a_random_number()
+os.register_at_fork(after_in_child=_number_from_a_random_number)
+
+
+_PACKAGE = Path(__file__).parents[1]
+
+
+def _digest() -> str:
+    """Return a digest of the modules whose functions and numbers are compiled."""
+    names = ("coverage", "fleet", "jit", "over_the_day", "replanning", "search")
+    folders = (_PACKAGE / name for name in names)
+    modules = [*_PACKAGE.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
+    return sha256(b"".join(path.read_bytes() for path in sorted(modules))).hexdigest()
+
+
+_DIGEST = _digest()
+
+
+def _precompiled() -> Path:
+    """Return the folder for code of these modules, this numba, this Python and this processor."""
+    settings: Any = config
+    processor = (
+        binding.get_process_triple(),
+        settings.CPU_NAME or binding.get_host_cpu_name(),
+        get_host_cpu_features() if settings.CPU_FEATURES is None else settings.CPU_FEATURES,
+    )
+    described = (_DIGEST, numba.__version__, sys.implementation.cache_tag, *processor)
+    return _PACKAGE / "precompiled" / sha256(repr(described).encode()).hexdigest()[:16]
+
+
+PRECOMPILED = _precompiled()  # does not exist where nothing was compiled in advance
+_NumbaCacheFile: Any = caching.IndexDataCacheFile  # it has no types
+
+
+class _CacheFile(_NumbaCacheFile):  # type: ignore[misc]
+    """The cache of one function, which processes write in turn."""
+
+    def __init__(self, cache_path: str, filename_base: str, source_stamp: object) -> None:
+        super().__init__(cache_path, filename_base, (source_stamp, _DIGEST))
+
+    def save(self, key: Any, data: Any) -> None:
+        if not os.access(self._cache_path, os.W_OK):
+            return
+        with _locked(self._cache_path):
+            files = self._load_index()
+            if key not in files:
+                files[key] = self._free_name(files.values())
+            self._save_data(files[key], data)
+            self._save_index(files)
+
+    def _free_name(self, taken: Collection[str]) -> str:
+        names = (self._data_name(number) for number in count(1))
+        return next(name for name in names if name not in taken)
+
+
+caching.IndexDataCacheFile = _CacheFile  # type: ignore[misc]
+_NumbaLocator: Any = caching.InTreeCacheLocator
+
+
+class _PrecompiledLocator(_NumbaLocator):  # type: ignore[misc]
+    """Finds the folder of a module's code in PRECOMPILED, which need not be writable."""
+
+    def __init__(self, function: object, module: str) -> None:
+        super().__init__(function, module)
+        self._cache_path = str(PRECOMPILED / Path(module).parent.relative_to(_PACKAGE))
+
+    def ensure_cache_path(self) -> None:
+        with suppress(OSError):
+            super().ensure_cache_path()
+
+    @classmethod
+    def from_function(cls, function: object, module: str) -> "_PrecompiledLocator | None":
+        carried = PRECOMPILED.is_dir() and Path(module).is_relative_to(_PACKAGE)
+        return cls(function, module) if carried else None
+
+
+caching.CacheImpl._locator_classes.insert(0, _PrecompiledLocator)  # noqa: SLF001  # no setter
+
+
+@contextmanager
+def _locked(folder: str) -> Iterator[None]:
+    """Wait until no other process holds a folder, and hold it."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        fcntl.flock(descriptor, fcntl.LOCK_UN)  # for a process forked meanwhile too
+        os.close(descriptor)
+
+
+def _can_be_cached() -> bool:
+    """Return whether numba finds a folder: PRECOMPILED, beside this file, or the user's.
+
+    A read-only container may have none, and each start compiles anew.
+    """
+    try:
+        numba.njit(cache=True)(lambda: None)
+    except RuntimeError:
+        return False
+    return True
+
+
+CACHED = _can_be_cached()  # whether later processes load what is compiled
+
+
+def cache_apart(dispatcher: Any) -> None:
+    """Cache what a dispatcher compiles apart from what another one of its function compiles."""
+    if CACHED:
+        cache = dispatcher._cache  # noqa: SLF001  # numba has no option for it
+        name = f"{cache._impl.filename_base}-part"  # noqa: SLF001
+        stamp = cache._impl.locator.get_source_stamp()  # noqa: SLF001
+        cache._cache_file = _CacheFile(cache.cache_path, name, stamp)  # noqa: SLF001
