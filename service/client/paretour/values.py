@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Self, TypeVar, Unpack
 
 import numpy as np
@@ -11,7 +12,6 @@ from paretour.display import counted, numbers
 from paretour.expect import (
     Members,
     Read,
-    anything,
     count,
     each,
     floats,
@@ -19,6 +19,7 @@ from paretour.expect import (
     members,
     number,
     read_only,
+    rows,
     text,
 )
 from paretour.fronts import Array, Objective, StoredFront
@@ -209,13 +210,12 @@ def parse_front(document: Mapping[str, Any]) -> Front:
     answer = members(document, "answer")
     cities = answer.read("cities", count)
     items = answer.read("front", each(members))
-    tour = indexes(cities, below=cities)
     actor = answer.maybe("actor", members)
     named = answer.maybe("stops", each(members, cities)) is not None
     m = _objective_count(answer, items)
     return Front(
         **stored_members(answer, items),
-        tours=_stacked([item.read("tour", tour) for item in items], (cities,), np.int64),
+        tours=rows(items, "tour", partial(indexes, below=cities), cities),
         angles=_stacked([_of_two(item, "angle", m) for item in items]),
         balances=_stacked([_of_two(item, "balance", m) for item in items]),
         hypervolume_bound=answer.maybe("hypervolume_bound", number),
@@ -229,7 +229,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         arrivals=of_all(items, "arrivals", floats(None, m)),
         uncovered=answer.maybe("uncovered", parse_uncovered),
         departures=_maybe_stacked(of_all(items, "departure", number)),
-        times=_maybe_stacked(of_all(items, "times", floats(cities + 1)), (cities + 1,)),
+        times=rows(items, "times", floats, cities + 1) if _have(items, "times") else None,
     )
 
 
@@ -267,9 +267,12 @@ def _of_two(item: Members, name: str, objectives: int) -> float:
 
 def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
     """Return a member of all items, or None if the first has none."""
-    if not items or items[0].maybe(name, anything) is None:
-        return None
-    return tuple(item.read(name, read) for item in items)
+    return tuple(item.read(name, read) for item in items) if _have(items, name) else None
+
+
+def _have(items: Sequence[Members], name: str) -> bool:
+    """Return whether the first item has a member."""
+    return bool(items) and items[0].document.get(name) is not None
 
 
 def parse_uncovered(value: Any, where: str) -> Uncovered:
@@ -297,7 +300,7 @@ def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
     return {
         "id": answer.read("id", text),
         "status": answer.read("status", text),
-        "lengths": _stacked([item.read("lengths", floats(m)) for item in items], (m,)),
+        "lengths": rows(items, "lengths", floats, m),
         "points": answer.read("points", count),
         "hypervolume": answer.read("hypervolume", number),
         "reference_point": answer.maybe("reference_point", floats(m)),
@@ -330,15 +333,11 @@ def parse_path(value: Any, where: str) -> Path:
     )
 
 
-def _maybe_stacked(
-    values: Sequence[Any] | None, shape: tuple[int, ...] = ()
-) -> NDArray[Any] | None:
-    """Return one value per item as an array; None where items have none."""
-    return None if values is None else _stacked(values, shape)
+def _maybe_stacked(values: Sequence[float] | None) -> Array | None:
+    """Return one number per item as an array; None where items have none."""
+    return None if values is None else _stacked(values)
 
 
-def _stacked(
-    values: Sequence[Any], shape: tuple[int, ...] = (), dtype: type = np.float64
-) -> NDArray[Any]:
-    """Return one value per item as an array, also if there are no items."""
-    return read_only(np.array(values, dtype=dtype).reshape(len(values), *shape))
+def _stacked(values: Sequence[float]) -> Array:
+    """Return one number per item as an array, also if there are no items."""
+    return read_only(np.array(values, dtype=np.float64))
