@@ -24,6 +24,7 @@ from service.api.site.static import REVALIDATE, files
 _SERVICE = Path(__file__).parents[2]
 _GUIDE = _SERVICE / "guide"
 _INDEX = "index"
+_RENAMED = {"train-and-add-an-actor": "train-your-own-actor"}
 _PAGE_LINK = re.compile(r"([a-z-]+)\.md(#.*)?")
 _SERVED = re.compile(
     r"(pictures/[a-z-]+\.png)|\.\./(?:(deploy/[a-z-]+\.yaml)|(examples/[a-z-]+\.json))"
@@ -138,6 +139,8 @@ async def _to_the_index(_: Request) -> Response:
 def _page(request: Request) -> Response:
     """Answer with a page; in a thread, because the first request renders all pages."""
     name = request.path_params.get("name", _INDEX)
+    if name in _RENAMED:
+        return RedirectResponse(_RENAMED[name], status_code=308)
     if name not in _guide().pages:
         raise HTTPException(404)
     return HTMLResponse(_guide().document(name), headers=REVALIDATE)

@@ -35,6 +35,12 @@ def test_the_guide_begins_with_its_index(client: httpx.Client) -> None:
     assert "<title>The guide of Paretour" in answer.text
 
 
+def test_the_old_address_of_a_page_leads_to_it(client: httpx.Client) -> None:
+    answer = client.get("/guide/train-and-add-an-actor")
+    assert answer.status_code == 200
+    assert answer.url.path == "/guide/train-your-own-actor"
+
+
 @pytest.mark.parametrize("name", PAGES)
 def test_every_link_of_a_page_leads_to_something(client: httpx.Client, name: str) -> None:
     page = client.get(f"/guide/{name}")
