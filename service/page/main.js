@@ -54,6 +54,7 @@ let objectives = UNNAMED; // the names in the front shown
 let planning = null; // the planning that is running
 let reading = null; // ends the reading of files, of an example or of typed text that is running
 let answer = null; // the best front so far
+let answered = null; // its request
 let shown = false; // whether anything was opened or typed
 let awaited = null; // the file of an example that will be shown, unless files are opened instead
 let refusal = null; // the refusal of such files, while that example is fetched nevertheless
@@ -65,20 +66,21 @@ function open(wanted, names) {
   input.open(wanted, names);
 }
 
-/** Drops the front: it is not of these stops. */
+/** Drops the front: it is not of these stops. Without an instance, what was typed cannot be read, and the front stays. */
 function edited(instance, fit) {
   shown = true;
   awaited = null;
   leave();
   clear();
   if (!reading) say("");
+  if (!instance) return;
   result.name((objectives = input.objectives), input.ids);
   result.clear(instance, { fit });
   way = null;
-  answered(null);
+  take(null);
 }
 
-function answered(found) {
+function take(found) {
   answer = found;
   exporting.show(found);
   placeResult();
@@ -88,7 +90,7 @@ function answered(found) {
 /** What is on the screen; null if what was typed cannot be read. A replanned front has no request in the form. */
 async function screen() {
   if (input.unread && !(await settled())) return null;
-  const asked = way?.replanned ? null : input.asked;
+  const asked = way?.replanned ? null : answered;
   return {
     request: input.request,
     asked,
@@ -133,7 +135,8 @@ function show(state) {
     objectives = namesOf(state.answer);
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
-    answered(state.answer);
+    answered = input.asked;
+    take(state.answer);
     if (state.stage === "done" && formOf(input.instance)) {
       way ??= new Way(input.instance, input.ids, state.answer.cities);
       replanForm.show(way);
@@ -150,10 +153,19 @@ function namesOf({ objectives: named, scale }) {
 }
 
 function plan() {
-  way = null;
-  replanForm.show(null);
   const onGrid = kindOf(input.asked).onGrid;
-  return run((mine) => mine.plan(input.request), onGrid ? "The paths between the places of the map are being found." : undefined);
+  return run((mine) => planned(mine.plan(input.request)), onGrid ? "The paths between the places of the map are being found." : undefined);
+}
+
+/** Leaves the front before as it is until there is another one: the request may be refused. */
+async function* planned(states) {
+  for await (const state of states) {
+    if (state.answer) {
+      way = null;
+      replanForm.show(null);
+    }
+    yield state;
+  }
 }
 
 /** Plans the rest of the selected tour. */

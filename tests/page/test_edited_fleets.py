@@ -147,7 +147,7 @@ def test_a_cell_that_cannot_be_planned_with_is_marked(
     fleet: Page, name: str, text: str, said: str
 ) -> None:
     write(fleet, name, text)
-    faults = fleet.locator("#cities-fault, #vehicles-fault")
+    faults = fleet.locator("#stops-fault, #vehicles-fault")
     if "understood" in said:
         expect(faults.filter(has_text=said)).to_be_visible()
         expect(cell(fleet, name)).to_have_attribute("aria-invalid", "true")
@@ -209,7 +209,7 @@ def test_a_clock_in_metres_is_not_taken_in_silence(fleet: Page) -> None:
     times.select_option("There are no times")
     expect(fleet.locator("#objectives-fault")).to_be_empty()
     plan(fleet)
-    expect(fleet.locator("#cities-fault")).to_contain_text("Window of order-19 needs times")
+    expect(fleet.locator("#stops-fault")).to_contain_text("Window of order-19 needs times")
     fleet.get_by_label("Windows, shifts and service are").select_option(
         "Those of the second objective"
     )

@@ -3,7 +3,7 @@
 import { tellFault } from "../planning/faults.js";
 import { counted } from "../common/numbers.js";
 import { EditableTable } from "../inputs/table.js";
-import { ObjectiveFields } from "../inputs/objective_fields.js";
+import { ObjectiveFields, isSpeedRead } from "../inputs/objective_fields.js";
 import { cellText, hintOf, isUnread, secondsIn, withText } from "./cells.js";
 import { columnsOf, isShown } from "./columns.js";
 import { vehiclesIn } from "./fleet_request.js";
@@ -24,7 +24,7 @@ export class FleetForm {
 
   /**
    * @param {EditableTable} stops the table of stops
-   * @param {(asked: object) => void} onChange called with the changed request
+   * @param {(asked: object, isRead?: boolean) => void} onChange called with the changed request, and whether it is understood
    */
   constructor(stops, onChange) {
     this.#stops = stops;
@@ -39,7 +39,7 @@ export class FleetForm {
       "Vehicle",
     );
     this.#objectives = new ObjectiveFields(element("fleet-objectives"), (axis, change) => this.#measure(axis, change));
-    this.#clock = new ObjectiveFields(element("fleet-clock"), (_, change) => onChange({ ...this.#asked, clock: { ...this.#asked.clock, ...change } }));
+    this.#clock = new ObjectiveFields(element("fleet-clock"), (_, change) => onChange({ ...this.#asked, clock: { ...this.#asked.clock, ...change } }, isSpeedRead(change)));
     element("add-vehicle").addEventListener("click", () => this.#addVehicle());
     element("against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAgainst));
     element("also-against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAlsoAgainst));
@@ -85,8 +85,9 @@ export class FleetForm {
   /** Takes the text of a cell. */
   write(table, row, column, text) {
     const items = this.#items(table);
-    const item = withText(items[row], this.#shown(table)[column], text, secondsIn(this.#asked));
-    this.#onChange({ ...this.#asked, [table]: items.with(row, item) });
+    const written = this.#shown(table)[column];
+    const item = withText(items[row], written, text, secondsIn(this.#asked));
+    this.#onChange({ ...this.#asked, [table]: items.with(row, item) }, !isUnread(item, written));
   }
 
   #items(table) {
@@ -138,7 +139,7 @@ export class FleetForm {
   #measure(axis, change) {
     const { objectives, clock } = this.#asked;
     const named = change.name && clock === objectives[axis].name ? { clock: change.name } : {};
-    this.#onChange({ ...this.#asked, ...named, objectives: objectives.with(axis, { ...objectives[axis], ...change }) });
+    this.#onChange({ ...this.#asked, ...named, objectives: objectives.with(axis, { ...objectives[axis], ...change }) }, isSpeedRead(change));
   }
 
   #showTrade() {

@@ -84,6 +84,9 @@ function speedIn(text) {
   return text === "" || Number.isNaN(number) ? text : number;
 }
 
+/** Whether a change has no speed that is not a number. */
+export const isSpeedRead = ({ speed }) => typeof speed !== "string";
+
 function labelled(title, input, label = title) {
   const made = document.createElement("label");
   input.setAttribute("aria-label", label);

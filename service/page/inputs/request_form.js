@@ -12,7 +12,7 @@ import { placedAt, withRobotEnd } from "./map_ends.js";
 import { isProposed, withoutLayer } from "./map_proposal.js";
 import { nameOf } from "./names.js";
 import { PlanLine } from "./plan_line.js";
-import { ObjectiveFields } from "./objective_fields.js";
+import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
 import { EditableTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
@@ -21,8 +21,8 @@ import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 
 const element = (id) => document.getElementById(id);
-const titled = (titles) => titles.map((title) => ({ title }));
-const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"]) };
+const titled = (titles, members) => titles.map((title) => ({ title, members }));
+const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"], "location") };
 
 export class RequestForm {
   #fields;
@@ -42,13 +42,14 @@ export class RequestForm {
   #settled;
   #typedRows;
   #rows = []; // rows of planes, one per stop, as they were opened, edited, or typed and read
+  #drawn = []; // which of these rows are cities on the maps
   #brought = { coordinates: [] }; // the members of the opened request that are not settings
   #objectives = UNNAMED; // as they are shown
 
   /**
    * @param {Service} service reads what is typed
-   * @param {{ onEdited: (instance: object, fit: boolean) => void, onEnds: (instance: object) => void,
-   *   onShaded: (instance: object) => void, settled: () => Promise<boolean> }} told called with other stops or costs;
+   * @param {{ onEdited: (instance: object | null, fit: boolean) => void, onEnds: (instance: object) => void,
+   *   onShaded: (instance: object) => void, settled: () => Promise<boolean> }} told called with other stops or costs, null where one cannot be read;
    *   with what was typed that moves or limits the ends on a map; with the layer that shades the map; and to read what was typed, or show why that
    *   is not possible
    */
@@ -65,7 +66,7 @@ export class RequestForm {
       onCell: (row, column, text) => this.#onceRead(() => this.#move(row, column, text)),
       onDelete: (row) => this.#onceRead(() => this.#delete(row)),
     });
-    this.#fleet = new FleetForm(this.#table, (changed) => this.#change(changed));
+    this.#fleet = new FleetForm(this.#table, (...changed) => this.#change(...changed));
     element("cities").addEventListener("input", () => this.#typed());
     for (const name of ["start", "end", "open", "cell_size", "robot_radius"]) form[name].addEventListener("change", () => onEnds(this.instance));
     element("rounded").addEventListener("change", () => this.#edited(false));
@@ -143,7 +144,7 @@ export class RequestForm {
       this.#brought = put(this.#brought, plane, city, rounded);
       return this.#edited(false);
     }
-    const row = this.#rowOf(city);
+    const row = this.#drawn[city];
     this.#write(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...rounded) : each)), false);
   }
 
@@ -164,22 +165,16 @@ export class RequestForm {
     this.#change(servedBy(this.#brought, this.ids.indexOf(stop), vehicle));
   }
 
-  /** Takes the changed request of a fleet, or one with other hours. */
-  #change(changed) {
+  /** Takes the changed request of a fleet, or one with other hours; `isRead` says whether what was typed is understood. */
+  #change(changed, isRead = true) {
     this.#brought = changed;
     this.#objectives = namesIn(changed);
-    this.#edited(false);
+    this.#edited(false, isRead);
   }
 
   /** Deletes a stop that is drawn. */
   deleteCity(city) {
-    this.#onceRead(() => this.#delete(this.#brought.stops ? city : this.#rowOf(city)));
-  }
-
-  /** The row of a city; rows that cannot be drawn are not cities. */
-  #rowOf(city) {
-    const drawn = this.#rows.flatMap((row, at) => (isCity(row) ? [at] : []));
-    return drawn[city];
+    this.#onceRead(() => this.#delete(this.#brought.stops ? city : this.#drawn[city]));
   }
 
   /** Reports other stops from the first key on; the stops are drawn once they are read. */
@@ -214,7 +209,8 @@ export class RequestForm {
     this.#edited(fit);
   }
 
-  #edited(fit = true) {
+  /** Shows what has changed. A plan stays where what was typed cannot be read. */
+  #edited(fit = true, isRead = true) {
     const form = formOf(this.#brought);
     const count = (form === "coordinates" ? this.#rows : (this.#brought.stops ?? [])).length;
     const shown = this.#isFleet || Boolean(COLUMNS[form]);
@@ -230,7 +226,8 @@ export class RequestForm {
     element("brought").hidden = !element("brought").textContent;
     this.#fields.name(this.ids, count);
     this.#planLine.show(this.#objectives);
-    this.#onEdited(this.instance, fit);
+    if (isRead) this.#drawn = this.#rows.flatMap((row, at) => (isCity(row) ? [at] : []));
+    this.#onEdited(isRead ? this.instance : null, fit);
     this.mark();
   }
 
@@ -276,8 +273,8 @@ export class RequestForm {
     if (this.#isFleet) return this.#fleet.write("stops", row, column, text);
     const value = numberOr(text.replace(",", "."));
     if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
-    else return this.#write(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)), true);
-    this.#edited();
+    else this.#show(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)));
+    this.#edited(true, Number.isFinite(value));
   }
 
   #delete(row) {
@@ -321,7 +318,7 @@ export class RequestForm {
     if (objectives) this.#brought.objectives = objectives.map(changed);
     else this.#brought.names = this.#objectives.map(changed);
     this.#objectives = objectives ? namesIn(this.#brought) : this.#brought.names;
-    this.#edited(false);
+    this.#edited(false, isSpeedRead(change));
   }
 
   #showObjectives() {

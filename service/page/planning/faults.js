@@ -11,12 +11,13 @@ export function showFaults(problem) {
   const faults = faultsOf(problem);
   let [first, told] = [null, null];
   for (const { pointer = "", detail } of faults) {
-    const [member, row, part] = pointer.split("/").slice(1);
+    const parts = pointer.split("/").slice(1);
+    const [member, row, part] = parts;
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
-    const said = seen(document.getElementById(`${field}-fault`)) ?? document.getElementById("request-fault");
-    const cell = cellOf(member, row, part);
+    const cell = cellOf(parts);
+    const said = seen(document.getElementById(`${cell?.closest(".stops").id ?? field}-fault`)) ?? document.getElementById("request-fault");
     told ??= said;
-    said.textContent ||= sentence(cell ? ofCell(detail, cell) : inWords(detail, field));
+    said.textContent ||= sentence(cell && member !== "coordinates" ? ofCell(detail, cell) : inWords(detail, field));
     if (cell) cell.setAttribute("aria-invalid", "true");
     first ??= cell ?? (member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row, part));
   }
@@ -45,14 +46,19 @@ export function showFault(field, detail) {
 
 /** Says what is wrong with one field beside what is said of others; returns where that is said. */
 export function tellFault(field, detail) {
-  return Object.assign(document.getElementById(`${FIELD_OF[field] ?? field}-fault`), { textContent: sentence(detail) });
+  return Object.assign(document.getElementById(`${field}-fault`), { textContent: sentence(detail) });
 }
 
 /** The cell of the table of stops or vehicles that a fault is about; null if there is none. */
-function cellOf(member, row, part) {
+function cellOf([member, row, part, ...rest]) {
+  if (member === "coordinates") return cellOfPlane(0, row, part);
+  if (member === "objectives" && part === "coordinates") return cellOfPlane(row, ...rest); // of stops with names
   if (!part || !["stops", "vehicles"].includes(member)) return null;
-  return document.querySelector(`#${member} [data-row="${row}"][data-members~="${CSS.escape(part)}"]`);
+  const cells = document.querySelectorAll(`#${member} [data-row="${row}"][data-members~="${CSS.escape(part)}"]`);
+  return cells[rest[0]] ?? cells[0] ?? null; // a location has two
 }
+
+const cellOfPlane = (axis, row, part) => document.querySelector(`#stops .grouped [data-row="${row}"][data-column="${2 * axis + Number(part)}"]`);
 
 /** The sentence of a fault with the cell by name, such as "Window of order-17". */
 function ofCell(detail, cell) {
@@ -80,8 +86,8 @@ function itemNamed(_, list, at, rest) {
 
 function mark(name, row, part) {
   const of = part === "speed" ? part : "source";
-  const source = document.querySelector(`#${name === "objectives" ? "named" : name} [data-axis="${row}"][data-member="${of}"]`);
-  const field = source ?? document.getElementById(name);
+  const sources = document.querySelectorAll(`#${name === "objectives" ? "named" : name} [data-axis="${row}"][data-member="${of}"]`);
+  const field = [...sources].find((each) => each.checkVisibility()) ?? document.getElementById(name);
   if (!field) return null;
   field.setAttribute("aria-invalid", "true");
   const folded = field.closest("details:not(#typed)");

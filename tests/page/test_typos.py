@@ -1,0 +1,101 @@
+"""A typo in a field: the plan before it stays, and the field says what is wrong."""
+
+import json
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    copied,
+    needs_chromium,
+    open_files,
+    open_page,
+    saved,
+    shown_front,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+PLANES = "0,0,5,5\n3,1,9,1\n5,2,2,8\n"
+NAMED = "name,x,y,u,v\ndepot,0,0,5,5\nshop,3,1,9,1\nschool,5,2,2,8\n"
+ON_EARTH = "id,lon,lat,risk\ndepot,24.94,60.17,1\nshop,24.95,60.18,2\nschool,24.93,60.16,3\n"
+FLEET = json.dumps(
+    {
+        "stops": [
+            {"id": "depot", "location": [24.94, 60.17]},
+            {"id": "shop", "location": [24.95, 60.18], "demand": [2]},
+            {"id": "school", "location": [24.93, 60.16], "demand": [3]},
+        ],
+        "vehicles": [{"id": "van", "count": 2, "start": "depot", "end": "depot", "capacity": [8]}],
+        "objectives": [
+            {"name": "distance", "from": "great_circle"},
+            {"name": "time", "from": "great_circle", "speed": 30, "over": "max"},
+        ],
+        "clock": "time",
+    }
+)
+SPEED = "Speed of the second objective, km/h"
+
+
+def plan(page: Page) -> None:
+    page.get_by_role("button", name="Plan", exact=True).click()
+
+
+@pytest.mark.parametrize(
+    ("content", "label", "fault", "said"),
+    [
+        (PLANES, "x₂ of 2", "stops", "X₂ of stop 2 must be a valid number"),
+        (NAMED, "y₂ of shop", "stops", "Y₂ of shop must be a number"),
+        (ON_EARTH, "Latitude of shop", "stops", "Latitude of shop must be a number"),
+        (FLEET, "Latitude of shop", "stops", "Latitude of shop is not understood"),
+        (FLEET, "Count of van", "vehicles", "Count of van is not understood"),
+        (FLEET, SPEED, "objectives", "The speed of the second objective must be"),
+    ],
+    ids=["planes", "named", "on earth", "fleet", "vehicle", "speed"],
+)
+def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
+    window: Page, content: str, label: str, fault: str, said: str
+) -> None:
+    open_files(window, {"stops.json" if content is FLEET else "stops.csv": content})
+    window.get_by_label("Seconds of planning").fill("0.3")
+    plan(window)
+    wait_until_planned(window)
+    front, chosen = shown_front(window), window.locator("#choice").inner_text()
+    field = window.get_by_label(label, exact=True).locator("visible=true")
+    before = field.input_value()
+    field.fill("6o.18")
+    plan(window)
+    expect(window.locator(f"#{fault}-fault")).to_contain_text(said)
+    expect(field).to_be_focused()
+    expect(field).to_have_attribute("aria-invalid", "true")
+    expect(window.locator("#choice")).to_have_text(chosen)
+    assert shown_front(window) == front
+    field.fill(before)
+    field.press("Tab")
+    plan(window)
+    wait_until_planned(window)
+    expect(window.locator(f"#{fault}-fault")).to_be_empty()
+    expect(field).not_to_have_attribute("aria-invalid", "true")
+
+
+def test_a_plan_that_a_typo_follows_can_be_replanned_and_linked(
+    window: Page, browser: Browser
+) -> None:
+    open_files(window, {"stops.csv": PLANES})
+    plan(window)
+    wait_until_planned(window)
+    window.get_by_label("x₁ of 1", exact=True).fill("o")
+    plan(window)
+    expect(window.locator("#stops-fault")).not_to_be_empty()
+    expect(window.locator("#replanning")).to_be_visible()
+    with open_page(browser, copied(window, "link")) as other:
+        wait_until_planned(other)
+        expect(other.get_by_label("x₁ of 1", exact=True)).to_have_value("0")
+        assert json.loads(saved(other, "JSON")) == shown_front(window)
+    # The first of the three is still on the map: the stop that is moved is the second.
+    window.locator("#plane-1").press("Enter")
+    window.keyboard.press("Enter")
+    window.keyboard.press("ArrowRight")
+    expect(window.get_by_label("x₁ of 2", exact=True)).not_to_have_value("3")
+    expect(window.get_by_label("x₁ of 1", exact=True)).to_have_value("o")
