@@ -1,5 +1,6 @@
 """Stops on the maps of the page: dragged by mouse and by finger, moved and deleted by keys."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -80,6 +81,21 @@ def test_stops_on_the_earth_have_a_second_map_where_the_second_objective_has_a_p
         expect(opened.locator(f"{plane_map} canvas.selected")).to_be_visible()
     open_files(opened, {"stops.csv": ON_EARTH})
     expect(opened.locator("#plane-2")).to_be_hidden()
+
+
+def test_the_page_says_why_no_stop_can_be_added(opened: Page) -> None:
+    open_files(opened, {"stops.csv": ON_EARTH})  # with their risk, costs are a matrix
+    reason = opened.get_by_text("No stop can be added: its costs to the other stops are not known.")
+    expect(reason).to_be_visible()
+    for name in ("Add", "Add on the map"):
+        button = opened.locator(".row").get_by_role("button", name=name, exact=True).first
+        expect(button).to_be_disabled()
+        expect(button).to_have_accessible_description(re.compile("No stop can be added"))
+    open_files(opened, {"stops.csv": PLANES})
+    expect(reason).to_be_hidden()
+    button = opened.get_by_role("button", name="Add on the map")
+    expect(button).to_be_enabled()
+    expect(button).to_have_accessible_description("")
 
 
 def test_keys_choose_move_and_delete_a_stop(opened: Page) -> None:

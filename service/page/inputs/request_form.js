@@ -23,6 +23,7 @@ import { UNNAMED, namesIn } from "../common/objectives.js";
 const element = (id) => document.getElementById(id);
 const titled = (titles, members) => titles.map((title) => ({ title, members }));
 const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"], "location") };
+const FIXED = "No stop can be added: its costs to the other stops are not known. Open a file that has it.";
 
 export class RequestForm {
   #fields;
@@ -217,8 +218,10 @@ export class RequestForm {
     if (this.#isFleet) this.#fleet.show(this.#brought);
     else this.#table.show(this.#columns(form), this.#tableRows(form));
     element("count").textContent = shown ? counted(count, "stop", "stops") : "";
-    for (const id of ["add", "place"]) element(id).disabled = form !== "coordinates" && !isMeasured(this.#brought);
+    const isFixed = form !== "coordinates" && !isMeasured(this.#brought);
+    element("add").disabled = element("place").disabled = isFixed;
     element("add").hidden = element("place").hidden = !shown;
+    element("add-help").textContent = shown && isFixed ? FIXED : "";
     this.#day.show(this.#brought);
     this.#layers.show(this.#brought, this.#objectives[1].name, isProposed(this.#brought));
     this.#text.show(kindOf(this.#brought).movers ? this.#brought : null);
