@@ -1,5 +1,6 @@
 """What the page gives away: pictures, programs, GeoJSON, and links to one tour."""
 
+import csv
 import io
 import json
 import re
@@ -58,6 +59,27 @@ def test_the_python_program_plans_the_front_that_is_on_the_screen(page: Page) ->
     collection = json.loads(saved(page, "GeoJSON"))
     kinds = [feature["geometry"]["type"] for feature in collection["features"]]
     assert kinds.count("Point") == 3
+
+
+def test_files_of_the_whole_front_say_which_tour_is_selected(page: Page) -> None:
+    open_files(page, {"stops.csv": "id,lon,lat,risk\na,0,0,1\nb,0.1,0,9\nc,0,0.1,3\nd,0.1,0.1,0\n"})
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    for key in ("Home", "End"):
+        page.get_by_role("slider", name="Balance").press(key)
+        wait_for_next_frame(page)
+        front = shown_front(page)["front"]
+        chosen = 0 if key == "Home" else len(front) - 1
+        rows = list(csv.DictReader(saved(page, "CSV").decode().splitlines()))
+        marked = [row["selected"] for row in rows]
+        assert marked == ["yes" if at == chosen else "no" for at in range(len(front))]
+        lines = json.loads(saved(page, "GeoJSON"))["features"][: len(front)]
+        marks = [line["properties"]["selected"] for line in lines]
+        assert marks == [at == chosen for at in range(len(front))]
+        with page.expect_download() as download:
+            page.get_by_role("button", name="Save the stops of the selected tour").click()
+        visits = list(csv.DictReader(download.value.path().read_text().splitlines()))
+        assert [visit["stop"] for visit in visits] == [*front[chosen]["stops"], "a"]
 
 
 @pytest.mark.parametrize("expired", [False, True], ids=["stored", "expired"])

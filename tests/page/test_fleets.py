@@ -145,6 +145,10 @@ def test_routes_follow_the_streets_of_a_routing_engine(browser: Browser) -> None
             assert sum(line.count("L") for line in lines) == 2 * 2 * legs + 2 * 2
             collection = json.loads(saved(page, "GeoJSON"))
             routes = [each for each in collection["features"] if "plan" in each["properties"]]
+            chosen = {
+                each["properties"]["plan"] for each in routes if each["properties"]["selected"]
+            }
+            assert chosen == {routes[-1]["properties"]["plan"]}
             places_of_last = [
                 len(each["geometry"]["coordinates"])
                 for each in routes

@@ -140,7 +140,7 @@ def test_both_objectives_have_names_and_units_of_the_user(opened: Page) -> None:
     expect(opened.locator("#comparison")).to_contain_text("Way, km")
     expect(opened.locator("#less-2")).to_have_text("less noise")
     head = next(csv.reader(saved(opened, "CSV").decode().splitlines()))
-    assert head == ["angle", "way (km)", "noise", "tour"]
+    assert head == ["angle", "way (km)", "noise", "tour", "selected"]
 
 
 def test_roads_that_the_service_has_not_are_refused_at_their_objective(opened: Page) -> None:

@@ -290,7 +290,7 @@ def test_exports_have_the_shift_and_the_depot_in_the_middle(late: Page) -> None:
     head, first, *_ = saved(late, "CSV").decode().splitlines()
     assert head.split(",")[4:6] == ["vehicle", "shift"]
     assert first.split(",")[4:6] == ["van", "0"]
-    assert first.endswith(",depot order-9 order-17 depot order-4 depot")
+    assert first.endswith(",depot order-9 order-17 depot order-4 depot,yes")
     program = copied(late, "as Python")
     compile(program, "program", "exec")
     assert '"measure": "lateness"' in program

@@ -269,7 +269,7 @@ def test_the_front_can_be_taken_along(planned: Page, released: str) -> None:
     answer = shown_front(planned)
     assert answer == httpx.get(f"{released}/front/{answer['id']}").json()
     head, *lines = saved(planned, "CSV").decode().splitlines()
-    assert head == "angle,distance (m),risk (accidents per million drives),tour"
+    assert head == "angle,distance (m),risk (accidents per million drives),tour,selected"
     assert len(lines) == len(answer["front"])
     asked = curl_body(planned)
     found = httpx.post(f"{released}/front", json={**asked, "time_limit": 0}).json()

@@ -114,6 +114,7 @@ def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, releas
             "route total distance (m)",
             "route longest route (m)",
             "places",
+            "selected",
         ]
         last = [row[4:] for row in rows if row[0] == rows[-1][0]]
         assert last == [
@@ -121,6 +122,7 @@ def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, releas
                 route["robot"],
                 *map("{:g}".format, route["lengths"]),
                 " ".join(map(str, route["tour"])),
+                "yes",
             ]
             for route in plan["routes"]
         ]

@@ -229,7 +229,7 @@ def test_a_link_carries_the_limits_and_the_tour(page: Page, browser: Browser) ->
 
 def test_what_is_taken_along_has_all_three(page: Page) -> None:
     lines = saved(page, "csv").decode().splitlines()
-    assert lines[0] == "way (m),people met (people),climb (m),tour"
+    assert lines[0] == "way (m),people met (people),climb (m),tour,selected"
     assert len(lines) == 1 + len(front_of(page))
     assert "choose(knee=True)" in copied(page, "as Python")
     svg = saved(page, "svg").decode()

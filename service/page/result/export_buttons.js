@@ -2,7 +2,7 @@
 
 import { chosenOf, placeIn } from "./chosen.js";
 import { areLocated, csvOfVisits, fillSheet, gpxOf, routesOf } from "./driver.js";
-import { alone, csv, curl, download } from "./exports.js";
+import { alone, csv, curl, download, withSelected } from "./exports.js";
 import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
@@ -40,8 +40,8 @@ export class ExportButtons {
     on("python", ({ request, balance }, button) => copy(python(request, balance), button));
     on("link", (shown, button) => this.#copyLink(shown, button));
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
-    on("csv", ({ objectives }) => download("front.csv", "text/csv", csv(this.#shown, objectives)));
-    on("geojson", ({ driven }) => this.#saveGeojson(driven));
+    on("csv", (shown) => download("front.csv", "text/csv", csv(this.#shown, shown.objectives, this.#place(shown))));
+    on("geojson", (shown) => this.#saveGeojson(shown.driven, this.#place(shown)));
     on("stops-csv", (shown) => download("stops.csv", "text/csv", csvOfVisits(this.#routes(shown))));
     on("tour-json", (shown) => download("tour.json", "application/json", JSON.stringify(alone(this.#shown, this.#item(shown)))));
     on("gpx", (shown) => this.#saveGpx(this.#routes(shown)));
@@ -64,9 +64,13 @@ export class ExportButtons {
   }
 
   /** The selected tour or plan as the service has it: tours of a rest are drawn among the stops before. */
-  #item({ selected: { item } }) {
-    const { front } = this.#shown;
-    return front[placeIn(front, item)] ?? item;
+  #item(shown) {
+    return this.#shown.front[this.#place(shown)] ?? shown.selected.item;
+  }
+
+  /** Its place in the front; -1 if it is not there. */
+  #place({ selected: { item } }) {
+    return placeIn(this.#shown.front, item);
   }
 
   #routes({ selected, asked }) {
@@ -95,9 +99,9 @@ export class ExportButtons {
   }
 
   /** Streets are refused for very many stops: then the lines are straight, with a note. */
-  async #saveGeojson(driven) {
+  async #saveGeojson(driven, selected) {
     const streets = driven && (await this.#geojson("?geometry=roads").catch(({ message }) => say(straight(message))));
-    download("front.geojson", "application/geo+json", streets || (await this.#geojson("")));
+    download("front.geojson", "application/geo+json", withSelected(streets || (await this.#geojson("")), selected));
   }
 
   async #geojson(query) {

@@ -17,33 +17,46 @@ export function alone({ id, kind, closed, objectives, places, stops }, item) {
 
 /**
  * A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, the answer's ids
- * where it has them, and the departure in seconds of the day where it has one.
+ * where it has them, and the departure in seconds of the day where it has one. The last column says whether it is the
+ * selected one, whose place in the front is `selected`.
  */
-export function csv({ kind, front }, objectives) {
+export function csv({ kind, front }, objectives, selected) {
   const { movers } = kindNamed({ kind });
   const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
-  if (movers) return csvOfPlans(front, titles, movers);
-  const rows = front.map(({ angle, departure, lengths, tour, stops }) => {
+  if (movers) return csvOfPlans(front, titles, movers, selected);
+  const rows = front.map(({ angle, departure, lengths, tour, stops }, at) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
-    return [...[angle, departure].filter((each) => each !== undefined), ...lengths, places.join(" ")];
+    return [...[angle, departure].filter((each) => each !== undefined), ...lengths, places.join(" "), yesOrNo(at === selected)];
   });
   const before = [...(titles.length === 2 ? ["angle"] : []), ...(front[0]?.departure === undefined ? [] : ["departure"])];
-  return [[...before, ...titles, "tour"], ...rows].map(line).join("");
+  return [[...before, ...titles, "tour", "selected"], ...rows].map(line).join("");
 }
 
 /** A route on each line, after the members of its plan; with its shift, if its vehicle has several. */
-function csvOfPlans(plans, titles, { one, stops, by, through }) {
+function csvOfPlans(plans, titles, { one, stops, by, through }, selected) {
   const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
   const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
     routes.map((route) => {
       const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
       const before = balance === undefined ? [plan] : [plan, balance];
-      return [...before, ...lengths, route[by], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places];
+      return [...before, ...lengths, route[by], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places, yesOrNo(plan === selected)];
     }),
   );
   const flat = titles.length === 2 ? ["balance"] : [];
-  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
+  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...titles.map((title) => `route ${title}`), stops.toLowerCase(), "selected"];
   return [head, ...rows].map(line).join("");
+}
+
+const yesOrNo = (is) => (is ? "yes" : "no");
+
+/** The GeoJSON of a front whose lines say whether they are of the selected tour or plan. */
+export function withSelected(text, selected) {
+  const collection = JSON.parse(text);
+  // The lines of tours come first, in the order of the front.
+  for (const [at, { properties }] of collection.features.entries()) {
+    if (properties.front !== undefined) properties.selected = (properties.plan ?? at) === selected;
+  }
+  return JSON.stringify(collection);
 }
 
 const line = (row) => `${row.map((field) => quoted(`${field}`, /[,"]/)).join(",")}\n`;
