@@ -1,12 +1,13 @@
 """The budget lines of the chart: at most so much of one objective, by the mouse and by keys."""
 
 import re
+from xml.etree import ElementTree
 
 import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.browsing import needs_chromium, shown_front, wait_for_next_frame
+from tests.helpers.browsing import SVG, needs_chromium, saved, shown_front, wait_for_next_frame
 
 pytestmark = needs_chromium
 
@@ -17,6 +18,7 @@ def test_a_dragged_line_selects_the_tour_that_the_service_finds_within_the_budge
 ) -> None:
     line = planned.get_by_role("slider", name=f"At most this much {name}")
     expect(line).to_have_attribute("aria-valuetext", "no limit")
+    assert not limits_in_picture(planned)
     box = line.bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -28,11 +30,22 @@ def test_a_dragged_line_selects_the_tour_that_the_service_finds_within_the_budge
     most = float(line.get_attribute("aria-valuenow") or "")
     asked = {"front": shown_front(planned)["id"], ("first", "second")[objective] + "_at_most": most}
     found = httpx.get(f"{released}/tour", params=asked).json()["lengths"]
+    limit = line.locator("span").inner_text()
+    assert limits_in_picture(planned) == [limit]
     chosen = planned.get_by_role("slider", name="Balance")
     said = f"distance {found[0]:,.6g}, risk {found[1]:,.6g}"
     expect(chosen).to_have_attribute("aria-valuetext", re.compile(re.escape(said) + "$"))
     chosen.press("Home" if objective else "End")
     expect(line).to_have_attribute("aria-valuetext", "no limit")
+
+
+def limits_in_picture(page: Page) -> list[str | None]:
+    """Return what the saved picture says of limits, and check that it has a line for each."""
+    wait_for_next_frame(page)
+    drawing = ElementTree.fromstring(saved(page, "SVG"))
+    said = [text.text for text in drawing.iter(f"{SVG}text") if "≤" in (text.text or "")]
+    assert len(said) == len(list(drawing.iter(f"{SVG}line")))
+    return said
 
 
 def test_keys_move_a_budget_from_tour_to_tour(planned: Page) -> None:

@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from tests.helpers.browsing import (
     DESK,
     PHONE,
+    SVG,
     copied,
     needs_chromium,
     open_files,
@@ -119,6 +121,22 @@ def test_limits_leave_the_best_of_what_they_allow(page: Page) -> None:
     least = lengths[lengths[:, 0] <= most + 1e-9, 2].min()
     assert shown(page)[2] == pytest.approx(least, rel=ROUNDED)
     assert shown(page)[0] <= most * (1 + ROUNDED)
+
+
+def test_pictures_show_the_limits_and_grey_what_is_beyond(page: Page) -> None:
+    limit(page, "Way").press("Home")
+    for _ in range(3):
+        limit(page, "Way").press("ArrowRight")
+    limit(page, "Climb").press("Home")
+    wait_for_next_frame(page)
+    within, of_all = re.findall(r"\d+", page.locator("#caps-said").inner_text())
+    drawing = ElementTree.fromstring(saved(page, "SVG"))
+    [said] = [each.text for each in drawing.iter(f"{SVG}text") if "≤" in (each.text or "")]
+    assert re.fullmatch(r"way ≤ [\d,]+ m, climb ≤ [\d,.]+ m", said or "")
+    assert len(list(drawing.iter(f"{SVG}line"))) == 1  # of the two objectives that are drawn
+    grey = page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--edge')")
+    beyond = [each for each in drawing.iter(f"{SVG}circle") if each.get("fill") == grey]
+    assert len(beyond) == int(of_all) - int(within)
 
 
 def test_limits_leave_a_chosen_tour_selected_that_is_within_them(page: Page) -> None:

@@ -50,6 +50,11 @@ export class Budget {
     return Math.max(0, this.#front.findLastIndex(({ lengths }) => lengths[0] <= most));
   }
 
+  /** The most of each objective, null where there is no budget. */
+  get limits() {
+    return [0, 1].map((axis) => (this.#limit?.axis === axis ? this.#limit.most : null));
+  }
+
   /** The budget in words, or how to set one. */
   get said() {
     if (this.#front.length < 2) return "";

@@ -4,6 +4,7 @@ import { amount, figure, leastOf, wordsOf } from "../common/amounts.js";
 import { capital, isTime, titled } from "../common/objectives.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
+const orNull = (limits) => limits.map((most) => (Number.isFinite(most) ? most : null));
 
 export class Caps {
   #element;
@@ -39,7 +40,12 @@ export class Caps {
 
   /** The limit of each objective, null where there is none. */
   get limits() {
-    return this.#wanted.map((most) => (Number.isFinite(most) ? most : null));
+    return orNull(this.#wanted);
+  }
+
+  /** The limits that are shown: those that some tour of the front is within. */
+  get shown() {
+    return orNull(this.#limits);
   }
 
   /** Sets the limits of the next front, from a link: they are dropped unless there is one, or null, for each objective. */

@@ -66,9 +66,9 @@ export class FrontChart {
     this.#place();
   }
 
-  /** The best tour within the budget line, null if there is none; and the same in words. */
+  /** The best tour within the budget line, null if there is none; the same in words; and the limit of each objective. */
   get budget() {
-    return { index: this.#budget.index, said: this.#budget.said };
+    return { index: this.#budget.index, said: this.#budget.said, limits: this.#budget.limits };
   }
 
   /** Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked. */

@@ -215,7 +215,8 @@ export class Result {
     const tours = lines.map((item) => ({ item, cities: this.#round(item), dashed: item !== this.#selected }));
     const maps = this.#maps.pictures(tours);
     const choice = this.#said(this.#selected);
-    return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, maps };
+    const limits = this.#objectives.length > 2 ? this.#several.limitsShown : this.#chart.budget.limits;
+    return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, limits, maps };
   }
 
   /** The sentence about a tour or plan. */

@@ -60,6 +60,11 @@ export class SeveralObjectives {
     return this.#caps.limits;
   }
 
+  /** The limits that are shown, as of Caps. */
+  get limitsShown() {
+    return this.#caps.shown;
+  }
+
   /** Sets the limits of the next front, in which a person chose the tour that is selected. */
   want(limits) {
     this.#caps.want(limits);
