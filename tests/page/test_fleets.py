@@ -5,7 +5,7 @@ import re
 from xml.etree import ElementTree
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
 from service.api.app import Edge
 from service.roads.client import RoadClient
@@ -53,6 +53,15 @@ SHIPMENT = {
     "time_limit": 10,
 }
 
+# The values of fields that have no room for them.
+CUT = "fields => fields.filter(f => f.scrollWidth > f.clientWidth).map(f => f.value)"
+
+
+def dashes(page: Page, place: str) -> list[bool]:
+    """Return whether the line of each vehicle in a key of colours is dashed."""
+    lines = page.locator(f"{place} .swatch path:last-child")
+    return [bool(each.get_attribute("stroke-dasharray")) for each in lines.all()]
+
 
 def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
@@ -89,6 +98,23 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         )
         assert {"van 1", f"van {len(routes)}"} <= {text.text for text in drawing.iter(f"{SVG}text")}
         check_on_a_phone(page)
+
+
+def test_six_vans_look_different_and_no_cell_is_cut_off(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        plan_by_network_alone(page, "fleet")
+        wait_until_planned(page)
+        page.get_by_label("Example").select_option("Helsinki, six vans")
+        wait_until_planned(page)
+        vans = len(select_last(page)["routes"])
+        for place in ("#vehicles-key", "#fleet-legend"):
+            assert dashes(page, place) == [False] * 4 + [True] * (vans - 4)
+        assert page.locator("#stops input").evaluate_all(CUT) == []
+        table = page.locator("#stops").bounding_box()
+        demand = page.get_by_role("columnheader", name="Demand").bounding_box()
+        assert table is not None
+        assert demand is not None
+        assert demand["x"] + demand["width"] <= table["x"] + table["width"]
 
 
 def test_the_search_plans_what_the_network_cannot(browser: Browser, released: str) -> None:

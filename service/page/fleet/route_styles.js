@@ -1,11 +1,12 @@
 /** Colours and dashes that distinguish the routes of a plan. */
 
 const COLOURS = 8; // colours of Okabe and Ito (2008), in palette.css, which colour-blind people can tell apart
+const ALIKE = 4; // from one colour to another shade of it, which gets another dash
 const DASHES = [[], [9, 5], [3, 4]];
 
 /** The style of the route at this place among those of a plan: the name of its colour, and its dash. */
 export function routeStyle(at) {
-  const dash = DASHES[Math.floor(at / COLOURS) % DASHES.length];
+  const dash = DASHES[Math.floor(at / ALIKE) % DASHES.length];
   return { colour: `route-${(at % COLOURS) + 1}`, dash };
 }
 

@@ -82,7 +82,7 @@ export class EditableTable {
     const { name, cells } = this.#rows[row];
     const named = column === "name";
     input.value = named ? name : (cells[column] ?? "");
-    if (input.className) input.size = Math.max(input.value.length, 1);
+    input.size = Math.max(input.value.length, 1);
     const label = named ? `Name of ${this.#noun.toLowerCase()} ${Number(row) + 1}` : `${this.#columns[column].title} of ${name}`;
     input.setAttribute("aria-label", label);
   }
