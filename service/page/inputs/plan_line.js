@@ -1,4 +1,4 @@
-/** Say above the Plan button what will be planned, and lead to where it is changed. */
+/** Say above the Plan button what will be planned, and lead to where it is changed, or on a phone to the stops. */
 
 import { duration } from "../common/durations.js";
 import { titled } from "../common/objectives.js";
@@ -13,6 +13,7 @@ export class PlanLine {
     this.#form = form;
     form.addEventListener("input", () => this.#say());
     element("change").addEventListener("click", () => this.#lead());
+    element("to-stops").addEventListener("click", () => lead(element("example")));
   }
 
   /** Takes the objectives of what will be planned. */
@@ -34,7 +35,11 @@ export class PlanLine {
   #lead() {
     const fields = [...document.querySelectorAll("#named :is(input, select), #coverage-fields input, #fields input")];
     const field = fields.find((each) => each.checkVisibility() && !each.disabled);
-    field?.closest("section").scrollIntoView({ block: "start" });
-    field?.focus({ preventScroll: true });
+    if (field) lead(field);
   }
+}
+
+function lead(field) {
+  field.closest("section").scrollIntoView({ block: "start" });
+  field.focus({ preventScroll: true });
 }

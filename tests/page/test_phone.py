@@ -1,0 +1,48 @@
+"""The page on a phone: Plan, the stops and the examples are one touch away."""
+
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import PHONE, needs_chromium, open_page, wait_until_planned
+
+pytestmark = needs_chromium
+
+SCROLLED = ["scrollTo(0, 0)", "scrollTo(0, 2000)", "scrollTo(0, document.body.scrollHeight)"]
+
+
+def test_plan_stays_at_the_bottom_of_a_phone_and_covers_nothing(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, released, PHONE) as page:
+        wait_until_planned(page)
+        for scroll in SCROLLED:
+            page.evaluate(scroll)
+            for name in ("Plan", "Stop", "Stops and examples"):
+                button = page.get_by_role("button", name=name, exact=True)
+                expect(button).to_be_in_viewport(ratio=1)
+        assert bottom(page, "main") <= page.evaluate("innerHeight") - height(page, ".bar")
+        page.get_by_role("button", name="Stops and examples").click()
+        example = page.get_by_label("Example", exact=True)
+        expect(example).to_be_focused()
+        expect(example).to_be_in_viewport(ratio=1)
+        page.get_by_label("Seconds of planning").fill("soon")
+        page.get_by_role("button", name="Plan", exact=True).click()
+        fault = page.locator("#time_limit-fault")
+        expect(fault).not_to_be_empty()
+        shown = page.evaluate("innerHeight") - height(page, ".bar")
+        assert bottom(page, "#time_limit-fault") <= shown
+
+
+def test_a_desk_has_no_button_that_leads_to_the_stops(planned: Page) -> None:
+    expect(planned.get_by_role("button", name="Stops and examples")).to_be_hidden()
+
+
+def bottom(page: Page, place: str) -> float:
+    box = page.locator(place).bounding_box()
+    assert box is not None
+    return box["y"] + box["height"]
+
+
+def height(page: Page, place: str) -> float:
+    box = page.locator(place).bounding_box()
+    assert box is not None
+    return box["height"]
