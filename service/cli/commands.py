@@ -218,13 +218,14 @@ def serve(
     workers: options.Workers = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
-    if not any(name.upper() == "PARETOUR_REDIS_URL" for name in os.environ):
-        from service.jobs.workers import fork_server
+    from service.jobs.workers import fork_server
 
+    if not any(name.upper() == "PARETOUR_REDIS_URL" for name in os.environ):
         fork_server.start()  # now: it imports as long as this process does
-    from service import server
-    from service.cli.configuration import load_settings, load_with
-    from service.cli.errors import exit_on_error
+    with fork_server.interrupts_blocked():
+        from service import server
+        from service.cli.configuration import load_settings, load_with
+        from service.cli.errors import exit_on_error
 
     with exit_on_error():
         settings = load_settings(host=host, port=port, workers=workers)

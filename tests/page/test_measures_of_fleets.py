@@ -287,6 +287,7 @@ def test_routes_name_their_day_and_count_no_depot_as_a_stop(late: Page) -> None:
 
 
 def test_exports_have_the_shift_and_the_depot_in_the_middle(late: Page) -> None:
+    select(late, "Home")
     head, first, *_ = saved(late, "CSV").decode().splitlines()
     assert head.split(",")[4:6] == ["vehicle", "shift"]
     assert first.split(",")[4:6] == ["van", "0"]

@@ -8,6 +8,8 @@ import multiprocessing
 import os
 import signal
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from multiprocessing import forkserver, resource_tracker
 
 CONTEXT = multiprocessing.get_context("forkserver")
@@ -26,8 +28,15 @@ def start() -> None:
         usable = (each for each in _SHORT_FOLDERS if os.access(each, os.W_OK | os.X_OK))
         tempfile.tempdir = next(usable, tempfile.tempdir)
     resource_tracker.ensure_running()  # else it is started by the next, and allows interrupts again
-    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # which it inherits
-    try:
+    with interrupts_blocked():  # which it inherits
         forkserver.ensure_running()
+
+
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Let an interrupt wait until the end. A module that one meets may fail with another error."""
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
