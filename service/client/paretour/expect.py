@@ -8,7 +8,6 @@ import json
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from itertools import chain
 from reprlib import Repr
@@ -172,8 +171,8 @@ def rows(
 ) -> NDArray[Any]:
     """Return a member of all items, lists of numbers of one width, as the rows of an array.
 
-    They are read at once, as one by one takes several times as long, and one by one if something
-    is wrong with one of them, to say which.
+    They are read at once, as one by one takes several times as long. If something is wrong, they
+    are read one by one, to say which of them it is.
 
     Args:
         items: The items.
@@ -181,9 +180,12 @@ def rows(
         reader: `floats` or `indexes`.
         width: The length of each list.
     """
-    with suppress(UnexpectedAnswer):
+    try:
         return reader(None, width)([item.document.get(name) for item in items], name)
-    return np.array([item.read(name, reader(width)) for item in items])
+    except UnexpectedAnswer:
+        for item in items:
+            item.read(name, reader(width))
+        raise
 
 
 def _array(

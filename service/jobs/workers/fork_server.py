@@ -28,13 +28,13 @@ def start() -> None:
         usable = (each for each in _SHORT_FOLDERS if os.access(each, os.W_OK | os.X_OK))
         tempfile.tempdir = next(usable, tempfile.tempdir)
     resource_tracker.ensure_running()  # else it is started by the next, and allows interrupts again
-    with interrupts_blocked():  # which it inherits
+    with interrupts_blocked():  # the process begins with them blocked too
         forkserver.ensure_running()
 
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Let an interrupt wait until the end. A module that one meets may fail with another error."""
+    """Let Ctrl-C wait until the end: a module that it interrupts may fail with another error."""
     blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
