@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from tests.helpers.browsing import (
     DESK,
@@ -67,6 +67,15 @@ def plan(page: Page) -> None:
     with page.expect_response(lambda answer: answer.request.method == "POST"):
         page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
+
+
+def climb_more(route: Route) -> None:
+    """Answer with the front that was asked for, whose tours climb a thousand times as much."""
+    answer = route.fetch()
+    found = answer.json()
+    for tour in found.get("front", []):
+        tour["lengths"][2] *= 1000
+    route.fulfill(response=answer, json=found)
 
 
 def limit(page: Page, name: str) -> Locator:
@@ -155,12 +164,28 @@ def test_limits_leave_a_chosen_tour_selected_that_is_within_them(page: Page) -> 
 def test_limits_stay_when_the_front_is_planned_again(page: Page) -> None:
     for name in ("Way", "Climb"):
         limit(page, name).press("Home")
-        for _ in range(5):
-            limit(page, name).press("ArrowRight")
+        limit(page, name).press("PageUp")
+        limit(page, name).press("PageUp")  # so wide that a front of another search has tours within
     limits = [float(limit(page, name).input_value()) for name in ("Way", "Climb")]
     plan(page)
     kept = [float(limit(page, name).input_value()) for name in ("Way", "Climb")]
     assert kept == pytest.approx(limits, rel=0.01)
+
+
+def test_a_limit_that_another_front_cannot_keep_is_lifted_and_that_is_said(page: Page) -> None:
+    limit(page, "Way").press("Home")
+    limit(page, "Climb").press("Home")
+    climb = limit(page, "Climb").get_attribute("aria-valuetext") or ""
+    page.route("**/front/*", climb_more)
+    plan(page)
+    page.unroute_all()
+    said = climb.partition(";")[0]
+    expect(page.locator("#caps-said")).to_contain_text(
+        f"Lifted, as nothing is within all limits: climb {said}."
+    )
+    expect(limit(page, "Climb")).to_have_attribute("aria-valuetext", re.compile("^no limit"))
+    plan(page)
+    expect(page.locator("#caps-said")).not_to_contain_text("Lifted")
 
 
 @pytest.mark.parametrize("width", [DESK, PHONE])

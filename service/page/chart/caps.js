@@ -74,8 +74,15 @@ export class Caps {
   /** The limits in words, or how to set one. */
   get said() {
     const left = this.within.filter(Boolean).length;
-    if (left === this.#front.length) return "No limits. Move a slider to say what an objective may be at most.";
-    return `${left} of ${this.#front.length} are within the limits.`;
+    const lifted = this.#lifted.map((axis) => `${this.#objectives[axis].name} at most ${this.#amount(axis, this.#wanted[axis])}`);
+    const begun = lifted.length ? `Lifted, as nothing is within all limits: ${lifted.join(", ")}. ` : "";
+    if (left < this.#front.length) return `${begun}${left} of ${this.#front.length} are within the limits.`;
+    return begun || "No limits. Move a slider to say what an objective may be at most.";
+  }
+
+  /** The objectives whose limits no tour of the front is within. */
+  get #lifted() {
+    return this.#limits.flatMap((most, axis) => (this.#wanted[axis] < most ? [axis] : []));
   }
 
   /** Removes the limits that a chosen tour is beyond. */
