@@ -151,9 +151,7 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
 class Settings(BaseSettings):
     """All settings. A variable is PARETOUR_ and the field's name in capitals, or its alias."""
 
-    model_config = SettingsConfigDict(
-        env_prefix="PARETOUR_", frozen=True, use_attribute_docstrings=True
-    )
+    model_config = SettingsConfigDict(env_prefix="PARETOUR_", frozen=True)
 
     # The address, and the processes that plan.
     host: str = "127.0.0.1"

@@ -10,11 +10,12 @@ from service.__main__ import main
 from service.cli.configuration import load_settings
 from service.cli.errors import UsageError
 from service.settings import Settings
+from tests.helpers.documented import sentences_of
 
 
 def test_every_setting_has_a_default_and_says_what_it_is() -> None:
     Settings()
-    assert all(field.description for field in Settings.model_fields.values())
+    assert all(sentences_of(Settings).get(name) for name in Settings.model_fields)
 
 
 def test_a_setting_is_read_from_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:

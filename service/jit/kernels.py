@@ -18,6 +18,7 @@ from numba import types
 from numba.core import config
 
 from service.jit.cache import CACHED, cache_apart
+from service.jit.loading import use_cache
 from service.jit.native_code import generate_late
 
 P = ParamSpec("P")
@@ -80,7 +81,10 @@ def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
 def _dispatcher(function: Callable[P, R], **options: bool) -> Any:
     compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
     options |= {"nogil": True, "no_cfunc_wrapper": True}
-    return compile_lazily(cache=CACHED, error_model="numpy", **options)(function)
+    dispatcher = compile_lazily(error_model="numpy", **options)(function)
+    if CACHED and not config.DISABLE_JIT:  # type: ignore[attr-defined]  # as above
+        use_cache(dispatcher)
+    return dispatcher
 
 
 def _call_template(template: Any, types: Sequence[Any], named: Mapping[str, Any]) -> Any:

@@ -3,9 +3,10 @@
 Compiling takes one process most of a minute. With several processors and a cache, several processes
 compile pieces into the cache, and the process that needs them loads them from there.
 
-`python -m service.jobs.compiled_code QUEUE DONE` compiles the pieces whose numbers it reads from a
-pipe, one after another, and ends when its standard input does. All processes read from the same
-pipe. To another they write a number when a piece is done, and a sign for each function.
+`python -m service.jobs.compiled_code QUEUE DONE PROCESSES` is one of these processes, and forks the
+others once it has imported what they need. Each compiles pieces whose numbers it reads from a pipe,
+one after another, and ends when the standard input does. To another pipe it writes a number when a
+piece is done, and a sign for each function.
 """
 
 import gc
@@ -21,6 +22,7 @@ from typing import NamedTuple
 
 from numba import config
 from numba.core.event import Event, Listener, install_listener
+from numba.core.registry import cpu_target
 
 from service import jit, own_code
 from service.coverage import detours
@@ -78,7 +80,8 @@ def warm_up(
         parts: The parts.
         tell: Called with each part once it is loaded, and while some are compiled a few times a
             second with how far that is.
-        before_compiling: Called once all parts that are in the cache are loaded.
+        before_compiling: Called once all parts that are in the cache are loaded, before any part is
+            compiled in this process.
     """
     missing = []
     for part in (each for each in Part if each in parts):
@@ -86,13 +89,11 @@ def warm_up(
             tell(part)
         else:
             missing.append(part)
-    before_compiling()
-    if not missing:
-        return
-    processes = len(os.sched_getaffinity(0)) if jit.CACHED else 1
+    processes = len(os.sched_getaffinity(0)) if jit.CACHED and missing else 1
     progress = _CompilationProgress(missing, processes, tell)
-    if processes > 1:
-        for part in _compiled_elsewhere(missing, processes, progress):
+    with _compilers(missing, processes) as done:
+        before_compiling()
+        for part in _compiled_elsewhere(missing, done, progress):
             _WORK[part].whole()
             tell(part)
             missing.remove(part)
@@ -178,33 +179,33 @@ class _CompilationProgress:
 
 
 def _compiled_elsewhere(
-    parts: Sequence[Part], processes: int, progress: _CompilationProgress
+    parts: Collection[Part], done: int, progress: _CompilationProgress
 ) -> Iterator[Part]:
-    """Compile parts into the cache in other processes, and yield each when it is there.
+    """Yield each part that other processes have compiled into the cache, until they have ended.
 
     One is never yielded if a process that compiled some of it was killed.
     """
-    numbers = [number for number, (part, _) in enumerate(_PIECES) if part in parts]
-    left = Counter(_PIECES[number][0] for number in numbers)
-    with _compilers(numbers, processes) as done:
-        while signs := os.read(done, 1024):
-            for sign in signs:
-                if sign == _FUNCTION:
-                    progress.count()
-                    continue
-                part, _ = _PIECES[sign]
-                left[part] -= 1
-                if not left[part]:
-                    yield part
+    left = Counter(part for part, _ in _PIECES if part in parts)
+    while signs := os.read(done, 1024):
+        for sign in signs:
+            if sign == _FUNCTION:
+                progress.count()
+                continue
+            part, _ = _PIECES[sign]
+            left[part] -= 1
+            if not left[part]:
+                yield part
 
 
 @contextmanager
-def _compilers(numbers: Sequence[int], processes: int) -> Iterator[int]:
-    """Compile pieces in processes, which end with this one at the latest.
+def _compilers(parts: Collection[Part], processes: int) -> Iterator[int]:
+    """Compile parts in several processes, which end with this one at the latest; not in one alone.
 
     Yields:
         What they write to a pipe, which ends when the last of them does.
     """
+    numbers = [number for number, (part, _) in enumerate(_PIECES) if part in parts]
+    processes = min(processes, len(numbers))
     with ExitStack() as stack:
         queue, end_of_queue = os.pipe()
         os.write(end_of_queue, bytes(numbers))
@@ -212,16 +213,15 @@ def _compilers(numbers: Sequence[int], processes: int) -> Iterator[int]:
         stack.callback(os.close, queue)
         done, tell = os.pipe()
         stack.callback(os.close, done)
-        for _ in range(min(processes, len(numbers))):
+        if processes > 1:
             process = subprocess.Popen(
-                [sys.executable, "-m", __name__, str(queue), str(tell)],
-                stdin=subprocess.PIPE,
+                [sys.executable, "-m", __name__, *map(str, (queue, tell, processes))],
+                stdin=subprocess.PIPE,  # which ends when this block does
                 pass_fds=[queue, tell],
                 env={**os.environ, **own_code.variables()},
                 process_group=0,  # so that Ctrl-C does not end it
             )
             stack.enter_context(process)
-            stack.callback(process.kill)
         os.close(tell)
         yield done
 
@@ -231,12 +231,20 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
+def _fork(processes: int) -> None:
+    """Continue as so many processes, which share what was imported."""
+    cpu_target.target_context.refresh()  # imports what numba compiles with
+    gc.freeze()
+    for _ in range(processes - 1):
+        if not os.fork():
+            return
+
+
 def _compile_pieces(queue: int, done: int) -> None:
     """Compile the pieces whose numbers are in a pipe, and say to another what is done.
 
     Compiling makes objects that stay, so Python seldom looks for those that could go.
     """
-    gc.freeze()
     gc.set_threshold(20_000)
     with install_listener("numba:compile", _Count(lambda: os.write(done, bytes([_FUNCTION])))):
         while number := os.read(queue, 1):
@@ -246,5 +254,7 @@ def _compile_pieces(queue: int, done: int) -> None:
 
 
 if __name__ == "__main__":
+    *_pipes, _processes = map(int, sys.argv[1:])
+    _fork(_processes)
     Thread(target=_end_with_parent, daemon=True).start()
-    _compile_pieces(*map(int, sys.argv[1:]))
+    _compile_pieces(*_pipes)

@@ -1,7 +1,7 @@
 """Compile the search, or load it from the cache: by searches of a few cities that use all of it.
 
-Two processes compile a part side by side. So each part has two pieces, which share little: the one
-begins with what the local search calls, and the other compiles what that needs last.
+Two processes compile a part side by side, and load what the other one has compiled before. So each
+part has two pieces, which take about as long and begin with what they do not share.
 """
 
 from itertools import islice
@@ -44,29 +44,33 @@ def few_cities() -> None:
 
 
 def two_opt() -> None:
-    """Compile the local search by two-opt."""
-    search = _search(_instance(coordinates=True))
+    """Compile the local search by two-opt, the first tour, and the enumeration of few cities."""
+    instance = _instance(coordinates=True)
+    search = _search(instance)
     _descend(search, search.local_search)
-    fill_gaps(search.state, 1)
+    scalarization = search.descents.scalarization(0)
+    _offer(search, search.local_search, scalarization)
+    constructed_tour(instance, scalarization, greedy=False)
+    exact_tours(_instance(coordinates=True, n=5))
 
 
 def beside_two_opt() -> None:
-    """Compile what a search by two-opt needs besides: archive, candidates, bound, enumeration."""
+    """Compile what a search by two-opt needs besides: bound, archive, candidates."""
     instance = _instance(coordinates=True)
+    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
+    hypervolume_bound(instance, instance.reference_point)
     search = _search(instance)
     for _ in search.pool_candidates():
         pass
-    scalarization = search.descents.scalarization(0)
-    rank_candidates(search.pool, scalarization)
+    for number in range(WEIGHTS):
+        scalarization = search.descents.scalarization(number)
+        rank_candidates(search.pool, scalarization)
     search.add(_TOUR[np.newaxis])
     search.not_covered(_TOUR[np.newaxis])
     scalarization_at(search.state, 0)
     search.descents.load_start(search.local_search, scalarization)
-    _offer(search, search.local_search, scalarization)
     dominated_area(search.state.archive, *search.corner)
-    exact_tours(_instance(coordinates=True, n=5))
-    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
-    hypervolume_bound(instance, instance.reference_point)
+    fill_gaps(search.state, 1)
 
 
 def more_cities() -> None:

@@ -31,6 +31,7 @@ from tests.guide.pages import (
 from tests.guide.sessions import RUN, run_page, write_inputs
 from tests.guide.tree import PAGE as TREE_PAGE
 from tests.guide.tree import named, tree
+from tests.helpers.documented import sentences_of
 from tests.helpers.serving import app_of
 
 # Commands that a test of their own runs or checks: deployment, the image, set-up and linters.
@@ -278,11 +279,11 @@ def test_the_help_of_the_client_has_the_sentences_of_the_service() -> None:
 
 def test_every_setting_is_described() -> None:
     text = (GUIDE / "run-it-in-production.md").read_text()
+    sentences = sentences_of(Settings)
     for name, field in Settings.model_fields.items():
         variable = field.validation_alias or f"PARETOUR_{name.upper()}"
         assert f"| `{variable}` |" in text
-        assert field.description is not None
-        assert field.description in text
+        assert sentences[name] in text
 
 
 def test_every_limit_names_a_setting_and_a_code_that_there_are() -> None:

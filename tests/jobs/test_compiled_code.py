@@ -96,7 +96,7 @@ assert not any([load_from_cache(part) for part in Part])
 def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path) -> None:
     queue, end_of_queue = os.pipe()
     os.write(end_of_queue, bytes([0]))
-    command = [sys.executable, "-m", "service.jobs.compiled_code", str(queue), "1"]
+    command = [sys.executable, "-m", "service.jobs.compiled_code", str(queue), "1", "1"]
     ran = subprocess.run(
         command,
         stdin=subprocess.DEVNULL,

@@ -8,7 +8,6 @@ Do not import the service or ONNX Runtime: a fork copies the locks of their thre
 threads.
 """
 
-import scipy.linalg  # numba imports it when it first loads compiled code
 import scipy.ndimage  # noqa: F401  # as the first survey does
 
 import service.kinds.run  # noqa: F401

@@ -1,0 +1,47 @@
+"""Load compiled code without what compiles it.
+
+Before numba loads a function from its cache, it imports all that it could compile. And it imports
+the modules of its own whose code the function contains, one of which imports half of scipy. That
+takes longer than to load a search. A process that compiles imports all of it then.
+"""
+
+from importlib import import_module
+from typing import Any
+
+from numba.core import caching, environment
+from numba.core.environment import Environment, lookup_environment
+from numba.core.runtime.nrt import rtsys
+
+_NumbaCache: Any = caching.FunctionCache  # it has no types
+
+
+class _Cache(_NumbaCache):  # type: ignore[misc]
+    """A cache that loads functions, and nothing else but what manages the memory of arrays."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
+
+
+def _rebuild_environment(module: str, constants: list[Any], name: str) -> Any:
+    """Return the environment of a cached function: its constants, and the names in its module.
+
+    Compiled code looks up no names; numba's own modules are not imported for them.
+    """
+    found = lookup_environment(name)
+    if found is None:
+        numbas = module.startswith("numba.")
+        found = Environment({"__name__": module} if numbas else vars(import_module(module)))
+        found.consts[:] = constants
+        found.env_name = name
+        Environment._memo[name] = found  # noqa: SLF001  # it has no setter
+    return found
+
+
+def use_cache(dispatcher: Any) -> None:
+    """Let the dispatcher of a function load what it has compiled before."""
+    dispatcher._cache = _Cache(dispatcher.py_func)  # noqa: SLF001  # as its enable_caching does
+
+
+environment._rebuild_env = _rebuild_environment  # noqa: SLF001
