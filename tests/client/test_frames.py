@@ -36,6 +36,32 @@ def test_a_frame_of_coordinates_is_its_rows() -> None:
     }
 
 
+@pytest.mark.parametrize(
+    ("instance", "member"),
+    [
+        (np.ones((5, 4)), "coordinates"),
+        ([[0, 1, 2, 3], [4, 5, 6, 7]], "coordinates"),
+        ([], "coordinates"),
+        (pd.DataFrame(np.ones((5, 6))), "coordinates"),
+        (np.ones((2, 5, 5)), "matrices"),
+        ([[[0, None], [1, 0]], [[0, 1], [1, 0]]], "matrices"),
+        ([COSTS, COSTS], "matrices"),
+        ([{"id": "a"}, {"id": "b"}], "stops"),
+        (STOPS, "stops"),
+    ],
+)
+def test_an_instance_is_the_member_that_it_looks_like(instance: Any, member: str) -> None:
+    plan, named = front_plan({"size": 7}, instance), front_plan({"size": 7, member: instance})  # type: ignore[misc]
+    assert (plan.json, plan.file) == (named.json, named.file)
+
+
+def test_what_is_no_instance_is_refused_and_so_are_two() -> None:
+    with pytest.raises(ValueError, match=r"instance must be coordinates .*, got 1 dimensions"):
+        front_plan({}, "berlin52.tsp")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"an instance before the members .*, and matrices"):
+        front_plan({"matrices": np.ones((2, 3, 3))}, np.ones((3, 4)))
+
+
 def test_two_frames_of_costs_are_a_file() -> None:
     plan = front_plan({"matrices": [COSTS, 10 * COSTS]})
     assert plan.file is not None

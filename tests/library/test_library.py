@@ -33,7 +33,7 @@ def python(code: str, *options: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_a_front_has_the_lengths_of_its_tours() -> None:
-    front = paretour.plan(coordinates=CITIES, time_limit=0.1)
+    front = paretour.plan(CITIES, time_limit=0.1)
     for tour in front:
         way = CITIES[np.append(tour.tour, tour.tour[0])].reshape(-1, 2, 2)
         assert np.linalg.norm(np.diff(way, axis=0), axis=2).sum(axis=0) == pytest.approx(
@@ -127,7 +127,7 @@ def test_many_are_planned_in_order_in_processes_of_a_program_without_guard(tmp_p
     program.write_text(
         "import numpy as np, paretour\n"
         "given = [np.random.default_rng(n).random((n, 4)) for n in (5, 7, 6, 8)]\n"
-        "many = [{'coordinates': each} for each in given]\n"
+        "many = [{'coordinates': given[0]}, *given[1:]]\n"
         "fronts = paretour.plan_many(many, workers=2, progress=True, time_limit=0.05)\n"
         "print([front.tours.shape[1] for front in fronts])\n"
         "try:\n"

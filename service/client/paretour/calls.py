@@ -24,6 +24,7 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    Instance,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
@@ -90,9 +91,16 @@ class Calls:
     patience: float
 
     @explaining(FrontRequest)
-    def front(self, **request: Unpack[FrontRequest]) -> Call[Front]:
-        """Plan a front and wait for it, until its time limit or until nothing more is found."""
-        return self.plan(front_plan(request))
+    def front(
+        self, instance: Instance | None = None, /, **request: Unpack[FrontRequest]
+    ) -> Call[Front]:
+        """Plan a front and wait for it, until its time limit or until nothing more is found.
+
+        Args:
+            instance: Coordinates, matrices or stops, unless they are among the members.
+            **request: The members of the request.
+        """
+        return self.plan(front_plan(request, instance))
 
     @explaining(CoverageRequest)
     def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Call[Front]:

@@ -44,6 +44,11 @@ def without_frames(value: Any, name: str = "") -> Any:
     return _stops(value) if name == "stops" else _numbers(value, name)
 
 
+def has_ids(frame: Any) -> bool:
+    """Return whether a DataFrame is one of stops: it names them, or has points."""
+    return hasattr(frame, "to_crs") or bool(_column(frame, _IDS, needed=False))
+
+
 def _numbers(frame: Any, name: str) -> NDArray[Any]:
     """Return the numbers of a DataFrame, or of one column, as an array."""
     cells = np.asarray(frame.to_numpy())

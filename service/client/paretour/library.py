@@ -4,7 +4,7 @@ That needs the whole package, not the client alone. What plans is imported by th
 takes seconds and loads a compiler.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from concurrent.futures import as_completed
 from contextlib import nullcontext
 from functools import cache
@@ -18,6 +18,7 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    Instance,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
@@ -31,10 +32,17 @@ _planned: WeakKeyDictionary[FrontOfAnyKind, Any] = WeakKeyDictionary()  # what `
 
 
 @explaining(FrontRequest)
-def plan(*, progress: bool = False, **request: Unpack[FrontRequest]) -> Front:
+def plan(
+    instance: Instance | None = None,
+    /,
+    *,
+    progress: bool = False,
+    **request: Unpack[FrontRequest],
+) -> Front:
     """Plan a front in this process, as `Client.front` has a service do. Ctrl-C ends it early.
 
     Args:
+        instance: Coordinates, matrices or stops, unless they are among the members.
         progress: Whether to show a bar, which needs tqdm.
         **request: The members of the request, as of `Client.front`.
 
@@ -45,7 +53,7 @@ def plan(*, progress: bool = False, **request: Unpack[FrontRequest]) -> Front:
         Refused: The request cannot be planned.
         ModuleNotFoundError: Only the client is installed, or tqdm is not.
     """
-    return cast(Front, _run(front_plan(request), progress))
+    return cast(Front, _run(front_plan(request, instance), progress))
 
 
 @explaining(CoverageRequest)
@@ -111,7 +119,7 @@ class InstanceFailed(Exception):
 
 
 def plan_many(
-    instances: Iterable[FrontRequest],
+    instances: Iterable[FrontRequest | Instance],
     *,
     workers: int | None = None,
     progress: bool = False,
@@ -120,7 +128,8 @@ def plan_many(
     """Plan a front of each instance in several processes, and return them in order.
 
     Args:
-        instances: The members of each request, as of `plan`.
+        instances: Coordinates, matrices or stops of each, or the members of its request, as of
+            `plan`.
         workers: The number of processes; by default one for each processor.
         progress: Whether to show a bar, which needs tqdm.
         **options: Members of all requests that lack them, as `time_limit`.
@@ -130,15 +139,15 @@ def plan_many(
         KeyboardInterrupt: Ctrl-C was pressed; all are given up.
         ModuleNotFoundError: Only the client is installed, or tqdm is not.
     """
-    requests = [cast(FrontRequest, {**options, **each}) for each in instances]
-    fronts: list[Any] = [None] * len(requests)
-    bars: Any = bar_class()(total=len(requests), desc="planning") if progress else nullcontext()
-    with whole_package("service.library.crew").Crew(workers, len(requests)) as crew, bars as bar:
+    instances = list(instances)
+    fronts: list[Any] = [None] * len(instances)
+    bars: Any = bar_class()(total=len(instances), desc="planning") if progress else nullcontext()
+    with whole_package("service.library.crew").Crew(workers, len(instances)) as crew, bars as bar:
 
-        def run(request: FrontRequest) -> Front:
-            return cast(Front, crew.run(front_plan(request)))
+        def run(instance: FrontRequest | Instance) -> Front:
+            return cast(Front, crew.run(_plan_of(instance, options)))
 
-        numbers = {crew.submit(run, request): index for index, request in enumerate(requests)}
+        numbers = {crew.submit(run, each): index for index, each in enumerate(instances)}
         for future in as_completed(numbers):
             index = numbers[future]
             if (error := future.exception()) is not None:
@@ -147,6 +156,13 @@ def plan_many(
             if bar is not None:
                 bar.update()
     return fronts
+
+
+def _plan_of(instance: FrontRequest | Instance, options: FrontRequest) -> Plan:
+    """Return the request that plans one of many instances."""
+    if isinstance(instance, Mapping):
+        return front_plan(cast(FrontRequest, {**options, **instance}))
+    return front_plan(options, instance)
 
 
 def _run(plan: Plan, progress: bool, earlier: Any = None) -> FrontOfAnyKind:

@@ -110,6 +110,10 @@ class FrontRequest(PlanRequest, total=False):
     geometry: Literal["straight", "roads"]
 
 
+# Coordinates, matrices or stops.
+Instance = ArrayLike | Sequence[Costs] | Sequence[ServedStopRequest] | Frame
+
+
 class FleetStopRequest(StopRequest, total=False):
     """A stop of a fleet, with its demands on the vehicle that visits it."""
 

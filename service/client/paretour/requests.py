@@ -9,11 +9,12 @@ from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.frames import COSTS, without_frames
+from paretour.frames import COSTS, has_ids, without_frames
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    Instance,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
@@ -23,6 +24,7 @@ from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the default of the service
 _OBJECTIVES = (2, 3, 4)
+_MEMBERS = {2: "coordinates", 3: "matrices"}  # by the dimensions of an array
 _BOUND_SECONDS = 5.0  # seconds: the most that the service takes to prove a bound
 
 
@@ -66,13 +68,21 @@ class Plan:
         return {"files": {name: (name, content) for name, content in parts.items()}}
 
 
-def front_plan(request: FrontRequest) -> Plan:
+def front_plan(request: FrontRequest, instance: Instance | None = None) -> Plan:
     """Return the request to POST /front, with matrices that are arrays as a NumPy file.
+
+    Args:
+        request: The members of the request.
+        instance: Its coordinates, its matrices or its stops, unless they are among the members.
+
+    Raises:
+        TypeError: They are among the members as well.
+        ValueError: The instance is none of these. Or as of without_frames.
 
     The file holds `matrices`, which may be DataFrames, or the matrices of all objectives, if these
     are arrays of numbers. Arrays of objects are sent as JSON, with null for None.
     """
-    members: dict[str, Any] = without_frames(request)
+    members: dict[str, Any] = without_frames({**request, **_named(instance, request)})
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
     if _fit_a_file(members.get("matrices")):
         members["matrices"] = np.stack(members["matrices"])
@@ -83,6 +93,33 @@ def front_plan(request: FrontRequest) -> Plan:
         return Plan("/front", members)
     named = [{k: v for k, v in each.items() if k != "matrix"} for each in objectives]
     return Plan("/front", {**members, "objectives": named}, _matrices_file(np.stack(matrices)))
+
+
+def _named(instance: Instance | None, request: FrontRequest) -> dict[str, Any]:
+    """Return an instance as the member of a request that it is."""
+    if instance is None:
+        return {}
+    known = [name for name in ("coordinates", "matrices", "stops") if name in request]
+    if known:
+        raise TypeError(f"there is an instance before the members of the request, and {known[0]}")
+    return {_kind_of(instance): instance}
+
+
+def _kind_of(instance: Instance) -> str:
+    """Return the name of the member of a request that an instance is."""
+    if hasattr(instance, "to_numpy"):
+        return "stops" if has_ids(instance) else "coordinates"
+    rows: Any = instance
+    first: Any = rows[0] if len(rows) else ()
+    if isinstance(first, Mapping):
+        return "stops"
+    dimensions = 1 + np.ndim(first)
+    if dimensions not in _MEMBERS:
+        raise ValueError(
+            "instance must be coordinates (a row for each city), matrices (a square for each "
+            f"objective) or stops (each with an id), got {dimensions} dimensions"
+        )
+    return _MEMBERS[dimensions]
 
 
 def _fit_a_file(matrices: Any) -> bool:
