@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
+from service.files.plain_text import with_whole_names, without_lines
 from service.files.reading import Source, quoted
 
 Row = tuple[int, list[str]]  # the number of a row, as a spreadsheet counts, and its fields
@@ -75,7 +76,7 @@ def table_of_csv(source: Source, text: str) -> Table:
     """
     first, _, rest = text.partition("\n")
     declared = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
-    body = rest if declared else text
+    body = without_lines(rest if declared else text)
     separator = declared[1] if declared else _separator(body)
     if separator not in (",", None):
         named = _SEPARATORS.get(separator, quoted(separator))
@@ -151,7 +152,7 @@ def _spaced_rows(text: str) -> Iterable[list[str]]:
     differ = len({len(row) for row in below}) > 1 and 2 * len(tabular) < len(below)
     if differ or (below and all(re.fullmatch(r'\s*("[^"]*"\s*)?', line) for line in lines[1:])):
         return ([line.strip().strip('"')] for line in lines)
-    return rows
+    return with_whole_names(rows, lambda word: number_in(word) is not None)
 
 
 def _csv_rows(source: Source, text: str, separator: str) -> Iterator[list[str]]:
