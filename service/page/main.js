@@ -153,6 +153,8 @@ function namesOf({ objectives: named, scale }) {
 }
 
 function plan() {
+  const { fault } = input;
+  if (fault) return fail(fault);
   const onGrid = kindOf(input.asked).onGrid;
   return run((mine) => planned(mine.plan(input.request)), onGrid ? "The paths between the places of the map are being found." : undefined);
 }
@@ -177,8 +179,7 @@ async function replan() {
     const { id } = answer;
     await run((mine) => replanned(mine.replan(id, body), longer), "The rest of the tour is being planned.");
   } catch (error) {
-    if (!(error instanceof Problem)) throw error;
-    showFault("replan", error.message);
+    fail(error);
   }
 }
 

@@ -35,6 +35,33 @@ FLEET = json.dumps(
         "clock": "time",
     }
 )
+DAY = json.dumps(
+    {
+        "stops": [
+            {"id": f"order-{k}", "location": [24.93 + k % 3 / 100, 60.16 + k % 4 / 100]}
+            for k in range(7)
+        ],
+        "objectives": [
+            {"name": "way", "from": "great_circle"},
+            {
+                "name": "time",
+                "from": "great_circle",
+                "speed": 30,
+                "over_the_day": [[25200, 1], [27000, 1.6]],
+            },
+        ],
+        "departure": {"earliest": 25200, "latest": 30600},
+    }
+)
+MAP = json.dumps(
+    {
+        "grid": [[0] * 12] * 12,
+        "cell_size": 1,
+        "robot_radius": 0.1,
+        "cost_layer": [[row * column % 5 for row in range(12)] for column in range(12)],
+        "places": [[1, 1], [1, 9], [9, 5]],
+    }
+)
 SPEED = "Speed of the second objective, km/h"
 
 
@@ -51,13 +78,21 @@ def plan(page: Page) -> None:
         (FLEET, "Latitude of shop", "stops", "Latitude of shop is not understood"),
         (FLEET, "Count of van", "vehicles", "Count of van is not understood"),
         (FLEET, SPEED, "objectives", "The speed of the second objective must be"),
+        (DAY, "Leaves at, or from", "departure", "Leaves at must be a time, as 7:30."),
+        (DAY, "to", "departure-latest", "Leaves at must be a time, as 7:30."),
+        (DAY, "Rush hours", "hours", "Rush hours must be times and factors in order"),
+        (DAY, "Start", "start", "Start must be"),
+        (DAY, "Seconds of planning", "time_limit", "Seconds of planning must be a valid number"),
+        (MAP, "Tours", "size", "Tours must be a valid integer"),
+        (MAP, "Start", "start", "Start must be"),
+        (MAP, "Metres a cell", "cell_size", "Metres a cell must be a valid number"),
+        (MAP, "Robot’s radius, m", "robot_radius", "Robot’s radius, m must be a valid number"),
     ],
-    ids=["planes", "named", "on earth", "fleet", "vehicle", "speed"],
 )
 def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
     window: Page, content: str, label: str, fault: str, said: str
 ) -> None:
-    open_files(window, {"stops.json" if content is FLEET else "stops.csv": content})
+    open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
     window.get_by_label("Seconds of planning").fill("0.3")
     plan(window)
     wait_until_planned(window)

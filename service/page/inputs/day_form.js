@@ -2,7 +2,7 @@
 
 import { canHaveDay, changingOver, clockIn, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
 import { svgElement } from "../fleet/svg.js";
-import { tellFault } from "../planning/faults.js";
+import { tellUnread } from "../planning/faults.js";
 import { timeOfDay, timeText } from "../common/times_of_day.js";
 
 const [HOUR, DAY, LATEST] = [3600, 86400, 864000]; // seconds
@@ -20,6 +20,7 @@ const GIVEN = {
 
 const element = (id) => document.getElementById(id);
 const sliders = ENDS.map((id) => element(`${id}-slider`));
+const fields = [...ENDS, "hours"].map(element);
 
 export class DayForm {
   #asked = null;
@@ -38,27 +39,35 @@ export class DayForm {
 
   /** Takes a request that was opened: its time of day is unfolded if it has one. */
   open(asked) {
+    for (const field of fields) field.setCustomValidity("");
     this.show(asked);
     element("day").open = canHaveDay(asked) && departuresIn(asked) !== null;
   }
 
+  /** Shows the time of day of a changed request; what was typed and not understood stays in its field. */
   show(asked) {
     element("day").hidden = !canHaveDay(asked);
     if (element("day").hidden) return;
     this.#asked = asked;
     const [hours, times] = [hoursIn(asked), departuresIn(asked)];
-    for (const [axis, id] of ENDS.entries()) element(id).value = times ? written(times[axis]) : "";
+    for (const [axis, id] of ENDS.entries()) write(element(id), times ? written(times[axis]) : "");
     element("departure-sliders").hidden = !times;
     if (times) for (const [axis, slider] of sliders.entries()) place(slider, scaleOf(hours, times), times[axis]);
-    element("hours").value = hoursFrom(asked) ? "" : hoursText(hours);
+    write(element("hours"), hoursFrom(asked) ? "" : hoursText(hours));
     element("hours").disabled = Boolean(hoursFrom(asked)) || clockIn(asked) < 0;
     element("hours-help").textContent = helpOn(asked);
     draw(hours, times);
   }
 
+  /** Marks the fields whose text is not understood, and says what they must be; faults were cleared before. */
+  mark() {
+    for (const field of fields) if (!field.validity.valid) tellUnread(field);
+  }
+
   #typed(axis, text) {
     const found = timeOfDay(text);
-    if (text.trim() && (found === undefined || found > LATEST)) return tellFault("departure", NOT_A_TIME);
+    const isTime = !text.trim() || found <= LATEST;
+    if (!isRead(element(ENDS[axis]), isTime, NOT_A_TIME)) return;
     if (found === undefined) return axis ? this.#leave([0, 0].map(() => departuresIn(this.#asked)?.[0])) : this.#leave(null);
     this.#leave(pushed(departuresIn(this.#asked) ?? [found, found], axis, found));
   }
@@ -68,6 +77,7 @@ export class DayForm {
     const times = pushed(sliders.map((slider) => Number(slider.value)), axis, value);
     for (const [at, slider] of sliders.entries()) {
       place(slider, scaleOf(hoursIn(this.#asked), departuresIn(this.#asked)), times[at]);
+      element(ENDS[at]).setCustomValidity("");
       element(ENDS[at]).value = written(times[at]);
     }
     draw(hoursIn(this.#asked), times, departuresIn(this.#asked));
@@ -79,9 +89,19 @@ export class DayForm {
 
   #change(text) {
     const hours = hoursTyped(text);
-    if (!hours) return tellFault("departure", NOT_HOURS);
-    this.#onChange(changingOver(this.#asked, hours));
+    if (isRead(element("hours"), Boolean(hours), NOT_HOURS)) this.#onChange(changingOver(this.#asked, hours));
   }
+}
+
+/** Returns whether what was typed is understood; if it is not, the field is invalid until it is, and says so. */
+function isRead(field, understood, fault) {
+  field.setCustomValidity(understood ? "" : fault);
+  if (!understood) tellUnread(field);
+  return understood;
+}
+
+function write(field, text) {
+  if (field.validity.valid) field.value = text;
 }
 
 const written = (seconds) => timeText(Math.round(seconds)) ?? String(seconds);

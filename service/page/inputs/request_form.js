@@ -19,6 +19,7 @@ import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
+import { Problem } from "../planning/service.js";
 
 const element = (id) => document.getElementById(id);
 const titled = (titles, members) => titles.map((title) => ({ title, members }));
@@ -26,6 +27,7 @@ const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: 
 const FIXED = "No stop can be added: its costs to the other stops are not known. Open a file that has it.";
 
 export class RequestForm {
+  #form;
   #fields;
   #table;
   #objectiveFields;
@@ -59,6 +61,7 @@ export class RequestForm {
     this.#onEdited = onEdited;
     this.#settled = settled;
     this.#typedRows = new TypedRows(service, (found) => this.#take(found));
+    this.#form = form;
     this.#fields = new Fields(form);
     this.#planLine = new PlanLine(form);
     this.#objectiveFields = new ObjectiveFields(element("objectives"), (axis, change) => this.#measure(axis, change));
@@ -122,6 +125,12 @@ export class RequestForm {
   /** Whether something was typed that is not among the stops yet. */
   get unread() {
     return this.#typedRows.waiting;
+  }
+
+  /** The fault of the first field whose text is not understood, and so is not in the request; null if there is none. */
+  get fault() {
+    const field = this.#form.querySelector("input:invalid, textarea:invalid");
+    return field && new Problem({ detail: field.validationMessage, errors: [{ pointer: `/${field.id}` }] });
   }
 
   /** Reads what was typed now, as `TypedRows.settle` does. */
@@ -247,8 +256,9 @@ export class RequestForm {
     this.#onShaded(this.instance);
   }
 
-  /** Marks the cells of a fleet that are not understood, and says what they must be. */
+  /** Marks the fields and the cells of a fleet that are not understood, and says what they must be. */
   mark() {
+    this.#day.mark();
     if (this.#isFleet) this.#fleet.mark();
   }
 

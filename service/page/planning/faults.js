@@ -1,7 +1,8 @@
 /** Show each fault of an error at its field. */
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives", start_pose: "start", end_pose: "end" };
-for (const member of ["tour", "done", "remove", "add", "position", "now"]) FIELD_OF[member] = "replan";
+const REPLANNED = { tour: "at", done: "at", remove: "removed", add: "added", position: "place-vehicle", now: "now" };
+for (const member of Object.keys(REPLANNED)) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 
@@ -19,7 +20,7 @@ export function showFaults(problem) {
     told ??= said;
     said.textContent ||= sentence(cell && member !== "coordinates" ? ofCell(detail, cell) : inWords(detail, field));
     if (cell) cell.setAttribute("aria-invalid", "true");
-    first ??= cell ?? (member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row, part));
+    first ??= cell ?? (member === "cities" ? markText(row) : mark(REPLANNED[member] ?? field, member === "matrices" ? undefined : row, part));
   }
   first?.focus();
   told?.scrollIntoView({ block: "nearest" }); // the focus alone may leave it beyond the edge of the form
@@ -47,6 +48,12 @@ export function showFault(field, detail) {
 /** Says what is wrong with one field beside what is said of others; returns where that is said. */
 export function tellFault(field, detail) {
   return Object.assign(document.getElementById(`${field}-fault`), { textContent: sentence(detail) });
+}
+
+/** Marks a field that holds what is not understood, and says at it what it must be. */
+export function tellUnread(field) {
+  field.setAttribute("aria-invalid", "true");
+  tellFault(field.id, field.validationMessage);
 }
 
 /** The cell of the table of stops or vehicles that a fault is about; null if there is none. */

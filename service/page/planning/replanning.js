@@ -17,8 +17,10 @@ export class Way {
   /** The changes: `at` is the last stop visited on a tour, and `now` the time of day, by default that at which it leaves there. */
   body({ at, now, removed, added, vehicle }, { tour, times }) {
     const visit = (name) => tour.indexOf(this.names.indexOf(name));
-    const unknown = [at, ...removed].find((name) => name && visit(name) < 0);
-    if (unknown) throw new Problem({ code: "unknown-stop", detail: `the selected tour has no stop "${unknown}"` });
+    for (const [member, names] of Object.entries({ done: [at], remove: removed })) {
+      const unknown = names.find((name) => name && visit(name) < 0);
+      if (unknown) throw refusal("unknown-stop", member, `the selected tour has no stop "${unknown}"`);
+    }
     const keys = tour.map((city) => this.keys[city]);
     return {
       tour: keys,
@@ -64,6 +66,8 @@ export class Way {
 
 function timeNamed(text) {
   const time = timeOfDay(text);
-  if (time === undefined) throw new Problem({ code: "invalid-request", detail: `the time now must be as 8:15, got "${text}"` });
+  if (time === undefined) throw refusal("invalid-request", "now", `the time now must be as 8:15, got "${text}"`);
   return time;
 }
+
+const refusal = (code, member, detail) => new Problem({ code, detail, errors: [{ pointer: `/${member}` }] });
