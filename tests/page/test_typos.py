@@ -1,4 +1,4 @@
-"""A typo in a field: the plan before it stays, and the field says what is wrong."""
+"""A typo in a field, or a value that is refused: the plan stays, and the field says why."""
 
 import json
 
@@ -7,6 +7,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
     copied,
+    curl_body,
     needs_chromium,
     open_files,
     open_page,
@@ -25,7 +26,13 @@ FLEET = json.dumps(
         "stops": [
             {"id": "depot", "location": [24.94, 60.17]},
             {"id": "shop", "location": [24.95, 60.18], "demand": [2]},
-            {"id": "school", "location": [24.93, 60.16], "demand": [3]},
+            {
+                "id": "school",
+                "location": [24.93, 60.16],
+                "demand": [3],
+                "window": [28800, 43200],
+                "service": 300,
+            },
         ],
         "vehicles": [{"id": "van", "count": 2, "start": "depot", "end": "depot", "capacity": [8]}],
         "objectives": [
@@ -62,11 +69,19 @@ MAP = json.dumps(
         "places": [[1, 1], [1, 9], [9, 5]],
     }
 )
+RADIUS = "Robot\N{RIGHT SINGLE QUOTATION MARK}s radius, m"
 SPEED = "Speed of the second objective, km/h"
 
 
 def plan(page: Page) -> None:
     page.get_by_role("button", name="Plan", exact=True).click()
+
+
+def write(page: Page, label: str, text: str) -> None:
+    """Write a text into a field by its label, and leave it."""
+    field = page.get_by_label(label, exact=True)
+    field.fill(text)
+    field.press("Tab")
 
 
 @pytest.mark.parametrize(
@@ -75,8 +90,8 @@ def plan(page: Page) -> None:
         (PLANES, "x₂ of 2", "stops", "X₂ of stop 2 must be a valid number"),
         (NAMED, "y₂ of shop", "stops", "Y₂ of shop must be a number"),
         (ON_EARTH, "Latitude of shop", "stops", "Latitude of shop must be a number"),
-        (FLEET, "Latitude of shop", "stops", "Latitude of shop is not understood"),
-        (FLEET, "Count of van", "vehicles", "Count of van is not understood"),
+        (FLEET, "Latitude of shop", "stops", "Latitude of shop cannot be “6o.18”"),
+        (FLEET, "Count of van", "vehicles", "Count of van cannot be “6o.18”"),
         (FLEET, SPEED, "objectives", "The speed of the second objective must be"),
         (DAY, "Leaves at, or from", "departure", "Leaves at must be a time, as 7:30."),
         (DAY, "to", "departure-latest", "Leaves at must be a time, as 7:30."),
@@ -86,7 +101,7 @@ def plan(page: Page) -> None:
         (MAP, "Tours", "size", "Tours must be a valid integer"),
         (MAP, "Start", "start", "Start must be"),
         (MAP, "Metres a cell", "cell_size", "Metres a cell must be a valid number"),
-        (MAP, "Robot’s radius, m", "robot_radius", "Robot’s radius, m must be a valid number"),
+        (MAP, RADIUS, "robot_radius", f"{RADIUS} must be a valid number"),
     ],
 )
 def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
@@ -112,6 +127,70 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
     wait_until_planned(window)
     expect(window.locator(f"#{fault}-fault")).to_be_empty()
     expect(field).not_to_have_attribute("aria-invalid", "true")
+
+
+@pytest.mark.parametrize(
+    ("content", "label", "typed", "fault", "said"),
+    [
+        (FLEET, "Count of van", "0", "vehicles", "Count of van cannot be “0”: write a whole"),
+        (FLEET, "Capacity of van", "-8", "vehicles", "Capacity of van cannot be “-8”"),
+        (FLEET, "Demand of shop", "2.5", "stops", "Demand of shop cannot be “2.5”"),
+        (
+            FLEET,
+            "Latitude of shop",
+            "95",
+            "stops",
+            "Latitude of shop cannot be “95”: write degrees",
+        ),
+        (FLEET, "Window of school", "12:00-8:00", "stops", "cannot be “12:00-8:00”: write two"),
+        (FLEET, "Service of school", "-5", "stops", "Service of school cannot be “-5”"),
+        (FLEET, "Name of stop 2", "school", "stops", "Each stop needs a name of its own"),
+        (FLEET, "Name of vehicle 1", "", "vehicles", "Each vehicle needs a name of its own"),
+        (FLEET, "Second objective", "distance", "objectives", "Each objective needs a name"),
+        (FLEET, SPEED, "-5", "objectives", "The speed of the second objective must be"),
+        (ON_EARTH, "Latitude of shop", "95", "stops", "Latitude of shop must be"),
+        (NAMED, "Name of stop 2", "depot", "stops", "Each stop needs a name of its own"),
+        (PLANES, "First objective", "", "objectives", "Each objective needs a name of its own"),
+    ],
+)
+def test_a_value_that_is_refused_keeps_the_last_plan(
+    window: Page, content: str, label: str, typed: str, fault: str, said: str
+) -> None:
+    open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
+    window.get_by_label("Seconds of planning").fill("0.3")
+    plan(window)
+    wait_until_planned(window)
+    chosen = window.locator("#choice").inner_text()
+    field = window.get_by_label(label, exact=True).locator("visible=true")
+    before = field.input_value()
+    field.fill(typed)
+    field.press("Tab")
+    expect(window.locator("#choice")).to_have_text(chosen)
+    plan(window)
+    expect(window.locator(f"#{fault}-fault")).to_contain_text(said)
+    expect(field).to_be_focused()
+    expect(field).to_have_attribute("aria-invalid", "true")
+    expect(window.locator("#choice")).to_have_text(chosen)
+    field.fill(before)
+    field.press("Tab")
+    plan(window)
+    wait_until_planned(window)
+    expect(window.locator(f"#{fault}-fault")).to_be_empty()
+
+
+def test_a_name_that_was_taken_is_taken_over_once_it_is_free(window: Page) -> None:
+    open_files(window, {"stops.json": FLEET})
+    write(window, "Name of stop 3", "shop")
+    expect(window.locator("#stops-fault")).to_contain_text("Each stop needs a name of its own")
+    write(window, "Name of stop 1", "yard")
+    expect(window.locator("#stops-fault")).to_contain_text("Each stop needs a name of its own")
+    write(window, "Name of stop 2", "store")
+    expect(window.locator("#stops-fault")).to_be_empty()
+    stops = curl_body(window, "fleet")["stops"]
+    assert [each["id"] for each in stops] == ["yard", "store", "shop"]
+    write(window, "Name of stop 3", "store")
+    open_files(window, {"stops.json": FLEET})
+    expect(window.get_by_label("Name of stop 3")).to_have_value("school")
 
 
 def test_a_plan_that_a_typo_follows_can_be_replanned_and_linked(

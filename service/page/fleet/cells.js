@@ -9,21 +9,30 @@ const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+) ?s)?$/;
 const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
 const COUNTED = "a number in the unit of the times";
 
+/** The types of columns of numbers, which take only some numbers. */
+const NUMBERS = {
+  longitude: numbers((value) => Math.abs(value) <= 180, "degrees from -180 to 180"),
+  latitude: numbers((value) => Math.abs(value) <= 90, "degrees from -90 to 90"),
+  amount: numbers((value) => value >= 0, "a number, 0 or more"),
+  limit: numbers((value) => value > 0, "a number above 0"),
+  count: numbers((value) => value >= 1 && Number.isInteger(value), "a whole number, 1 or more"),
+};
+
 /**
  * The types of columns: how a value is written, and how a text is read, which is undefined if it is not
- * understood. Both take the seconds in a unit of time, undefined if that is not known. `hint` says what to write.
+ * understood, or a value that the service refuses. Both take the seconds in a unit of time, undefined if that is not known. `hint` says what to write.
  */
 const TYPES = {
   text: { write: String, read: (text) => text },
-  number: { write: String, read: number, hint: "a number" },
-  loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), number), hint: "whole numbers, as 2 or 2, 5" },
+  ...NUMBERS,
+  loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), load), hint: "whole numbers, as 2 or 2, 5" },
   words: { write: listed, read: (text) => pieces(text, /[;,|]/) },
   time: { write: writtenTime, read: time, hint: "a time, as 10:30" },
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },
   spans: {
     write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
-    read: (text, second) => all(pieces(text, /[;,]/), (each) => span(each, second)),
-    hint: "two times, as 8:00-12:30, or several with ; between",
+    read: (text, second) => inOrder(all(pieces(text, /[;,]/), (each) => span(each, second))),
+    hint: "two times in order, as 8:00-12:30, past midnight 22:00-26:00, or several with ; between",
   },
   breaks: {
     write: (value, second) => listOf(value).map((each) => `${spanText(each?.window, second)} ${lastingText(each?.length, second)}`).join("; "),
@@ -41,7 +50,9 @@ export function cellText(item, column, second) {
   return value === undefined || value === null ? "" : typeof value === "string" ? value : TYPES[column.type].write(value, second);
 }
 
-/** Whether a cell holds what is not understood. */
+export const isNumber = ({ type }) => type in NUMBERS;
+
+/** Whether a cell holds what is not understood, or refused. */
 export const isUnread = (item, column) => !["text", "words"].includes(column.type) && typeof valueOf(item, column) === "string";
 
 /** What to write into a cell of a column. */
@@ -79,6 +90,17 @@ function listed(value) {
   return listOf(value).join(", ");
 }
 
+/** A type of numbers. */
+function numbers(accepts, hint) {
+  return { write: String, read: (text) => only(accepts, number(text)), hint };
+}
+
+const only = (accepts, value) => (accepts(value) ? value : undefined);
+const load = (text) => only((value) => value >= 0 && Number.isInteger(value), number(text));
+
+/** Spans of which each begins after the one before has ended; undefined if one does not. */
+const inOrder = (spans) => only((found) => found?.every(([from], at) => !at || from > found[at - 1][1]), spans);
+
 function number(text) {
   const value = Number(text.replace(",", "."));
   return text.trim() && Number.isFinite(value) ? value : undefined;
@@ -86,7 +108,7 @@ function number(text) {
 
 function time(text, second) {
   const seconds = timeOfDay(text);
-  return seconds === undefined ? number(text) : second && seconds / second;
+  return seconds === undefined ? NUMBERS.amount.read(text) : second && seconds / second;
 }
 
 function writtenTime(value, second) {
@@ -106,7 +128,7 @@ function lastingText(value, second) {
 
 function span(text, second) {
   const ends = all(text.split(/\s*(?:[-–—]|\bto\b)\s*/), (each) => time(each, second));
-  return ends?.length === 2 ? ends : undefined;
+  return ends?.length === 2 && ends[0] <= ends[1] ? ends : undefined;
 }
 
 function pause(text, second) {

@@ -5,32 +5,32 @@
  * instead of one; its `type`, as in `cells.js`; the `list` of proposals; and `always`, if it is shown even if empty.
  */
 const OF_STOPS = [
-  { title: "Longitude", member: "location", part: 0, type: "number" },
-  { title: "Latitude", member: "location", part: 1, type: "number" },
+  { title: "Longitude", member: "location", part: 0, type: "longitude" },
+  { title: "Latitude", member: "location", part: 1, type: "latitude" },
   { title: "Demand", member: "demand", type: "loads" },
   { title: "Window", member: "window", several: "windows", type: "spans" },
   { title: "Service", member: "service", type: "lasting" },
   { title: "Due", member: "due", type: "time" },
   { title: "Released", member: "release", type: "time" },
   { title: "Skills", member: "skills", type: "words" },
-  { title: "Prize", member: "prize", type: "number" },
+  { title: "Prize", member: "prize", type: "amount" },
   { title: "Served by", member: "vehicle", type: "text", list: "vehicle-names" },
 ];
 const OF_VEHICLES = [
-  { title: "Count", member: "count", type: "number", always: true },
+  { title: "Count", member: "count", type: "count", always: true },
   { title: "Capacity", member: "capacity", type: "loads", always: true },
   { title: "Shift", member: "shift", several: "shifts", type: "spans", always: true },
   { title: "Start", member: "start", type: "text", list: "stop-names" },
   { title: "End", member: "end", type: "text", list: "stop-names" },
   { title: "Skills", member: "skills", type: "words" },
-  { title: "Most stops", member: "max_stops", type: "number" },
+  { title: "Most stops", member: "max_stops", type: "count" },
   { title: "Most overtime", member: "max_overtime", type: "lasting" },
   { title: "Breaks", member: "breaks", type: "breaks" },
   { title: "Loads again at", member: "reload", type: "words", list: "stop-names" },
-  { title: "Most trips", member: "max_trips", type: "number" },
+  { title: "Most trips", member: "max_trips", type: "count" },
   { title: "Load at start", member: "initial_load", type: "loads" },
-  { title: "Longest route", member: "longest", type: "number" },
-  { title: "Cost of use", member: "fixed", type: "number" },
+  { title: "Longest route", member: "longest", type: "limit" },
+  { title: "Cost of use", member: "fixed", type: "amount" },
 ];
 const ALL = { stops: OF_STOPS, vehicles: OF_VEHICLES };
 

@@ -4,7 +4,7 @@ import { tellFault } from "../planning/faults.js";
 import { counted } from "../common/numbers.js";
 import { EditableTable } from "../inputs/table.js";
 import { ObjectiveFields, isSpeedRead } from "../inputs/objective_fields.js";
-import { cellText, hintOf, isUnread, secondsIn, withText } from "./cells.js";
+import { cellText, hintOf, isNumber, isUnread, secondsIn, withText } from "./cells.js";
 import { columnsOf, isShown } from "./columns.js";
 import { vehiclesIn } from "./fleet_request.js";
 import { byIds, vehicleRenamed, withVehicle } from "./references.js";
@@ -54,6 +54,7 @@ export class FleetForm {
   open(asked) {
     this.#asked = asked;
     this.#added = { stops: new Set(), vehicles: new Set() };
+    this.#vehicles.forget();
     for (const each of document.querySelectorAll(".of-fleet")) each.hidden = !asked;
     element("objectives").hidden = Boolean(asked);
     if (asked) this.#showTrade();
@@ -101,7 +102,7 @@ export class FleetForm {
   #show(name, table, second) {
     const columns = this.#shown(name);
     const items = byIds(this.#asked)[name] ?? [];
-    const headed = columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: type !== "number" }));
+    const headed = columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: !isNumber({ type }) }));
     const rows = items.map((item) => ({
       name: item?.id ?? "",
       cells: columns.map((each) => cellText(item, each, second)),
@@ -163,4 +164,4 @@ function choose(id, options, value) {
 }
 
 const unread = (item, column, second) =>
-  `${column.title} of ${item.id} is not understood, got “${cellText(item, column, second)}”: write ${hintOf(column, second)}`;
+  `${column.title} of ${item.id} cannot be “${cellText(item, column, second)}”: write ${hintOf(column, second)}`;

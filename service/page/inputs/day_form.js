@@ -2,7 +2,7 @@
 
 import { canHaveDay, changingOver, clockIn, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
 import { svgElement } from "../fleet/svg.js";
-import { tellUnread } from "../planning/faults.js";
+import { isRead } from "./unread.js";
 import { timeOfDay, timeText } from "../common/times_of_day.js";
 
 const [HOUR, DAY, LATEST] = [3600, 86400, 864000]; // seconds
@@ -59,11 +59,6 @@ export class DayForm {
     draw(hours, times);
   }
 
-  /** Marks the fields whose text is not understood, and says what they must be; faults were cleared before. */
-  mark() {
-    for (const field of fields) if (!field.validity.valid) tellUnread(field);
-  }
-
   #typed(axis, text) {
     const found = timeOfDay(text);
     const isTime = !text.trim() || found <= LATEST;
@@ -91,13 +86,6 @@ export class DayForm {
     const hours = hoursTyped(text);
     if (isRead(element("hours"), Boolean(hours), NOT_HOURS)) this.#onChange(changingOver(this.#asked, hours));
   }
-}
-
-/** Returns whether what was typed is understood; if it is not, the field is invalid until it is, and says so. */
-function isRead(field, understood, fault) {
-  field.setCustomValidity(understood ? "" : fault);
-  if (!understood) tellUnread(field);
-  return understood;
 }
 
 function write(field, text) {

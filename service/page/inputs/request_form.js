@@ -19,11 +19,12 @@ import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
-import { Problem } from "../planning/service.js";
+import { firstFault, readAgain } from "./unread.js";
 
 const element = (id) => document.getElementById(id);
 const titled = (titles, members) => titles.map((title) => ({ title, members }));
 const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"], "location") };
+const DEGREES = [180, 90]; // the most of a longitude and of a latitude
 const FIXED = "No stop can be added: its costs to the other stops are not known. Open a file that has it.";
 
 export class RequestForm {
@@ -83,6 +84,7 @@ export class RequestForm {
     const [kind, form] = [kindOf(wanted), formOf(wanted)];
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? ownNames(wanted) ?? names;
+    this.#table.forget();
     element("typed").hidden = form !== "coordinates";
     element("named").hidden = !this.#isFleet && (Boolean(kind.movers || wanted.cost_layers) || !(kind.onGrid || form));
     this.#fleet.open(this.#isFleet ? this.#brought : null);
@@ -127,10 +129,9 @@ export class RequestForm {
     return this.#typedRows.waiting;
   }
 
-  /** The fault of the first field whose text is not understood, and so is not in the request; null if there is none. */
+  /** The fault of the first field whose text is not in the request, as it cannot be taken; null if there is none. */
   get fault() {
-    const field = this.#form.querySelector("input:invalid, textarea:invalid");
-    return field && new Problem({ detail: field.validationMessage, errors: [{ pointer: `/${field.id}` }] });
+    return firstFault(this.#form);
   }
 
   /** Reads what was typed now, as `TypedRows.settle` does. */
@@ -256,9 +257,9 @@ export class RequestForm {
     this.#onShaded(this.instance);
   }
 
-  /** Marks the fields and the cells of a fleet that are not understood, and says what they must be. */
+  /** Marks the fields and the cells of a fleet that hold what cannot be taken, and says what they must be. */
   mark() {
-    this.#day.mark();
+    readAgain(this.#form);
     if (this.#isFleet) this.#fleet.mark();
   }
 
@@ -287,7 +288,7 @@ export class RequestForm {
     const value = numberOr(text.replace(",", "."));
     if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
     else this.#show(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)));
-    this.#edited(true, Number.isFinite(value));
+    this.#edited(true, Number.isFinite(value) && !(this.#brought.stops && Math.abs(value) > DEGREES[column]));
   }
 
   #delete(row) {

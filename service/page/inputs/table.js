@@ -1,5 +1,7 @@
 /** A table that can be typed in: a name and the cells of each row, and a button that deletes it. */
 
+import { isRead } from "./unread.js";
+
 const PAGE = 50; // rows that are shown at once, since thousands of inputs are slow
 
 export class EditableTable {
@@ -34,6 +36,11 @@ export class EditableTable {
     this.#columns = columns;
     this.#rows = rows;
     this.#draw();
+  }
+
+  /** Drops what was typed, before other rows are opened. */
+  forget() {
+    this.#drawn = "";
   }
 
   /** Shows the rows up to this one, and puts the cursor into its name, or into one of its cells. */
@@ -81,15 +88,22 @@ export class EditableTable {
     const { row, column } = input.dataset;
     const { name, cells } = this.#rows[row];
     const named = column === "name";
-    input.value = named ? name : (cells[column] ?? "");
+    if (input.validity.valid) input.value = named ? name : (cells[column] ?? "");
     input.size = Math.max(input.value.length, 1);
     const label = named ? `Name of ${this.#noun.toLowerCase()} ${Number(row) + 1}` : `${this.#columns[column].title} of ${name}`;
     input.setAttribute("aria-label", label);
   }
 
-  #changed({ dataset: { row, column }, value }) {
-    if (column === "name") this.#told.onName(Number(row), value.trim());
-    else if (column !== undefined) this.#told.onCell(Number(row), Number(column), value.trim());
+  #changed(input) {
+    const { row, column } = input.dataset;
+    const value = input.value.trim();
+    if (column === "name") this.#named(input, Number(row), value);
+    else if (column !== undefined) this.#told.onCell(Number(row), Number(column), value);
+  }
+
+  #named(input, row, text) {
+    const isOwn = text && this.#rows.every(({ name }, at) => at === row || name !== text);
+    if (isRead(input, Boolean(isOwn), `Each ${this.#noun.toLowerCase()} needs a name of its own, got “${text}”`)) this.#told.onName(row, text);
   }
 
   #clicked(target) {

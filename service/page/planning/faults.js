@@ -50,12 +50,6 @@ export function tellFault(field, detail) {
   return Object.assign(document.getElementById(`${field}-fault`), { textContent: sentence(detail) });
 }
 
-/** Marks a field that holds what is not understood, and says at it what it must be. */
-export function tellUnread(field) {
-  field.setAttribute("aria-invalid", "true");
-  tellFault(field.id, field.validationMessage);
-}
-
 /** The cell of the table of stops or vehicles that a fault is about; null if there is none. */
 function cellOf([member, row, part, ...rest]) {
   if (member === "coordinates") return cellOfPlane(0, row, part);
@@ -92,7 +86,7 @@ function itemNamed(_, list, at, rest) {
 }
 
 function mark(name, row, part) {
-  const of = part === "speed" ? part : "source";
+  const of = ["name", "speed"].includes(part) ? part : "source";
   const sources = document.querySelectorAll(`#${name === "objectives" ? "named" : name} [data-axis="${row}"][data-member="${of}"]`);
   const field = [...sources].find((each) => each.checkVisibility()) ?? document.getElementById(name);
   if (!field) return null;
