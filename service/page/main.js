@@ -12,6 +12,7 @@ import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
+import { holdStill } from "./inputs/pressing.js";
 import { ReplanForm } from "./planning/replan_form.js";
 import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
@@ -388,6 +389,7 @@ form.addEventListener("input", ({ target }) => {
   element("file-fault").textContent = "";
   if (target.id === "cities") clearFaults();
 });
+holdStill();
 narrow.addEventListener("change", placeResult);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {

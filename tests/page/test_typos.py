@@ -6,6 +6,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
+    DESK,
+    PHONE,
     copied,
     curl_body,
     needs_chromium,
@@ -13,6 +15,7 @@ from tests.helpers.browsing import (
     open_page,
     saved,
     shown_front,
+    wait_for_next_frame,
     wait_until_planned,
 )
 
@@ -191,6 +194,35 @@ def test_a_name_that_was_taken_is_taken_over_once_it_is_free(window: Page) -> No
     write(window, "Name of stop 3", "store")
     open_files(window, {"stops.json": FLEET})
     expect(window.get_by_label("Name of stop 3")).to_have_value("school")
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+@pytest.mark.parametrize(
+    ("table", "button"), [("#request", "Plan"), ("#vehicles + * ~ .row", "Add")]
+)
+def test_a_click_is_not_lost_where_what_was_typed_makes_the_page_shorter(
+    browser: Browser, released: str, width: int, table: str, button: str
+) -> None:
+    with open_page(browser, released, width) as page:
+        page.set_viewport_size({"width": width, "height": 1700})
+        open_files(page, {"stops.json": FLEET})
+        write(page, "Count of van", "two")
+        fault = page.locator("#vehicles-fault")
+        expect(fault).not_to_be_empty()
+        page.get_by_label("Count of van").fill("3")
+        pressed = page.locator(table).get_by_role("button", name=button, exact=True)
+        pressed.scroll_into_view_if_needed()
+        box = pressed.bounding_box()
+        assert box is not None
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.mouse.down()
+        wait_for_next_frame(page)
+        page.mouse.up()
+        expect(fault).to_be_empty()
+        if button == "Plan":
+            wait_until_planned(page)
+        else:
+            expect(page.get_by_label("Name of vehicle 2")).to_be_focused()
 
 
 def test_a_plan_that_a_typo_follows_can_be_replanned_and_linked(
