@@ -19,6 +19,7 @@ import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
+import { Ongoing } from "./opening/ongoing.js";
 import { read, takePasted } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
 import { takeDropped } from "./opening/dropping.js";
@@ -49,11 +50,11 @@ const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"),
 const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan, result.wait);
+const reading = new Ongoing({ onChange: offer, onDone: () => planning || say("") });
 
 let way = null; // the way on which the front shown can be replanned
 let objectives = UNNAMED; // the names in the front shown
 let planning = null; // the planning that is running
-let reading = null; // ends the reading of files, of an example or of typed text that is running
 let answer = null; // the best front so far
 let answered = null; // its request
 let shown = false; // whether anything was opened or typed
@@ -62,7 +63,7 @@ let refusal = null; // the refusal of such files, while that example is fetched 
 
 /** Opens a request in the form, and shows its stops under their objectives. */
 function open(wanted, names) {
-  giveUp();
+  reading.end();
   element("order").open = !kindOf(wanted).onGrid && formOf(wanted) !== "coordinates";
   input.open(wanted, names);
 }
@@ -73,7 +74,7 @@ function edited(instance, fit) {
   awaited = null;
   leave();
   clear();
-  if (!reading) say("");
+  if (!reading.isRunning) say("");
   if (!instance) return;
   result.name((objectives = input.objectives), input.ids);
   result.clear(instance, { fit });
@@ -200,16 +201,9 @@ function leave() {
   offer();
 }
 
-/** Ends the reading that is running. */
-function giveUp() {
-  reading?.abort();
-  reading = null;
-  offer();
-}
-
 /** Enables Plan while nothing is read or planned, and Stop while something is. */
 function offer() {
-  const busy = Boolean(planning || reading);
+  const busy = Boolean(planning || reading.isRunning);
   element("plan").disabled = busy;
   element("stop").disabled = !busy;
   form.setAttribute("aria-busy", String(busy));
@@ -221,8 +215,8 @@ function clear() {
 }
 
 async function stop() {
-  if (reading) {
-    giveUp();
+  if (reading.isRunning) {
+    reading.end();
     if (awaited) examples.forget();
     awaited = null;
     say("Stopped.");
@@ -230,35 +224,18 @@ async function stop() {
   await planning?.stop().catch(fail);
 }
 
-/**
- * Runs a reading, and ends any other reading or planning; `task` takes an AbortController. Returns false if
- * the reading was ended. A refusal of files stays visible while the example is fetched that replaces them.
- */
-async function whileReading(words, task, told = null) {
+/** Runs a reading instead of any planning. A refusal of files stays visible while the example is fetched that replaces them. */
+function whileReading(words, task, told = null) {
   leave();
-  giveUp();
-  const mine = (reading = new AbortController());
   refusal = told;
   clear();
-  offer();
   say(words);
-  try {
-    await task(mine);
-    return true;
-  } catch (error) {
-    if (mine.signal.aborted && (error.name === "AbortError" || error instanceof Problem)) return false;
-    throw error;
-  } finally {
-    if (reading === mine) {
-      giveUp();
-      if (!planning) say("");
-    }
-  }
+  return reading.run(task);
 }
 
 /** Reads what was typed. Returns false if it cannot be read, which is shown, or if reading was ended. */
 async function settled() {
-  if (reading) return false; // what is being read replaces what was typed
+  if (reading.isRunning) return false; // what is being read replaces what was typed
   try {
     return await whileReading("What was typed is being read.", (mine) => input.settle(mine));
   } catch (error) {
@@ -418,6 +395,6 @@ async function start() {
     return fail(error);
   }
   if ((await openLinked()) || shown) return;
-  if (reading) awaited = examples.first;
+  if (reading.isRunning) awaited = examples.first;
   else planExample(examples.first);
 }
