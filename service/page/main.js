@@ -105,7 +105,7 @@ async function screen() {
 const placeResult = () => arrange(form, element("result"), answer || planning);
 
 /** Shows the states of a planning, which `states` asks it for; until the first one, says `waiting`. */
-async function run(states, waiting = "A first draft is being made.") {
+async function run(states, waiting = "A first try is being made.") {
   if (input.unread && !(await settled())) return;
   leave();
   const mine = (planning = new Planning(service));

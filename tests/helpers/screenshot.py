@@ -33,7 +33,7 @@ def compare_two_tours(page: Page) -> None:
     """Pin the fastest tour of the front of the first example, and select its knee."""
     wait_until_planned(page)
     page.get_by_role("slider", name="Balance").press("Home")
-    page.get_by_role("button", name="Pin to compare").click()
+    page.get_by_role("button", name="Keep to compare").click()
     page.get_by_role("button", name="compromise").click()
     page.evaluate("document.activeElement.blur()")
     page.mouse.move(0, 0)

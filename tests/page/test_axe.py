@@ -29,7 +29,7 @@ pytestmark = needs_chromium
 def test_axe_finds_nothing_on_the_page(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
         wait_until_planned(page)
-        page.get_by_role("button", name="Pin to compare").click()
+        page.get_by_role("button", name="Keep to compare").click()
         unfold(page)
         assert findings(page) == []
 

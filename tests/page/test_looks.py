@@ -110,13 +110,13 @@ def test_every_text_is_legible_against_what_lies_behind_it(
 ) -> None:
     with open_page(browser, released, scheme=scheme) as page:
         wait_until_planned(page)
-        page.get_by_role("button", name="Pin to compare").click()
+        page.get_by_role("button", name="Keep to compare").click()
         page.get_by_label("Seconds of planning").fill("soon")
         page.get_by_role("button", name="Plan", exact=True).click()
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         unfold(page)
         texts = page.evaluate(TEXTS)
-        assert {"Trade-offs", "Plan", "Selected", "Pinned"} <= {text for text, _, _ in texts}
+        assert {"Trade-offs", "Plan", "On the map", "To compare"} <= {text for text, _, _ in texts}
         assert [text for text, *colours in texts if contrast(*colours) < LEGIBLE] == []
         # The ground is what tells that the scheme was taken.
         ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
@@ -128,7 +128,7 @@ def test_cities_and_tours_stand_out_from_the_maps(browser: Browser, link: str, s
     with open_page(browser, link, scheme=scheme) as page:
         wait_until_planned(page)
         page.get_by_role("slider", name="Balance").press("Home")
-        page.get_by_role("button", name="Pin to compare").click()
+        page.get_by_role("button", name="Keep to compare").click()
         page.get_by_role("slider", name="Balance").press("End")
         wait_for_next_frame(page)
         lines = page.evaluate(LINES)

@@ -169,10 +169,10 @@ def rows(page: Page) -> dict[str, list[str]]:
 
 def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> None:
     select(late, "Home")
-    late.get_by_role("button", name="Pin to compare").click()
+    late.get_by_role("button", name="Keep to compare").click()
     select(late, "End")
     found = rows(late)
-    late.get_by_role("button", name="Unpin").click()
+    late.get_by_role("button", name="Stop comparing").click()
     assert found == {
         "Distance, m": ["5,000", "4,000", "+25.0 %"],
         "Lateness": ["0 min", "13 min", f"{MINUS}13 min"],
@@ -220,7 +220,7 @@ def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, rel
         select(page, "End")
         expect(page.locator("#choice")).to_have_text(
             "20 % more driving (10 min) than the least,"
-            " and the longest route is 14 % shorter (5 min): the shortest there is."
+            " and the longest route is 14 % shorter (5 min): the shortest of all plans found."
         )
         titles = page.locator("#fleet-legend thead th").all_inner_texts()
         assert titles[2:] == ["Driving", "Whole route"]
@@ -318,7 +318,7 @@ def test_vehicles_are_counted(browser: Browser, released: str) -> None:
         select(page, "End")
         expect(page.locator("#choice")).to_have_text(
             "25 % more distance (1,000 m) than the least,"
-            " for 2 fewer vehicles: the fewest there are."
+            " for 2 fewer vehicles: the fewest of all plans found."
         )
         expect(page.get_by_role("button", name="fewest vehicles")).to_be_visible()
         line = page.get_by_role("slider", name="At most this many vehicles")
@@ -347,7 +347,7 @@ def test_what_is_carried_is_said_in_words(
     with open_page(browser, "about:blank") as page:
         open_answer(page, released, asked, front)
         select(page, "Home")
-        page.get_by_role("button", name="Pin to compare").click()
+        page.get_by_role("button", name="Keep to compare").click()
         select(page, "End")
         assert rows(page)[f"Load carried, {unit}"][:2] == said
         assert f">Load carried, {unit}<" in saved(page, "SVG").decode()

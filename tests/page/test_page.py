@@ -128,7 +128,7 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(planned: Page) -> 
     expect(planned.locator("#front-chart .marker.previewed")).to_be_visible()
     assert drawn.first.evaluate("canvas => canvas.toDataURL()") != last
     planned.get_by_label("Seconds of planning").focus()
-    expect(planned.locator("#choice")).to_contain_text("the least risk there is")
+    expect(planned.locator("#choice")).to_contain_text("the least of all tours found")
     wait_for_next_frame(planned)
     assert drawn.first.evaluate("canvas => canvas.toDataURL()") == last
     planned.get_by_role("button", name="compromise").click()
@@ -153,13 +153,13 @@ def test_a_pinned_tour_stays_beside_the_selected_one(planned: Page) -> None:
     slider = planned.get_by_role("slider", name="Balance")
     slider.press("Home")
     wait_for_next_frame(planned)
-    planned.get_by_role("button", name="Pin to compare").click()
+    planned.get_by_role("button", name="Keep to compare").click()
     slider.press("End")
     wait_for_next_frame(planned)
     selected, pinned, difference = row(planned, "Risk").get_by_role("cell").all()
     assert number(selected) < number(pinned)
     expect(difference).to_contain_text("\N{MINUS SIGN}")
-    planned.get_by_role("button", name="Unpin").click()
+    planned.get_by_role("button", name="Stop comparing").click()
     expect(row(planned, "Risk").get_by_role("cell")).to_have_count(1)
 
 

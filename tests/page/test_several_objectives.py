@@ -241,19 +241,19 @@ def test_a_tour_is_said_beside_the_least_of_each(page: Page) -> None:
     limit(page, "Way").press("Home")
     choice = page.locator("#choice")
     expect(choice).to_have_text(
-        re.compile(r"^The least way there is, .*more people met.* and .*more climb.*of each\.$")
+        re.compile(r"^The least way of all, .*more people met.* and .*more climb.*of each\.$")
     )
 
 
 def test_two_tours_are_compared(page: Page) -> None:
     limit(page, "Way").press("Home")
-    page.get_by_role("button", name="Pin to compare").click()
+    page.get_by_role("button", name="Keep to compare").click()
     limit(page, "Way").press("End")
     limit(page, "Climb").press("Home")
     differences = page.locator("#comparison tbody td:nth-child(4)")
     expect(differences.nth(0)).to_have_text(re.compile(r"^\+"))
     expect(differences.nth(2)).to_have_text(re.compile("^\N{MINUS SIGN}"))
-    page.get_by_role("button", name="Unpin").click()
+    page.get_by_role("button", name="Stop comparing").click()
 
 
 def test_a_link_carries_the_limits_and_the_tour(page: Page, browser: Browser) -> None:

@@ -1,19 +1,19 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
 import { amount, wordsOf } from "../common/amounts.js";
-import { capital, isCounted, isLongest, namesThings, shortUnit } from "../common/objectives.js";
+import { capital, isCounted, isLongest, shortUnit } from "../common/objectives.js";
 
 /** The sentence about the tour of a link whose front the service no longer keeps; `noun` is what the front called it. */
 export const choiceKept = ({ one }) =>
   `The service no longer keeps this result. This is the ${one} that was chosen; a new plan may differ.`;
 
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
-export function choiceOf(front, tour, objectives, { one }) {
+export function choiceOf(front, tour, objectives, noun) {
   const kept = tour.kept == null ? "" : ` Keeps ${Math.round(100 * tour.kept)} % of the legs.`;
-  return `${sentence(front, tour, objectives, one)}${kept}`;
+  return `${sentence(front, tour, objectives, noun)}${kept}`;
 }
 
-function sentence(front, tour, objectives, one) {
+function sentence(front, tour, objectives, { one, many }) {
   if (front.length < 2) return `This ${one} is the best under ${objectives.length > 2 ? "all" : "both"} objectives.`;
   if (objectives.length > 2) return ofSeveral(front, tour, objectives);
   const [first, second] = objectives.map(wordsOf);
@@ -25,16 +25,14 @@ function sentence(front, tour, objectives, one) {
   const cost = capital(step(least, tour, 0, objectives, first.more));
   const gain = step(least, tour, 1, objectives, second.less);
   const joined = isLongest(objectives[1]) ? "and" : "for";
-  return `${cost} than ${isLongest(objectives[0]) ? "at its" : "the"} ${first.least}, ${joined} ${gain}${reached(front, tour, objectives[1])}.`;
+  return `${cost} than ${isLongest(objectives[0]) ? "at its" : "the"} ${first.least}, ${joined} ${gain}${reached(front, tour, objectives[1], many)}.`;
 }
 
-/** Says that a tour has the least second length of all, or that a measure of plans is 0. */
-function reached(front, tour, objective) {
+/** Says that a tour has the least second length of those found, or that a measure of plans is 0. */
+function reached(front, tour, objective, many) {
   if (tour.lengths[1] !== front.at(-1).lengths[1]) return "";
   if (objective.measure && tour.lengths[1] === 0) return ": none is left";
-  if (isLongest(objective)) return ": the shortest there is";
-  if (isCounted(objective)) return ": the fewest there are";
-  return `: the ${wordsOf(objective).least} ${objective.name} there ${areOrIs(objective)}`;
+  return `: the ${wordsOf(objective).least} of all ${many} found`;
 }
 
 /** How much more than the least of the front a tour has of each of three or four objectives. */
@@ -42,7 +40,7 @@ function ofSeveral(front, tour, objectives) {
   const said = objectives.map((objective, axis) => {
     const least = front.reduce((best, each) => (each.lengths[axis] < best.lengths[axis] ? each : best));
     if (tour.lengths[axis] !== least.lengths[axis]) return step(least, tour, axis, objectives, wordsOf(objective).more);
-    return isLongest(objective) ? theLeast(objective) : `${theLeast(objective)} there ${areOrIs(objective)}`;
+    return isLongest(objective) ? theLeast(objective) : `${theLeast(objective)} of all`;
   });
   const more = front.some(({ lengths }) => lengths.some((value, axis) => value < tour.lengths[axis])) ? " than the best of each" : "";
   return capital(`${said.slice(0, -1).join(", ")} and ${said.at(-1)}${more}.`);
@@ -50,8 +48,6 @@ function ofSeveral(front, tour, objectives) {
 
 /** What the best of all is under one objective, such as "the least driving". */
 const theLeast = (objective) => `the ${isLongest(objective) ? `${objective.name} at its shortest` : `${wordsOf(objective).least} ${objective.name}`}`;
-
-const areOrIs = (objective) => (isCounted(objective) || namesThings(objective) ? "are" : "is");
 
 /** What other tours have, such as "has less driving". */
 const has = (objective, word) => (isLongest(objective) ? `makes the ${objective.name} ${word}` : `has ${word} ${objective.name}`);

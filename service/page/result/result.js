@@ -273,7 +273,7 @@ export class Result {
   }
 
   #drawPin() {
-    element("pin").textContent = this.#pinned ? "Unpin" : "Pin to compare";
+    element("pin").textContent = this.#pinned ? "Stop comparing" : "Keep to compare";
     this.#legend("pinned", this.#pinned !== null);
     this.#mark("pinned", this.#pinned);
     this.#legend("before", this.#before !== null);
