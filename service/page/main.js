@@ -3,7 +3,7 @@
 import { arrange, narrow } from "./result/arrangement.js";
 import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
-import { clearFaults, showFault, showFaults } from "./planning/faults.js";
+import { clearFaults, revealFault, showFault, showFaults } from "./planning/faults.js";
 import { FileNotes } from "./opening/file_notes.js";
 import { formOf, kindOf } from "./common/kinds.js";
 import { keptAnswer } from "./result/chosen.js";
@@ -155,8 +155,7 @@ function namesOf({ objectives: named, scale }) {
 }
 
 function plan() {
-  const { fault } = input;
-  if (fault) return fail(fault);
+  if (input.fault) return fail(input.fault);
   const onGrid = kindOf(input.asked).onGrid;
   return run((mine) => planned(mine.plan(input.request)), onGrid ? "The paths between the places of the map are being found." : undefined);
 }
@@ -249,7 +248,7 @@ function fail(error) {
   say("");
   showFaults(error);
   input.mark();
-  element("waiting").textContent = document.querySelector(".fault:not(:empty)").textContent; // a phone shows the form below
+  element("waiting").textContent = revealFault(); // a phone shows the form below
 }
 
 function openChosen() {

@@ -126,6 +126,8 @@ def test_limits_leave_the_best_of_what_they_allow(page: Page) -> None:
     said = limit(page, "Way").get_attribute("aria-valuetext") or ""
     assert said.startswith("at most ")
     expect(page.locator("#caps-said")).to_contain_text(" are within the limits.")
+    said_in_full = "outputs => outputs.every(each => each.scrollWidth <= each.clientWidth)"
+    assert page.locator("#caps output").evaluate_all(said_in_full)
     most = float(limit(page, "Way").input_value())
     limit(page, "Climb").press("Home")
     least = lengths[lengths[:, 0] <= most + 1e-9, 2].min()

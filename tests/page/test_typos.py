@@ -171,6 +171,7 @@ def test_a_value_that_is_refused_keeps_the_last_plan(
     expect(window.locator("#choice")).to_have_text(chosen)
     plan(window)
     expect(window.locator(f"#{fault}-fault")).to_contain_text(said)
+    expect(window.locator(f"#{fault}-fault")).to_be_in_viewport(ratio=1)
     expect(field).to_be_focused()
     expect(field).to_have_attribute("aria-invalid", "true")
     expect(window.locator("#choice")).to_have_text(chosen)
@@ -192,8 +193,10 @@ def test_a_name_that_was_taken_is_taken_over_once_it_is_free(window: Page) -> No
     stops = curl_body(window, "fleet")["stops"]
     assert [each["id"] for each in stops] == ["yard", "store", "shop"]
     write(window, "Name of stop 3", "store")
+    window.get_by_label("Service of shop").focus()  # at the end of the row
     open_files(window, {"stops.json": FLEET})
     expect(window.get_by_label("Name of stop 3")).to_have_value("school")
+    assert window.locator("#stops").evaluate("table => table.scrollLeft") == 0
 
 
 @pytest.mark.parametrize("width", [DESK, PHONE])

@@ -38,9 +38,10 @@ export class EditableTable {
     this.#draw();
   }
 
-  /** Drops what was typed, before other rows are opened. */
+  /** Drops what was typed, and goes back to the first cell, before other rows are opened. */
   forget() {
     this.#drawn = "";
+    this.#element.scrollTo(0, 0);
   }
 
   /** Shows the rows up to this one, and puts the cursor into its name, or into one of its cells. */

@@ -50,6 +50,13 @@ export function tellFault(field, detail) {
   return Object.assign(document.getElementById(`${field}-fault`), { textContent: sentence(detail) });
 }
 
+/** Brings the first sentence about a fault into view, and returns it. */
+export function revealFault() {
+  const said = document.querySelector(".fault:not(:empty)");
+  said.scrollIntoView({ block: "nearest" });
+  return said.textContent;
+}
+
 /** The cell of the table of stops or vehicles that a fault is about; null if there is none. */
 function cellOf([member, row, part, ...rest]) {
   if (member === "coordinates") return cellOfPlane(0, row, part);
