@@ -19,8 +19,7 @@ import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
-import { Ongoing } from "./opening/ongoing.js";
-import { read, takePasted } from "./opening/reading.js";
+import { Reading, read, takePasted } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
 import { takeDropped } from "./opening/dropping.js";
 import { Problem, Service } from "./planning/service.js";
@@ -50,7 +49,7 @@ const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"),
 const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan, result.wait);
-const reading = new Ongoing({ onChange: offer, onDone: () => planning || say("") });
+const reading = new Reading(offer, () => planning || say(""));
 
 let way = null; // the way on which the front shown can be replanned
 let objectives = UNNAMED; // the names in the front shown

@@ -143,7 +143,7 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
             "Latitude of shop",
             "95",
             "stops",
-            "Latitude of shop cannot be “95”: write degrees",
+            "Latitude of shop cannot be “95”: write a number",
         ),
         (FLEET, "Window of school", "12:00-8:00", "stops", "cannot be “12:00-8:00”: write two"),
         (FLEET, "Service of school", "-5", "stops", "Service of school cannot be “-5”"),

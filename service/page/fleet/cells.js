@@ -9,10 +9,10 @@ const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+) ?s)?$/;
 const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
 const COUNTED = "a number in the unit of the times";
 
-/** The types of columns of numbers, which take only some numbers. */
+// The types of columns of numbers.
 const NUMBERS = {
-  longitude: numbers((value) => Math.abs(value) <= 180, "degrees from -180 to 180"),
-  latitude: numbers((value) => Math.abs(value) <= 90, "degrees from -90 to 90"),
+  longitude: numbers((value) => Math.abs(value) <= 180, "a number, -180 to 180"),
+  latitude: numbers((value) => Math.abs(value) <= 90, "a number, -90 to 90"),
   amount: numbers((value) => value >= 0, "a number, 0 or more"),
   limit: numbers((value) => value > 0, "a number above 0"),
   count: numbers((value) => value >= 1 && Number.isInteger(value), "a whole number, 1 or more"),
@@ -20,7 +20,7 @@ const NUMBERS = {
 
 /**
  * The types of columns: how a value is written, and how a text is read, which is undefined if it is not
- * understood, or a value that the service refuses. Both take the seconds in a unit of time, undefined if that is not known. `hint` says what to write.
+ * understood or refused. Both take the seconds in a unit of time, undefined if that is not known. `hint` says what to write.
  */
 const TYPES = {
   text: { write: String, read: (text) => text },
@@ -31,8 +31,8 @@ const TYPES = {
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },
   spans: {
     write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
-    read: (text, second) => inOrder(all(pieces(text, /[;,]/), (each) => span(each, second))),
-    hint: "two times in order, as 8:00-12:30, past midnight 22:00-26:00, or several with ; between",
+    read: (text, second) => all(pieces(text, /[;,]/), (each) => span(each, second)),
+    hint: "two times in order, as 8:00-12:30, or 22:00-26:00, or several with ; between",
   },
   breaks: {
     write: (value, second) => listOf(value).map((each) => `${spanText(each?.window, second)} ${lastingText(each?.length, second)}`).join("; "),
@@ -50,9 +50,9 @@ export function cellText(item, column, second) {
   return value === undefined || value === null ? "" : typeof value === "string" ? value : TYPES[column.type].write(value, second);
 }
 
-export const isNumber = ({ type }) => type in NUMBERS;
+export const isNumber = (type) => type in NUMBERS;
 
-/** Whether a cell holds what is not understood, or refused. */
+/** Whether a cell holds what is not understood or refused. */
 export const isUnread = (item, column) => !["text", "words"].includes(column.type) && typeof valueOf(item, column) === "string";
 
 /** What to write into a cell of a column. */
@@ -90,16 +90,12 @@ function listed(value) {
   return listOf(value).join(", ");
 }
 
-/** A type of numbers. */
 function numbers(accepts, hint) {
   return { write: String, read: (text) => only(accepts, number(text)), hint };
 }
 
 const only = (accepts, value) => (accepts(value) ? value : undefined);
 const load = (text) => only((value) => value >= 0 && Number.isInteger(value), number(text));
-
-/** Spans of which each begins after the one before has ended; undefined if one does not. */
-const inOrder = (spans) => only((found) => found?.every(([from], at) => !at || from > found[at - 1][1]), spans);
 
 function number(text) {
   const value = Number(text.replace(",", "."));

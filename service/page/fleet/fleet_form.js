@@ -102,7 +102,7 @@ export class FleetForm {
   #show(name, table, second) {
     const columns = this.#shown(name);
     const items = byIds(this.#asked)[name] ?? [];
-    const headed = columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: !isNumber({ type }) }));
+    const headed = columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: !isNumber(type) }));
     const rows = items.map((item) => ({
       name: item?.id ?? "",
       cells: columns.map((each) => cellText(item, each, second)),

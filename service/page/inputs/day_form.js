@@ -2,7 +2,7 @@
 
 import { canHaveDay, changingOver, clockIn, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
 import { svgElement } from "../fleet/svg.js";
-import { isRead } from "./unread.js";
+import { isRead } from "../planning/faults.js";
 import { timeOfDay, timeText } from "../common/times_of_day.js";
 
 const [HOUR, DAY, LATEST] = [3600, 86400, 864000]; // seconds
@@ -44,7 +44,7 @@ export class DayForm {
     element("day").open = canHaveDay(asked) && departuresIn(asked) !== null;
   }
 
-  /** Shows the time of day of a changed request; what was typed and not understood stays in its field. */
+  /** Shows a changed request; what is not understood stays in its field. */
   show(asked) {
     element("day").hidden = !canHaveDay(asked);
     if (element("day").hidden) return;

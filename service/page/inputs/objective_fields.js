@@ -1,10 +1,9 @@
 /** The fields of the objectives: names and units, and for stops how each is measured. */
 
-import { isRead } from "./unread.js";
+import { isOwnName } from "../planning/faults.js";
 
 const TIMED = "speed"; // straight lines at a speed
 export const SPEED = 30; // km/h, until another is typed
-const [SLOWEST, FASTEST] = [0.001, 1000]; // km/h
 const SOURCES = { great_circle: "Straight lines, m", [TIMED]: "Time in straight lines, s", road_time: "Time by road, s", road_distance: "Way by road, m" };
 const NTH = ["First", "Second", "Third", "Fourth"].map((each) => `${each} objective`);
 const OWN = "own"; // costs that came with the stops
@@ -38,11 +37,10 @@ export class ObjectiveFields {
     });
   }
 
-  /** Whether the name of an objective is not that of another. */
   #isName(input) {
     const names = [...this.#element.querySelectorAll('[data-member="name"]')].map(({ value }) => value.trim());
-    const isOwn = Boolean(names[input.dataset.axis]) && new Set(names).size === names.length;
-    return isRead(input, isOwn, `Each objective needs a name of its own, got “${input.value.trim()}”`);
+    const [name] = names.splice(input.dataset.axis, 1);
+    return isOwnName(input, name, names, "objective");
   }
 
   /** Shows the objectives under their titles; those of a request for stops have sources, others only names and units. */
@@ -95,8 +93,8 @@ function speedIn(text) {
   return text === "" || Number.isNaN(number) ? text : number;
 }
 
-/** Whether a change has no speed that the service refuses. */
-export const isSpeedRead = ({ speed = SPEED }) => speed >= SLOWEST && speed <= FASTEST;
+/** Whether the service takes the speed of a change. */
+export const isSpeedRead = ({ speed = SPEED }) => speed >= 0.001 && speed <= 1000;
 
 function labelled(title, input, label = title) {
   const made = document.createElement("label");

@@ -1,11 +1,9 @@
-/** Take what was typed over with the click on a button, not before: a page that changes in between moves the button away. */
+/** Take typed text over when a button is clicked, not when it is pressed: the page would move it away. */
 
 const buttonOf = ({ target }) => target.closest?.("button");
 
-/** From now on, buttons take the focus from a field when they are clicked, and not when the mouse is pressed. */
+/** Has buttons take the focus when they are clicked. */
 export function holdStill() {
-  addEventListener("mousedown", (event) => {
-    if (buttonOf(event)) event.preventDefault();
-  });
+  addEventListener("mousedown", (event) => buttonOf(event) && event.preventDefault());
   addEventListener("click", (event) => event.detail && buttonOf(event)?.focus({ preventScroll: true }), { capture: true });
 }

@@ -19,12 +19,12 @@ import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
-import { firstFault, readAgain } from "./unread.js";
+import { firstFault, readAgain } from "../planning/faults.js";
 
 const element = (id) => document.getElementById(id);
 const titled = (titles, members) => titles.map((title) => ({ title, members }));
 const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"], "location") };
-const DEGREES = [180, 90]; // the most of a longitude and of a latitude
+const DEGREES = [180, 90]; // at most
 const FIXED = "No stop can be added: its costs to the other stops are not known. Open a file that has it.";
 
 export class RequestForm {
@@ -129,7 +129,7 @@ export class RequestForm {
     return this.#typedRows.waiting;
   }
 
-  /** The fault of the first field whose text is not in the request, as it cannot be taken; null if there is none. */
+  /** The fault of the first field whose text cannot be taken; null if there is none. */
   get fault() {
     return firstFault(this.#form);
   }
@@ -257,7 +257,7 @@ export class RequestForm {
     this.#onShaded(this.instance);
   }
 
-  /** Marks the fields and the cells of a fleet that hold what cannot be taken, and says what they must be. */
+  /** Marks the fields and cells that hold what cannot be taken, and says what they must be. */
   mark() {
     readAgain(this.#form);
     if (this.#isFleet) this.#fleet.mark();

@@ -1,6 +1,6 @@
 /** A table that can be typed in: a name and the cells of each row, and a button that deletes it. */
 
-import { isRead } from "./unread.js";
+import { isOwnName } from "../planning/faults.js";
 
 const PAGE = 50; // rows that are shown at once, since thousands of inputs are slow
 
@@ -38,7 +38,7 @@ export class EditableTable {
     this.#draw();
   }
 
-  /** Drops what was typed, and goes back to the first cell, before other rows are opened. */
+  /** Goes back to the first cell, without what was typed. */
   forget() {
     this.#drawn = "";
     this.#element.scrollTo(0, 0);
@@ -103,8 +103,8 @@ export class EditableTable {
   }
 
   #named(input, row, text) {
-    const isOwn = text && this.#rows.every(({ name }, at) => at === row || name !== text);
-    if (isRead(input, Boolean(isOwn), `Each ${this.#noun.toLowerCase()} needs a name of its own, got “${text}”`)) this.#told.onName(row, text);
+    const others = this.#rows.toSpliced(row, 1).map(({ name }) => name);
+    if (isOwnName(input, text, others, this.#noun.toLowerCase())) this.#told.onName(row, text);
   }
 
   #clicked(target) {

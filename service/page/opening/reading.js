@@ -1,4 +1,4 @@
-/** Let the service read files, and pasted text as if it were a file. */
+/** Let the service read files, and pasted text as if it were a file, one reading at a time. */
 
 import { namesIn } from "../common/objectives.js";
 import { inRows } from "../inputs/instance.js";
@@ -21,6 +21,47 @@ export async function read(service, files, chosen, roads, signal) {
   const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
   if (unknown) members.unknownCells = unknown;
   return { members, objectives: namesIn(members), name, notes, columns, choices };
+}
+
+/** The reading that is running: `onChange` is called when it begins or ends, `onDone` when it is done. */
+export class Reading {
+  #running = null;
+  #onChange;
+  #onDone;
+
+  constructor(onChange, onDone) {
+    this.#onChange = onChange;
+    this.#onDone = onDone;
+  }
+
+  get isRunning() {
+    return this.#running !== null;
+  }
+
+  end() {
+    this.#running?.abort();
+    this.#running = null;
+    this.#onChange();
+  }
+
+  /** Ends any other reading, and runs a task, which takes an AbortController. Returns false if it was ended. */
+  async run(task) {
+    this.end();
+    const mine = (this.#running = new AbortController());
+    this.#onChange();
+    try {
+      await task(mine);
+      return true;
+    } catch (error) {
+      if (mine.signal.aborted && (error.name === "AbortError" || error instanceof Problem)) return false;
+      throw error;
+    } finally {
+      if (this.#running === mine) {
+        this.end();
+        this.#onDone();
+      }
+    }
+  }
 }
 
 /** A file that the browser cannot read would look like a service that does not answer. */

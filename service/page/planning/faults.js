@@ -1,7 +1,9 @@
-/** Show each fault of an error at its field. */
+/** Show each fault of an error at its field. A field whose text cannot be taken is invalid. */
+
+import { Problem } from "./service.js";
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives", start_pose: "start", end_pose: "end" };
-const REPLANNED = { tour: "at", done: "at", remove: "removed", add: "added", position: "place-vehicle", now: "now" };
+const REPLANNED = { tour: "at", done: "at", remove: "removed", add: "replan", position: "replan", now: "now" };
 for (const member of Object.keys(REPLANNED)) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
@@ -10,20 +12,18 @@ const FIELD_OF_CODE = { unauthorized: "key" };
 export function showFaults(problem) {
   clearFaults();
   const faults = faultsOf(problem);
-  let [first, told] = [null, null];
+  let first = null;
   for (const { pointer = "", detail } of faults) {
     const parts = pointer.split("/").slice(1);
     const [member, row, part] = parts;
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const cell = cellOf(parts);
     const said = seen(document.getElementById(`${cell?.closest(".stops").id ?? field}-fault`)) ?? document.getElementById("request-fault");
-    told ??= said;
     said.textContent ||= sentence(cell && member !== "coordinates" ? ofCell(detail, cell) : inWords(detail, field));
     if (cell) cell.setAttribute("aria-invalid", "true");
     first ??= cell ?? (member === "cities" ? markText(row) : mark(REPLANNED[member] ?? field, member === "matrices" ? undefined : row, part));
   }
   first?.focus();
-  told?.scrollIntoView({ block: "nearest" }); // the focus alone may leave it beyond the edge of the form
 }
 
 /** Requests for plans do not have all fields of the form. */
@@ -50,7 +50,41 @@ export function tellFault(field, detail) {
   return Object.assign(document.getElementById(`${field}-fault`), { textContent: sentence(detail) });
 }
 
-/** Brings the first sentence about a fault into view, and returns it. */
+const INVALID = ":is(input, textarea):invalid";
+
+/** Whether what was typed can be taken; if not, its field says the fault. */
+export function isRead(field, readable, fault) {
+  field.setCustomValidity(readable ? "" : fault);
+  if (!readable) {
+    field.setAttribute("aria-invalid", "true");
+    tellFault(pointerOf(field).split("/")[1], fault);
+  }
+  return readable;
+}
+
+/** Whether a name is none of the others. */
+export const isOwnName = (field, name, others, what) =>
+  isRead(field, Boolean(name) && !others.includes(name), `Each ${what} needs a name of its own, got “${name}”`);
+
+/** The fault of the first invalid field of a form; null if there is none. */
+export function firstFault(form) {
+  const field = form.querySelector(INVALID);
+  return field && new Problem({ detail: field.validationMessage, errors: [{ pointer: pointerOf(field) }] });
+}
+
+/** Reads the invalid fields of a form again, as others have changed. */
+export function readAgain(form) {
+  for (const field of form.querySelectorAll(INVALID)) field.dispatchEvent(new Event("change", { bubbles: true }));
+}
+
+/** The member of a request that a field is about. */
+function pointerOf(field) {
+  const { row, members, axis, member } = field.dataset;
+  if (row) return `/${field.closest(".stops").id}/${row}/${members}`;
+  return axis ? `/objectives/${axis}/${member}` : `/${field.id}`;
+}
+
+/** Brings the first fault into view, where focus alone may not, and returns it. */
 export function revealFault() {
   const said = document.querySelector(".fault:not(:empty)");
   said.scrollIntoView({ block: "nearest" });

@@ -30,8 +30,8 @@ export class Planning {
 
   async *plan(request) {
     const { time_limit: seconds = 1 } = request.body;
-    const isRefused = !(seconds >= 0); // before a draft takes the place of the front on the screen
-    if (isRefused || (seconds !== 0 && stopsIn(request.body) > MANY)) return yield* this.#improved(request, null);
+    // A time that is refused is refused before a draft is shown.
+    if (!(seconds >= 0) || (seconds !== 0 && stopsIn(request.body) > MANY)) return yield* this.#improved(request, null);
     for await (const alone of this.#alone(request)) {
       if (alone === null) yield { stage: "warming-up", alone: null, answer: null };
       else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };

@@ -17,10 +17,8 @@ export class Way {
   /** The changes: `at` is the last stop visited on a tour, and `now` the time of day, by default that at which it leaves there. */
   body({ at, now, removed, added, vehicle }, { tour, times }) {
     const visit = (name) => tour.indexOf(this.names.indexOf(name));
-    for (const [member, names] of Object.entries({ done: [at], remove: removed })) {
-      const unknown = names.find((name) => name && visit(name) < 0);
-      if (unknown) throw refusal("unknown-stop", member, `the selected tour has no stop "${unknown}"`);
-    }
+    const unknown = [at, ...removed].find((name) => name && visit(name) < 0);
+    if (unknown) throw refusal("unknown-stop", unknown === at ? "done" : "remove", `the selected tour has no stop "${unknown}"`);
     const keys = tour.map((city) => this.keys[city]);
     return {
       tour: keys,

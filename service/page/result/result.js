@@ -231,7 +231,7 @@ export class Result {
 
   /** Keeps the selected tour on the maps while the rest of it is planned. */
   replan(instance, names) {
-    element("result").scrollIntoView(); // the form of the changes is far below
+    element("result").scrollIntoView();
     const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };
     this.clear(instance, { fit: false, editable: false });
     this.#ids = names;
