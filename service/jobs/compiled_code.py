@@ -16,7 +16,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from threading import Thread, get_ident
 from typing import NamedTuple
 
@@ -226,18 +226,29 @@ def _compilers(parts: Collection[Part], processes: int) -> Iterator[int]:
         yield done
 
 
-def _end_with_parent() -> None:
+def _end_with_parent(children: Collection[int]) -> None:
     sys.stdin.read()
+    _wait_for(children)
     os._exit(1)
 
 
-def _fork(processes: int) -> None:
-    """Continue as so many processes, which share what was imported."""
+def _fork(processes: int) -> Collection[int]:
+    """Continue as so many processes, which share what was imported; return those forked by this."""
     cpu_target.target_context.refresh()  # imports what numba compiles with
     gc.freeze()
+    children = []
     for _ in range(processes - 1):
-        if not os.fork():
-            return
+        child = os.fork()
+        if not child:
+            return ()
+        children.append(child)
+    return children
+
+
+def _wait_for(children: Collection[int]) -> None:
+    with suppress(ChildProcessError):  # the other thread has waited
+        for child in children:
+            os.waitpid(child, 0)
 
 
 def _compile_pieces(queue: int, done: int) -> None:
@@ -255,6 +266,7 @@ def _compile_pieces(queue: int, done: int) -> None:
 
 if __name__ == "__main__":
     *_pipes, _processes = map(int, sys.argv[1:])
-    _fork(_processes)
-    Thread(target=_end_with_parent, daemon=True).start()
+    _children = _fork(_processes)
+    Thread(target=_end_with_parent, args=(_children,), daemon=True).start()
     _compile_pieces(*_pipes)
+    _wait_for(_children)
