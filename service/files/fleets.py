@@ -145,13 +145,18 @@ def with_vehicles(source: Source, stops: list[Stop], objectives: list[Any]) -> R
         if "start" in vehicles[0]
         else "from any stop to any"
     )
-    holds = f", and holds all demand, {demands}" if demands else ""
+    holds = f", and holds all demand, {numbers(demands)}" if demands else ""
     able = f", and has all skills, {_listed(skills)}" if skills else ""
     added = "The file names no vehicles, so one was added. It"
     if named:
         added = f"One vehicle was added for each that stops name, {_listed(named)}. Each"
     source.note("vehicle", f"{added} drives {where}{holds}{able}.")
     return with_measure(source, fleet_request(stops, vehicles, objectives))
+
+
+def numbers(loads: Sequence[int]) -> str:
+    """Return loads for a sentence."""
+    return " and ".join(map(str, loads))
 
 
 def _distinct(texts: Iterable[str]) -> list[str]:

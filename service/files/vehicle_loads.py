@@ -2,7 +2,7 @@
 
 from service.files.column_names import amount_of
 from service.files.columns import Columns
-from service.files.fleets import Stop, Vehicle, all_demand
+from service.files.fleets import Stop, Vehicle, all_demand, numbers
 
 
 def add_loads(
@@ -35,7 +35,7 @@ def add_loads(
 
 def _hold_all(columns: Columns, vehicles: list[Vehicle], demand: list[int]) -> None:
     """Let each vehicle hold all demand, and note it."""
-    text = f"No column has a capacity: each vehicle holds all demand, {demand}."
+    text = f"No column has a capacity: each vehicle holds all demand, {numbers(demand)}."
     columns.source.note("vehicle", text)
     for vehicle in vehicles:
         vehicle["capacity"] = demand

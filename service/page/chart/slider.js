@@ -30,7 +30,7 @@ export class BalanceSlider {
   show(front, noun) {
     this.#front = front;
     this.#noun = noun;
-    this.#input.disabled = !front.length;
+    this.#input.disabled = front.length < 2;
     if (!front.length) this.#shown.textContent = "";
   }
 
