@@ -26,7 +26,7 @@ export class Caps {
     this.#onLeast = onLeast;
   }
 
-  /** Shows a front under its objectives; limits stay where a front of as many was shown before, even if drafts between are beyond them. */
+  /** Shows a front; limits stay where one of as many objectives was shown before, even if drafts between are beyond them. */
   show(front, objectives) {
     const same = this.#wanted.length === objectives.length;
     this.#front = front;

@@ -38,13 +38,13 @@ export class EditableTable {
     this.#draw();
   }
 
-  /** Goes back to the first cell, without what was typed. */
+  /** Goes back to the first cell. */
   forget() {
     this.#drawn = "";
     this.#element.scrollTo(0, 0);
   }
 
-  /** Shows the rows up to this one, and puts the cursor into its name, or into one of its cells. */
+  /** Shows the rows up to this one, with the cursor in its name or a cell. */
   focus(row, column = "name") {
     this.#shown = Math.max(this.#shown, row + 1);
     this.#draw();
@@ -89,7 +89,8 @@ export class EditableTable {
     const { row, column } = input.dataset;
     const { name, cells } = this.#rows[row];
     const named = column === "name";
-    if (input.validity.valid) input.value = named ? name : (cells[column] ?? "");
+    const typed = input === document.activeElement && input.value !== input.dataset.shown;
+    if (input.validity.valid && !typed) input.value = input.dataset.shown = named ? name : (cells[column] ?? "");
     input.size = Math.max(input.value.length, 1);
     const label = named ? `Name of ${this.#noun.toLowerCase()} ${Number(row) + 1}` : `${this.#columns[column].title} of ${name}`;
     input.setAttribute("aria-label", label);
@@ -97,6 +98,7 @@ export class EditableTable {
 
   #changed(input) {
     const { row, column } = input.dataset;
+    input.dataset.shown = input.value;
     const value = input.value.trim();
     if (column === "name") this.#named(input, Number(row), value);
     else if (column !== undefined) this.#told.onCell(Number(row), Number(column), value);
