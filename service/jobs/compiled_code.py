@@ -205,7 +205,6 @@ def _compilers(parts: Collection[Part], processes: int) -> Iterator[int]:
         What they write to a pipe, which ends when the last of them does.
     """
     numbers = [number for number, (part, _) in enumerate(_PIECES) if part in parts]
-    processes = min(processes, len(numbers))
     with ExitStack() as stack:
         queue, end_of_queue = os.pipe()
         os.write(end_of_queue, bytes(numbers))
@@ -214,8 +213,9 @@ def _compilers(parts: Collection[Part], processes: int) -> Iterator[int]:
         done, tell = os.pipe()
         stack.callback(os.close, done)
         if processes > 1:
+            arguments = (queue, tell, min(processes, len(numbers)))
             process = subprocess.Popen(
-                [sys.executable, "-m", __name__, *map(str, (queue, tell, processes))],
+                [sys.executable, "-m", __name__, *map(str, arguments)],
                 stdin=subprocess.PIPE,  # which ends when this block does
                 pass_fds=[queue, tell],
                 env={**os.environ, **own_code.variables()},

@@ -71,6 +71,9 @@ class Plan:
 def front_plan(request: FrontRequest, instance: Instance | None = None) -> Plan:
     """Return the request to POST /front, with matrices that are arrays as a NumPy file.
 
+    The file holds `matrices`, which may be DataFrames, or the matrices of all objectives, if these
+    are arrays of numbers. Arrays of objects are sent as JSON, with null for None.
+
     Args:
         request: The members of the request.
         instance: Its coordinates, its matrices or its stops, unless they are among the members.
@@ -78,9 +81,6 @@ def front_plan(request: FrontRequest, instance: Instance | None = None) -> Plan:
     Raises:
         TypeError: They are among the members as well.
         ValueError: The instance is none of these. Or as of without_frames.
-
-    The file holds `matrices`, which may be DataFrames, or the matrices of all objectives, if these
-    are arrays of numbers. Arrays of objects are sent as JSON, with null for None.
     """
     members: dict[str, Any] = without_frames({**request, **_named(instance, request)})
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
