@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from httpx._config import DEFAULT_TIMEOUT_CONFIG
 from hypothesis import settings
 
 from service.jobs.compiled_code import warm_up
@@ -29,6 +30,8 @@ def pytest_configure(config: pytest.Config) -> None:
     # No test calls https, and httpx takes 40 ms to load certificates at each httpx.get.
     os.environ.pop("SSL_CERT_FILE", None)
     os.environ["SSL_CERT_DIR"] = str(NO_CERTIFICATES)
+    # On a busy machine an answer may take longer than the five seconds that httpx waits.
+    DEFAULT_TIMEOUT_CONFIG.read = 60.0
     if config.getoption("numprocesses") and not hasattr(config, "workerinput"):
         warm_up()  # once, before the processes of the tests and of their servers all do it at once
 

@@ -118,8 +118,9 @@ def until_mended(client: httpx.Client) -> None:
     while time.monotonic() < ends:
         found = client.get(f"/front/{planned(client)['id']}")
         job = client.post("/front", json=CITIES, headers=LATER)
-        if found.status_code == 200 and job.status_code == 202:
-            assert ended(client, job.headers["Location"])["status"] == "done"
+        kept = found.status_code == 200 and job.status_code == 202
+        # While other keys are mended, the service may not be able to say how a job ended.
+        if kept and ended(client, job.headers["Location"])["status"] == "done":
             return
         time.sleep(0.2)
     raise TimeoutError
