@@ -232,7 +232,6 @@ class RouteCosts(NamedTuple):
     skipping: Array  # (c,), the cost of leaving a stop out; infinite if that is not allowed
 
 
-@allocating
 def best_split(
     stock: Stock, routes: RouteCosts, begins: int, limit: float
 ) -> tuple[float, Indices]:
@@ -254,14 +253,9 @@ def best_split(
     partials = PartialPlans(
         np.empty((c + 1, stock.states)), np.empty((c + 1, stock.states, 3), np.int64)
     )
-    best, best_routes = np.inf, np.empty((0, 3), np.int64)
-    for begin in range(begins):
-        _write_partials(stock, cost, routes.skipping, begin, partials)
-        used = partials.least[c].argmin()
-        if partials.least[c, used] < best:
-            best = partials.least[c, used]
-            best_routes = _routes_to(partials.choices, begin, used)
-    return best, best_routes
+    found = np.empty((c, 3), np.int64)
+    best, count = _write_best(stock, cost, routes.skipping, begins, partials, found)
+    return best, found[:count][::-1]
 
 
 class PartialPlans(NamedTuple):
@@ -273,6 +267,29 @@ class PartialPlans(NamedTuple):
 
     least: Array  # (c + 1, states)
     choices: Indices  # (c + 1, states, 3)
+
+
+@compiled
+def _write_best(
+    stock: Stock,
+    cost: Array,
+    skipping: Array,
+    begins: int,
+    partials: PartialPlans,
+    found: Indices,
+) -> tuple[float, int]:
+    """Write the routes of the best plan, the last one first; return its cost and their number."""
+    best, count = np.inf, 0
+    for begin in range(begins):
+        _write_partials(stock, cost, skipping, begin, partials)
+        least = partials.least[-1]
+        used = 0
+        for state in range(1, stock.states):
+            if least[state] < least[used]:
+                used = state
+        if least[used] < best:
+            best, count = least[used], _write_routes(partials.choices, begin, used, found)
+    return best, count
 
 
 @compiled
@@ -291,7 +308,7 @@ def _write_partials(
                 continue
             if least[visited, used] + skipping[place] < least[visited + 1, used]:
                 least[visited + 1, used] = least[visited, used] + skipping[place]
-                choices[visited + 1, used] = -1, 1, used
+                _set(choices[visited + 1, used], -1, 1, used)
             _add_routes(stock, cost[:, place], partials, visited, used)
 
 
@@ -308,23 +325,28 @@ def _add_routes(stock: Stock, cost: Array, partials: PartialPlans, visited: int,
             extended = least[visited, used] + cost[vehicle, count - 1]
             if extended < least[visited + count, used + step]:
                 least[visited + count, used + step] = extended
-                choices[visited + count, used + step] = vehicle, count, used
+                _set(choices[visited + count, used + step], vehicle, count, used)
 
 
-@allocating
-def _routes_to(choices: Indices, begin: int, used: int) -> Indices:
-    """Return the routes, shape (m, 3), of the partial plan of all stops in a state."""
+@inlined
+def _set(row: Indices, first: int, second: int, third: int) -> None:
+    """Set three numbers: numba compiles 10 functions for an assignment of all."""
+    row[0], row[1], row[2] = first, second, third
+
+
+@compiled
+def _write_routes(choices: Indices, begin: int, used: int, found: Indices) -> int:
+    """Write the routes of the partial plan of all stops in a state; return their number."""
     c = visited = len(choices) - 1
-    found = np.empty((c, 3), np.int64)
     m = 0
     while visited > 0:
         vehicle, count, before = choices[visited, used]
         visited -= count
         used = before
         if vehicle >= 0:
-            found[m] = vehicle, (begin + visited) % c, count
+            _set(found[m], vehicle, (begin + visited) % c, count)
             m += 1
-    return found[:m][::-1].copy()
+    return m
 
 
 def plan_of(sequence: Indices, routes: Indices) -> Plan:

@@ -3,7 +3,8 @@
 numba numbers what it compiles, from 1 in each process, to tell functions of one name apart: those
 inside np.sort from those inside np.argsort. Of two cached by different processes with the same
 number, whichever is loaded first is called in the other's place, and the process dies
-(numba#10486). So each process begins at a random number, far from those of all others.
+(numba#10486). So each process begins at a random number, far from those of all others. A standalone
+function has the same number in every process, as code of one process may call that of another.
 
 numba compiles a function anew where its own module has changed, but not where a function that it
 calls has. So what is cached belongs to one state of all modules with compiled code.
@@ -37,12 +38,36 @@ from service.jit.processor import compile_for_the_level
 compile_for_the_level()
 
 
+_Identity: Any = FunctionIdentity
+_identity_of = _Identity.from_function
+_NUMBER = "numbered_by_place"
+
+
 def _number_from_a_random_number() -> None:
-    FunctionIdentity._unique_ids = count(secrets.randbits(64))  # noqa: SLF001  # it has no setter
+    _Identity._unique_ids = count(secrets.randbits(64))  # noqa: SLF001  # it has no setter
 
 
 _number_from_a_random_number()
 os.register_at_fork(after_in_child=_number_from_a_random_number)
+
+
+def name_by_place(function: Any) -> None:
+    """Let compiled code of a function have the same name in every process."""
+    place = f"{function.__module__}.{function.__qualname__}"
+    setattr(function, _NUMBER, int.from_bytes(sha256(place.encode()).digest()[:8]))
+
+
+def _identity(function: Any) -> Any:
+    """Return what numba knows a function by."""
+    identity = _identity_of(function)
+    number = getattr(identity.func, _NUMBER, None)
+    if number is not None:
+        identity.unique_id = number
+        identity.unique_name = f"{identity.func_qualname}${number}"
+    return identity
+
+
+_Identity.from_function = staticmethod(_identity)
 
 
 _PACKAGE = Path(__file__).parents[1]
@@ -75,13 +100,14 @@ PRECOMPILED = _precompiled()  # does not exist where nothing was compiled in adv
 _NumbaCacheFile: Any = caching.IndexDataCacheFile  # it has no types
 
 
-class _CacheFile(_NumbaCacheFile):  # type: ignore[misc]
+class CacheFile(_NumbaCacheFile):  # type: ignore[misc]
     """The cache of one function, which processes write in turn."""
 
     def __init__(self, cache_path: str, filename_base: str, source_stamp: object) -> None:
         super().__init__(cache_path, filename_base, (source_stamp, _DIGEST))
 
     def save(self, key: Any, data: Any) -> None:
+        """Keep what was compiled, unless the folder cannot be written."""
         if not os.access(self._cache_path, os.W_OK):
             return
         with _locked(self._cache_path):
@@ -96,7 +122,7 @@ class _CacheFile(_NumbaCacheFile):  # type: ignore[misc]
         return next(name for name in names if name not in taken)
 
 
-caching.IndexDataCacheFile = _CacheFile  # type: ignore[misc]
+caching.IndexDataCacheFile = CacheFile  # type: ignore[misc]
 _NumbaLocator: Any = caching.InTreeCacheLocator
 
 
@@ -145,12 +171,3 @@ def _can_be_cached() -> bool:
 
 
 CACHED = _can_be_cached()  # whether later processes load what is compiled
-
-
-def cache_apart(dispatcher: Any) -> None:
-    """Cache what a dispatcher compiles apart from what another one of its function compiles."""
-    if CACHED:
-        cache = dispatcher._cache  # noqa: SLF001  # numba has no option for it
-        name = f"{cache._impl.filename_base}-part"  # noqa: SLF001
-        stamp = cache._impl.locator.get_source_stamp()  # noqa: SLF001
-        cache._cache_file = _CacheFile(cache.cache_path, name, stamp)  # noqa: SLF001

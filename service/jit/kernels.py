@@ -17,9 +17,9 @@ import numba
 from numba import types
 from numba.core import config
 
-from service.jit.cache import CACHED, cache_apart
+from service.jit.cache import name_by_place
 from service.jit.loading import use_cache
-from service.jit.native_code import generate_late
+from service.jit.native_code import Standalone, generate_late
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -33,7 +33,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
     Division follows numpy, and the interpreter's lock is released.
     """
-    return _kernel(function, _nrt=False)
+    return _kernel(function, _compile_as_part, _nrt=False, forceinline=False)
 
 
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
@@ -41,50 +41,98 @@ def inlined(function: Callable[P, R]) -> Callable[P, R]:
 
     Only compiled code can call it.
     """
-    return _kernel(function, _nrt=False, forceinline=True, no_cpython_wrapper=True)
+    return _kernel(
+        function, _compile_for_kernels, _nrt=False, forceinline=True, no_cpython_wrapper=True
+    )
+
+
+def standalone(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile as `compiled` does, but optimise it once: other kernels call its native code.
+
+    That is for large functions, which take long to optimise, and longer to run than a call.
+    """
+    # numba would take the option from the kernel for which it is compiled first.
+    return _kernel(function, _compile_once, _nrt=False, forceinline=False)
 
 
 def allocating(function: Callable[P, R]) -> Callable[P, R]:
     """Compile as `compiled` does, for a function that creates arrays."""
-    return _kernel(function, _nrt=True)
+    return _kernel(function, _compile_as_part, _nrt=True, forceinline=False)
 
 
-def _kernel(function: Callable[P, R], **options: bool) -> Callable[P, R]:
-    """Compile a function at its first call with each combination of argument types.
-
-    It is compiled apart for Python, which needs native code, and for other kernels, which need
-    none.
-    """
-    kernel = _dispatcher(function, **options)
-    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
-        return cast("Callable[P, R]", kernel)
-    if "no_cpython_wrapper" in options:
-        kernel.get_call_template = partial(_call_template, kernel.get_call_template)
-        _refuse_python(kernel)
-    else:
-        part = cache(partial(_part_of, kernel, options))
-        kernel.get_call_template = partial(
-            _call_template, lambda *given: part().get_call_template(*given)
-        )
-        kernel.get_overload = lambda signature: part().get_overload(signature)
+def _kernel(
+    function: Callable[P, R], set_up: Callable[[Any, Mapping[str, bool]], None], **options: bool
+) -> Callable[P, R]:
+    """Compile a function at its first call with each combination of argument types."""
+    kernel = _dispatcher(function, options)
+    if not config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+        use_cache(kernel)
+        set_up(kernel, options)
     return cast("Callable[P, R]", kernel)
+
+
+def _dispatcher(function: Callable[P, R], options: Mapping[str, bool]) -> Any:
+    compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
+    fixed = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+    return compile_lazily(**options, **fixed)(function)
+
+
+def _compile_as_part(kernel: Any, options: Mapping[str, bool]) -> None:
+    """Compile a kernel as a part of other kernels; for Python, native code is made of the part."""
+    part = cache(partial(_part_of, kernel, options))
+    kernel.get_call_template = partial(
+        _call_template, lambda *given: part().get_call_template(*given)
+    )
+    kernel.get_overload = lambda signature: part().get_overload(signature)
+    context = kernel.targetctx.subtarget(enable_nrt=options["_nrt"])
+    kernel._compiler.compile = lambda arguments, _: _entry(context, part(), arguments)  # noqa: SLF001
 
 
 def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
     """Return what compiles a kernel as a part of others, and caches it in a file of its own."""
-    part = _dispatcher(kernel.py_func, no_cpython_wrapper=True, **options)
+    part = _dispatcher(kernel.py_func, {**options, "no_cpython_wrapper": True})
     part._compiling_counter = kernel._compiling_counter  # noqa: SLF001  # where it calls itself
-    cache_apart(part)
+    use_cache(part, apart=True)
     return part
 
 
-def _dispatcher(function: Callable[P, R], **options: bool) -> Any:
-    compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
-    options |= {"nogil": True, "no_cfunc_wrapper": True}
-    dispatcher = compile_lazily(error_model="numpy", **options)(function)
-    if CACHED and not config.DISABLE_JIT:  # type: ignore[attr-defined]  # as above
-        use_cache(dispatcher)
-    return dispatcher
+def _entry(context: Any, part: Any, arguments: tuple[Any, ...]) -> Any:
+    """Return the native code with which Python calls a kernel, made of the kernel as a part."""
+    part.compile(arguments)
+    compiled = part.overloads[arguments]
+    library = context.codegen().create_library(compiled.fndesc.qualname)
+    library.enable_object_caching()
+    library.add_linking_library(compiled.library)
+    function = compiled.fndesc, compiled.environment
+    with context.push_code_library(library):
+        context.create_cpython_wrapper(library, *function, compiled.call_helper, release_gil=True)
+        entry_point = context.get_executable(library, *function)
+    return compiled._replace(library=library, entry_point=entry_point, metadata=None)
+
+
+def _compile_for_kernels(kernel: Any, _: Mapping[str, bool]) -> None:
+    """Let only other kernels call a kernel: Python's calls fail, and would crash otherwise."""
+
+    def refuse(*_: object) -> NoReturn:
+        raise TypeError(f"{kernel.__name__} can be called by compiled code alone")
+
+    kernel.get_call_template = partial(_call_template, kernel.get_call_template)
+    kernel._insert = lambda *_, **__: None  # noqa: SLF001  # no compiled code is found for a call
+    kernel._compile_for_args = refuse  # noqa: SLF001
+
+
+def _compile_once(kernel: Any, _: Mapping[str, bool]) -> None:
+    """Let other kernels call what Python calls."""
+    kernel.get_call_template = partial(_call_template, kernel.get_call_template)
+    kernel.add_overload = partial(_add_standalone, kernel.add_overload)
+    name_by_place(kernel.py_func)
+
+
+def _add_standalone(add_overload: Callable[[Any], None], compiled: Any) -> None:
+    function = compiled.fndesc
+    arguments = tuple(compiled.signature.args)
+    compiled.library.standalone = Standalone(function.modname, function.qualname, arguments)
+    add_overload(compiled)
 
 
 def _call_template(template: Any, types: Sequence[Any], named: Mapping[str, Any]) -> Any:
@@ -105,13 +153,3 @@ def _widest(given: Any) -> Any:
     if isinstance(given, types.Tuple | types.UniTuple):
         return _tuple_of([_widest(each) for each in given])
     return given
-
-
-def _refuse_python(kernel: Any) -> None:
-    """Let Python's calls of a kernel fail: without code that unpacks arguments they would crash."""
-
-    def refuse(*_: object) -> NoReturn:
-        raise TypeError(f"{kernel.__name__} can be called by compiled code alone")
-
-    kernel._insert = lambda *_, **__: None  # noqa: SLF001  # no compiled code is found for a call
-    kernel._compile_for_args = refuse  # noqa: SLF001

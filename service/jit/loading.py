@@ -12,6 +12,8 @@ from numba.core import caching, environment
 from numba.core.environment import Environment, lookup_environment
 from numba.core.runtime.nrt import rtsys
 
+from service.jit.cache import CACHED, CacheFile
+
 _NumbaCache: Any = caching.FunctionCache  # it has no types
 
 
@@ -39,9 +41,19 @@ def _rebuild_environment(module: str, constants: list[Any], name: str) -> Any:
     return found
 
 
-def use_cache(dispatcher: Any) -> None:
-    """Let the dispatcher of a function load what it has compiled before."""
-    dispatcher._cache = _Cache(dispatcher.py_func)  # noqa: SLF001  # as its enable_caching does
+def use_cache(dispatcher: Any, *, apart: bool = False) -> None:
+    """Let the dispatcher of a function load what it has compiled before.
+
+    With `apart`, that is kept apart from what another dispatcher of the function has compiled.
+    """
+    if not CACHED:
+        return
+    cache = _Cache(dispatcher.py_func)
+    if apart:
+        name = f"{cache._impl.filename_base}-part"  # noqa: SLF001  # numba has no option for it
+        stamp = cache._impl.locator.get_source_stamp()  # noqa: SLF001
+        cache._cache_file = CacheFile(cache.cache_path, name, stamp)  # noqa: SLF001
+    dispatcher._cache = cache  # noqa: SLF001  # as its enable_caching does
 
 
 environment._rebuild_env = _rebuild_environment  # noqa: SLF001

@@ -4,13 +4,14 @@ numba optimises a function together with all that it calls, and generates native
 them. Then it does the same for each function that calls it, up to those that Python calls. So a
 function that is called in several steps was optimised as many times, and most of its native code
 was for nobody. Here a function that only compiled code calls is merely linked to its callers. It is
-optimised as a part of them.
+optimised as a part of them. A standalone function is not: other functions call its native code.
 
 A library is what numba calls the code of a function for one combination of argument types.
 """
 
 from collections.abc import Iterator
-from typing import Any, TypeAlias
+from importlib import import_module
+from typing import Any, NamedTuple, TypeAlias
 
 from llvmlite import binding
 from numba.core import codegen
@@ -22,14 +23,26 @@ _Codegen: Any = codegen.JITCPUCodegen
 _Module: TypeAlias = Any  # llvmlite's, which has no types either
 
 
+class Standalone(NamedTuple):
+    """A standalone function for one combination of argument types."""
+
+    module: str
+    name: str
+    arguments: tuple[Any, ...]  # numba's types
+
+    def load(self) -> None:
+        """Load its native code from the cache, or compile it."""
+        getattr(import_module(self.module), self.name).compile(self.arguments)
+
+
 class _Library(_NumbaLibrary):  # type: ignore[misc]
-    """A library that generates native code once the address of one of its functions is asked for.
+    """A library that generates native code once the address of a function of it is asked for."""
 
-    What is loaded from the cache reads its intermediate code once another library links it.
-    """
+    standalone: Standalone | None = None  # whose code it is
 
-    _bitcode = b""
-    _shared_module: _Module
+    def __init__(self, *given: Any) -> None:
+        super().__init__(*given)
+        self._called: set[Standalone] = set()
 
     def add_linking_library(self, library: Any) -> None:
         self._linking_libraries.append(library)
@@ -54,45 +67,49 @@ class _Library(_NumbaLibrary):  # type: ignore[misc]
         return any(each.name.startswith("numba.dynamic.globals") for each in variables)
 
     def _link(self) -> None:
-        """Add the code of the libraries that this one calls."""
+        """Add the code of the libraries that this one calls, but for standalone functions."""
         libraries = dict.fromkeys(self._linking_libraries)  # in order, and each once
         self._linking_libraries.clear()
         for library in libraries:
-            self._reload_init.update(library._reload_init)  # noqa: SLF001  # of the same class
-            self._final_module.link_in(library._get_module_for_linking(), preserve=True)  # noqa: SLF001
+            if library.standalone:
+                self._called.add(library.standalone)
+                continue
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)  # noqa: SLF001  # of the same class
+            self._reload_init.update(library._reload_init)  # noqa: SLF001  # as above
+            self._called |= library._called  # noqa: SLF001  # as above
 
     def _optimize_functions(self, module: _Module) -> None:
+        """Simplify functions a little: they are optimised as parts of what calls them."""
         module.data_layout = self._codegen._data_layout  # noqa: SLF001  # as numba does
-        passes, builder = self._codegen._function_pass_manager()  # noqa: SLF001
+        passes, builder = self._codegen._function_pass_manager(opt=1)  # noqa: SLF001
         for function in _defined(module.functions):
             passes.run(function, builder)
 
     def _get_module_for_linking(self) -> _Module:
         if self._shared_module is None:
             self._link()
-            self._shared_module = (
-                binding.parse_bitcode(self._bitcode)
-                if self._bitcode
-                else _linked_by_many(self._final_module)
-            )
+            self._shared_module = _linked_by_many(self._final_module)
         return self._shared_module
 
     def serialize_using_object_code(self) -> tuple[Any, ...]:
-        bitcode = self._get_module_for_linking().as_bitcode()
         if not self._finalized:
-            return self.name, _LINKED, bitcode
+            bitcode = self._get_module_for_linking().as_bitcode()
+            return self.name, _LINKED, self._called, bitcode
         module = self._final_module
         names = {*_names(module.functions), *_names(module.global_variables)}
-        return self.name, _NATIVE, (bitcode, names, self._get_compiled_object())
+        return self.name, _NATIVE, self._called, (names, self._get_compiled_object())
 
     @classmethod
     def _unserialize(cls, generator: Any, state: tuple[Any, ...]) -> "_Library":
-        name, kind, data = state
+        name, kind, called, data = state
         library: _Library = generator.create_library(name)
+        library._called = called
+        for each in called:
+            each.load()
         if kind == _LINKED:
             library._final_module = binding.parse_bitcode(data)
             return library
-        library._bitcode, names, native = data
+        names, native = data
         library.enable_object_caching()
         library._set_compiled_object(native)
         library._finalize_final_module()

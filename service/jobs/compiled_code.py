@@ -52,19 +52,19 @@ class _Work(NamedTuple):
 
 
 _WORK: Mapping[Part, _Work] = {
-    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 14),
+    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 12),
     Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
     Part.MAPS: _Work(detours.warm_up, (detours.warm_up,), 2),
     Part.CHANGES: _Work(insertion.warm_up, (insertion.warm_up,), 1),
-    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 5),
+    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 2),
     Part.SEVERAL_OBJECTIVES: _Work(
-        several.warm_up, (several.local_search, several.beside_local_search), 11
+        several.warm_up, (several.local_search, several.beside_local_search), 9
     ),
-    Part.OVER_THE_DAY: _Work(day.warm_up, (day.warm_up,), 9),
+    Part.OVER_THE_DAY: _Work(day.warm_up, (day.warm_up,), 8),
     Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 5),
 }
 _PIECES = [(part, piece) for part, work in _WORK.items() for piece in work.pieces]
-_A_FUNCTION = 0.115  # seconds that one of the functions takes, on average
+_A_FUNCTION = 0.125  # seconds that one of the functions takes, on average
 _TELL_EVERY = 0.25  # seconds
 _FUNCTION = 255  # the sign for a function
 

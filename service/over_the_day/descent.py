@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 from service.over_the_day.moves import (
     DrivenTour,
     Move,
@@ -116,7 +116,7 @@ def insert_driven(archive: BlockArchive, traffic: Traffic, tour: Cities, departu
     return insert(archive, archive.lengths, tour)
 
 
-@compiled
+@standalone
 def descend(search: WeightedSearch, steps: int) -> bool:
     """Try moves at up to `steps` dirty cities; return whether none is dirty any more."""
     n = len(search.dirty)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
+from service.search.selection import select
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -123,15 +124,16 @@ def insert(archive: Archive, point: tuple[float, float], tour: Cities) -> bool:
 def thin(archive: Archive) -> None:
     """Drop points among the third that contribute least hypervolume, never two neighbours.
 
-    Both ends stay. O(m log m).
+    Both ends stay. O(m).
     """
     size = archive.counts[0]
-    contribution = np.empty(size)
-    contribution[0] = contribution[-1] = np.inf
+    contribution, reordered = np.empty(size), np.empty(size)
+    contribution[0] = contribution[-1] = reordered[0] = reordered[-1] = np.inf
     for k in range(1, size - 1):
         width = archive.points[k + 1, 0] - archive.points[k, 0]
         contribution[k] = width * (archive.points[k - 1, 1] - archive.points[k, 1])
-    limit = np.sort(contribution)[size // 3]
+        reordered[k] = contribution[k]
+    limit = select(reordered, size // 3)
     left = 0
     dropped = False
     for k in range(size):

@@ -81,9 +81,17 @@ def fill_kd_tree(trees: KdTrees, costs: Costs, k: int) -> None:
                 coordinates = np.empty(len(part))
                 for place in range(len(part)):
                     coordinates[place] = costs.cities[part[place], side]
-                part[:] = part[np.argsort(coordinates)]
+                sort_cities(part, coordinates)
             node += 1
         width //= 2
+
+
+@allocating
+def sort_cities(cities: Cities, keys: Array) -> None:
+    """Sort cities by their keys."""
+    ordered = cities[np.argsort(keys)]
+    for place in range(len(cities)):  # numba compiles 30 functions for an assignment of all
+        cities[place] = ordered[place]
 
 
 @compiled

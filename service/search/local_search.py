@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 from service.search.archive import Archive, accepts, insert
 from service.search.candidates import Scalarization
 from service.search.closing import is_kept, is_open
@@ -24,7 +24,6 @@ Cities = NDArray[np.int32]
 
 LONGEST_BLOCK = 50  # cities that a perturbation moves at once
 KICKS_PER_END = 8  # one kick in eight of an open route is at an end of it
-UNLIMITED = 1 << 60
 LEAST_GAIN = 2.0**-46  # as a share of the weighted length, above what rounding adds to a gain
 LEAST_OF_LARGEST = 2.0**-48  # the same of the largest cost, which a tour may have in between
 SPIKE = 16.0  # times a length: if it has been that long in between, it is summed afresh
@@ -172,17 +171,21 @@ def sum_afresh(working: QueuedTour, scalarization: Scalarization) -> None:
     working.length[0], working.length[1] = lengths(scalarization.costs, working.tour)
 
 
-@compiled
-def descend_and_offer(
-    working: WorkingTour, scalarization: Scalarization, archive: Archive, threshold: float
+@inlined
+def descend_wholly(
+    working: WorkingTour,
+    scalarization: Scalarization,
+    archive: Archive,
+    threshold: float,
+    offer_all: bool,
 ) -> None:
-    """Descend until the queue is empty, and offer the archive every tour on the way."""
+    """Descend until the queue is empty; with `offer_all` offer the archive the tours on the way."""
     while working.ring[1] > 0:
-        if improve_at(working, scalarization, dequeue(working), threshold):
+        if improve_at(working, scalarization, dequeue(working), threshold) and offer_all:
             offer(working, scalarization, archive)
 
 
-@compiled
+@standalone
 def iterated_local_search(
     working: WorkingTour,
     scalarization: Scalarization,
@@ -202,10 +205,7 @@ def iterated_local_search(
     for _ in range(steps):
         perturb(working, scalarization, random)
         rounded = spiked(working, working.saved_length[0], working.saved_length[1])
-        if offer_all:
-            descend_and_offer(working, scalarization, archive, threshold)
-        else:
-            descend(working, scalarization, threshold, UNLIMITED)
+        descend_wholly(working, scalarization, archive, threshold, offer_all)
         if rounded:
             sum_afresh(working, scalarization)
         offer(working, scalarization, archive)

@@ -166,7 +166,9 @@ def scalarization_at(state: SearchState, k: int) -> Scalarization:
     width, height = front_span(state.archive, k, SLOPE_REACH)
     w0 = height / (width + height) if width + height > 0 else 0.5
     weights, candidates, candidate_costs = state.weighted_candidates
-    k = min(int(np.searchsorted(weights[:, 0], w0)), len(weights) - 1)
+    k = 0
+    while k < len(weights) - 1 and weights[k, 0] < w0:
+        k += 1
     weight = weights[k]
     return Scalarization(state.costs, candidates[k], candidate_costs[k], weight[0], weight[1])
 

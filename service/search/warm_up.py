@@ -19,7 +19,7 @@ from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
 from service.search.local_search import least_gain, offer, sum_afresh
-from service.search.pareto_local_search import WEIGHTS, fill_gaps, scalarization_at
+from service.search.pareto_local_search import WEIGHTS, fill_gaps
 from service.search.schedule import Search
 from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import LocalSearch, ThreeOptSearch
@@ -44,18 +44,19 @@ def few_cities() -> None:
 
 
 def two_opt() -> None:
-    """Compile the local search by two-opt, the first tour, and the enumeration of few cities."""
+    """Compile the local search by two-opt, and that from points of the front."""
     instance = _instance(coordinates=True)
     search = _search(instance)
     _descend(search, search.local_search)
     scalarization = search.descents.scalarization(0)
     _offer(search, search.local_search, scalarization)
-    constructed_tour(instance, scalarization, greedy=False)
-    exact_tours(_instance(coordinates=True, n=5))
+    for number in range(WEIGHTS):
+        _rank_candidates(search.descents.scalarization(number))
+    fill_gaps(search.state, 1)
 
 
 def beside_two_opt() -> None:
-    """Compile what a search by two-opt needs besides: bound, archive, candidates."""
+    """Compile what a search by two-opt needs besides, and the enumeration of few cities."""
     instance = _instance(coordinates=True)
     best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
     hypervolume_bound(instance, instance.reference_point)
@@ -67,10 +68,10 @@ def beside_two_opt() -> None:
         rank_candidates(search.pool, scalarization)
     search.add(_TOUR[np.newaxis])
     search.not_covered(_TOUR[np.newaxis])
-    scalarization_at(search.state, 0)
     search.descents.load_start(search.local_search, scalarization)
     dominated_area(search.state.archive, *search.corner)
-    fill_gaps(search.state, 1)
+    constructed_tour(instance, scalarization, greedy=False)
+    exact_tours(_instance(coordinates=True, n=5))
 
 
 def more_cities() -> None:

@@ -35,18 +35,35 @@ def sixteenths(numbers):
 def factorial(number):
     return 1 if number < 2 else number * factorial(number - 1)
 
+@jit.standalone
+def third(number):
+    if number < 0:
+        raise ValueError("a third of less than nothing")
+    return number / 3.0
+
+@jit.inlined
+def ninth(number):
+    return third(third(number))
+
+@jit.standalone
+def eighteenth(number):
+    return half(ninth(number))
+
 @numba.njit(cache=True)
 def of_others(numbers):
     if len(numbers) == 0:
         raise ValueError("no number to divide")
-    return sixteenths(numbers)[0] + eighth(8.0) + factorial(3)
+    return sixteenths(numbers)[0] + eighth(8.0) + factorial(3) + eighteenth(36.0)
 """
 CALLS = {
     "half": ("half(3.0)", "1.5"),
     "eighth": ("eighth(4.0)", "0.5"),
     "sixteenths": ("sixteenths(np.array([32.0, 16.0])).tolist()", "[1.0, 2.0]"),
     "factorial": ("factorial(5)", "120"),
-    "of_others": ("of_others(np.array([48.0]))", "10.0"),
+    "third": ("third(12.0)", "4.0"),
+    "eighteenth": ("eighteenth(9.0)", "0.5"),
+    "negative": ("refusal(eighteenth, -1.0)", "a third of less than nothing"),
+    "of_others": ("of_others(np.array([48.0]))", "12.0"),
     "refused": ("refusal(of_others, np.empty(0))", "no number to divide"),
 }
 REFUSAL = """
@@ -61,9 +78,9 @@ def refusal(function, *arguments):
 @pytest.mark.parametrize(
     "order",
     [
-        (["half", "eighth", "factorial"], ["of_others", "sixteenths", "refused"]),
-        (["of_others", "refused"], ["eighth", "sixteenths", "half", "factorial", "of_others"]),
-        (["sixteenths"], ["refused", "of_others", "half", "sixteenths"], ["eighth", "of_others"]),
+        (["half", "eighth", "factorial", "third"], ["of_others", "sixteenths", "refused"]),
+        (["of_others", "refused"], ["eighth", "sixteenths", "half", "third", "of_others"]),
+        (["sixteenths", "eighteenth"], ["refused", "of_others", "half"], ["eighth", "negative"]),
     ],
 )
 def test_functions_give_the_same_compiled_and_loaded(
@@ -71,11 +88,26 @@ def test_functions_give_the_same_compiled_and_loaded(
 ) -> None:
     """Each process loads what those before it compiled, and links it to what it compiles itself."""
     (tmp_path / "kernels.py").write_text(KERNELS)
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": f"{tmp_path}:."}
     for names in order:
-        printed = "".join(f"print({CALLS[name][0]})\n" for name in names)
-        code = f"from kernels import *\n{REFUSAL}{printed}"
-        command = [sys.executable, "-W", "error", "-c", code]
-        ran = subprocess.run(command, env=environment, capture_output=True, text=True)
-        assert ran.stderr == ""
-        assert ran.stdout.split("\n") == [*(CALLS[name][1] for name in names), ""]
+        call(tmp_path, *names)
+
+
+def test_code_finds_a_standalone_function_that_was_compiled_after_it(tmp_path: Path) -> None:
+    """Another process has compiled it as well, and kept it later."""
+    (tmp_path / "kernels.py").write_text(KERNELS)
+    call(tmp_path, "eighteenth")
+    for kept in tmp_path.rglob("kernels.third-*"):
+        kept.unlink()
+    call(tmp_path, "third")
+    call(tmp_path, "negative", "eighteenth")
+
+
+def call(folder: Path, *names: str) -> None:
+    """Call functions in a process of its own, with a cache in a folder."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder), "PYTHONPATH": f"{folder}:."}
+    printed = "".join(f"print({CALLS[name][0]})\n" for name in names)
+    code = f"from kernels import *\n{REFUSAL}{printed}"
+    command = [sys.executable, "-W", "error", "-c", code]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert ran.stderr == ""
+    assert ran.stdout.split("\n") == [*(CALLS[name][1] for name in names), ""]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
 from service.search.archive import MAX_BYTES, MAX_POINTS, ROUNDING
+from service.search.selection import select
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -160,7 +161,7 @@ def free_row(archive: BlockArchive, row: int) -> None:
     archive.counts[0] -= 1
 
 
-@compiled
+@inlined
 def shrink(archive: BlockArchive, block: int, size: int) -> None:
     """Leave a block its first `size` rows; where there are none, the last block takes its place."""
     if size == archive.sizes[block]:
@@ -178,7 +179,7 @@ def shrink(archive: BlockArchive, block: int, size: int) -> None:
         draw_box(archive, block)
 
 
-@compiled
+@inlined
 def draw_box(archive: BlockArchive, block: int) -> None:
     """Set the box of a block to that of its points."""
     for m in range(archive.points.shape[1]):
@@ -287,7 +288,7 @@ def thin(archive: BlockArchive) -> None:
             count += 1
         for m in range(objectives):
             least[m] = min(least[m], archive.lows[block, m])
-    limit = np.sort(gathered)[size // 3]
+    limit = select(gathered, size // 3)
     for block in range(archive.counts[3] - 1, -1, -1):
         left, dropped = 0, False
         for k in range(archive.sizes[block]):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled
+from service.jit import compiled, standalone
 from service.search.candidates import Scalarization
 from service.search.local_search import (
     SPIKE,
@@ -43,7 +43,7 @@ def offer(state: StateOfSeveral, working: QueuedTour) -> bool:
     return insert(state.archive, state.archive.lengths, working.tour)
 
 
-@compiled
+@standalone
 def iterate(state: StateOfSeveral, scalarization: Scalarization, steps: int) -> None:
     """Perturb and descend `steps` times, returning to the tour before wherever that was better.
 

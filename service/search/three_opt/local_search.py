@@ -6,7 +6,7 @@ Where costs differ by direction, it only makes swaps of blocks, and chains of th
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 from service.search.archive import Archive
 from service.search.candidates import Scalarization
 from service.search.local_search import (
@@ -44,7 +44,7 @@ def improve_at(
         enqueue(working, city)
 
 
-@compiled
+@standalone
 def descend(
     working: UndoableTour,
     scalarization: Scalarization,
