@@ -60,7 +60,7 @@ def test_the_search_finds_the_least_of_both_lengths_in_costs_of_any_size(seed: i
     plans = exact_plans(fleet)
     assert plans
     exact = points_of(fleet, plans)
-    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=40_000))
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=10_000))
     assert not any(violations(fleet, plan) for plan in front.plans)
     np.testing.assert_allclose(front.points.min(axis=0), exact.min(axis=0), rtol=1e-12)
 
@@ -74,7 +74,7 @@ def front_with_one_leg(cost: float) -> FleetFront:
         visits=(Visit(), *(Visit(demand=(1,)) for _ in range(20))),
         vehicles=(VehicleType(start=0, end=0, count=3, capacity=(8,)),),
     )
-    options = FleetOptions(time_limit=inf, iterations=3_000)
+    options = FleetOptions(time_limit=inf, iterations=1_000)
     return plan_fleet(Fleet(rules=rules, costs=costs), options)
 
 
@@ -108,7 +108,7 @@ def test_a_tight_capacity_hides_neither_end_of_two_sums(seed: int) -> None:
     visits = (Visit(), *(Visit(demand=(int(rng.integers(1, 4)),)) for _ in range(7)))
     van = dataclasses.replace(VAN, capacity=(16,))
     fleet = Fleet(rules=Rules(visits=visits, vehicles=(van,)), costs=costs)
-    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=20_000))
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=5_000))
     exact = points_of(fleet, exact_plans(fleet) or ())
     np.testing.assert_array_equal(front.points.min(axis=0), exact.min(axis=0))
 
