@@ -97,15 +97,8 @@ def service_away(page: Page) -> None:
     expect(page.locator("#request-fault")).to_have_text("The service does not answer.")
 
 
-def refusals(page: Page) -> None:
-    refused_replanning(page)
-    refused_file(page)
-    service_away(page)
-    for fault in ("#replan-fault", "#file-fault", "#request-fault"):
-        expect(page.locator(fault)).to_be_visible()
-
-
-STATES = [replanned, refusals, refused_request]
+# Files that were opened are in the state of a request that is refused.
+STATES = [replanned, refused_replanning, refused_file, refused_request, service_away]
 
 
 @pytest.mark.parametrize("reach", STATES, ids=lambda reach: reach.__name__)
