@@ -98,6 +98,7 @@ def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
 
 def _entry(context: Any, part: Any, arguments: tuple[Any, ...]) -> Any:
     """Return the native code with which Python calls a kernel, made of the kernel as a part."""
+    context.refresh()  # the part may come from the cache, by a process that compiles nothing else
     part.compile(arguments)
     compiled = part.overloads[arguments]
     library = context.codegen().create_library(compiled.fndesc.qualname)

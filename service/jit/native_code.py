@@ -42,6 +42,7 @@ class _Library(_NumbaLibrary):  # type: ignore[misc]
 
     def __init__(self, *given: Any) -> None:
         super().__init__(*given)
+        self._shared_module: _Module = None
         self._called: set[Standalone] = set()
 
     def add_linking_library(self, library: Any) -> None:
