@@ -33,7 +33,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
     Division follows numpy, and the interpreter's lock is released.
     """
-    return _kernel(function, _compile_as_part, _nrt=False, forceinline=False)
+    return _kernel(function, _compile_as_part, _nrt=False)
 
 
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
@@ -51,13 +51,12 @@ def standalone(function: Callable[P, R]) -> Callable[P, R]:
 
     That is for large functions, which take long to optimise, and longer to run than a call.
     """
-    # numba would take the option from the kernel for which it is compiled first.
-    return _kernel(function, _compile_once, _nrt=False, forceinline=False)
+    return _kernel(function, _compile_once, _nrt=False)
 
 
 def allocating(function: Callable[P, R]) -> Callable[P, R]:
     """Compile as `compiled` does, for a function that creates arrays."""
-    return _kernel(function, _compile_as_part, _nrt=True, forceinline=False)
+    return _kernel(function, _compile_as_part, _nrt=True)
 
 
 def _kernel(
@@ -73,8 +72,10 @@ def _kernel(
 
 def _dispatcher(function: Callable[P, R], options: Mapping[str, bool]) -> Any:
     compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
-    fixed = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
-    return compile_lazily(**options, **fixed)(function)
+    usual = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+    # Where it is not said, numba takes it from the kernel for which another is compiled first.
+    usual["forceinline"] = False
+    return compile_lazily(**{**usual, **options})(function)
 
 
 def _compile_as_part(kernel: Any, options: Mapping[str, bool]) -> None:
@@ -84,8 +85,8 @@ def _compile_as_part(kernel: Any, options: Mapping[str, bool]) -> None:
         _call_template, lambda *given: part().get_call_template(*given)
     )
     kernel.get_overload = lambda signature: part().get_overload(signature)
-    context = kernel.targetctx.subtarget(enable_nrt=options["_nrt"])
-    kernel._compiler.compile = lambda arguments, _: _entry(context, part(), arguments)  # noqa: SLF001
+    nrt = options["_nrt"]
+    kernel._compiler.compile = lambda arguments, _: _entry(part(), nrt, arguments)  # noqa: SLF001
 
 
 def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
@@ -96,8 +97,9 @@ def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
     return part
 
 
-def _entry(context: Any, part: Any, arguments: tuple[Any, ...]) -> Any:
+def _entry(part: Any, nrt: bool, arguments: tuple[Any, ...]) -> Any:
     """Return the native code with which Python calls a kernel, made of the kernel as a part."""
+    context = part.targetctx.subtarget(enable_nrt=nrt)
     context.refresh()  # the part may come from the cache, by a process that compiles nothing else
     part.compile(arguments)
     compiled = part.overloads[arguments]
