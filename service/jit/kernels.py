@@ -104,6 +104,7 @@ def _entry(part: Any, nrt: bool, arguments: tuple[Any, ...]) -> Any:
     part.compile(arguments)
     compiled = part.overloads[arguments]
     library = context.codegen().create_library(compiled.fndesc.qualname)
+    library.linked = False  # but the part
     library.enable_object_caching()
     library.add_linking_library(compiled.library)
     function = compiled.fndesc, compiled.environment

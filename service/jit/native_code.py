@@ -39,10 +39,12 @@ class _Library(_NumbaLibrary):  # type: ignore[misc]
     """A library that generates native code once the address of a function of it is asked for."""
 
     standalone: Standalone | None = None  # whose code it is
+    linked = True  # whether other libraries may link it
 
     def __init__(self, *given: Any) -> None:
         super().__init__(*given)
         self._shared_module: _Module = None
+        self._bitcode = b""  # of one that was loaded, which is read once another library links it
         self._called: set[Standalone] = set()
 
     def add_linking_library(self, library: Any) -> None:
@@ -89,16 +91,21 @@ class _Library(_NumbaLibrary):  # type: ignore[misc]
     def _get_module_for_linking(self) -> _Module:
         if self._shared_module is None:
             self._link()
-            self._shared_module = _linked_by_many(self._final_module)
+            self._shared_module = (
+                binding.parse_bitcode(self._bitcode)
+                if self._bitcode
+                else _linked_by_many(self._final_module)
+            )
         return self._shared_module
 
     def serialize_using_object_code(self) -> tuple[Any, ...]:
+        linked = self.linked and not self.standalone
+        bitcode = self._get_module_for_linking().as_bitcode() if linked else b""
         if not self._finalized:
-            bitcode = self._get_module_for_linking().as_bitcode()
             return self.name, _LINKED, self._called, bitcode
         module = self._final_module
         names = {*_names(module.functions), *_names(module.global_variables)}
-        return self.name, _NATIVE, self._called, (names, self._get_compiled_object())
+        return self.name, _NATIVE, self._called, (bitcode, names, self._get_compiled_object())
 
     @classmethod
     def _unserialize(cls, generator: Any, state: tuple[Any, ...]) -> "_Library":
@@ -110,7 +117,7 @@ class _Library(_NumbaLibrary):  # type: ignore[misc]
         if kind == _LINKED:
             library._final_module = binding.parse_bitcode(data)
             return library
-        names, native = data
+        library._bitcode, names, native = data
         library.enable_object_caching()
         library._set_compiled_object(native)
         library._finalize_final_module()

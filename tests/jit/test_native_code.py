@@ -54,6 +54,10 @@ def of_others(numbers):
     if len(numbers) == 0:
         raise ValueError("no number to divide")
     return sixteenths(numbers)[0] + eighth(8.0) + factorial(3) + eighteenth(36.0)
+
+@numba.njit(cache=True)
+def more_of_others(numbers):
+    return 1.0 + of_others(numbers)
 """
 CALLS = {
     "half": ("half(3.0)", "1.5"),
@@ -64,6 +68,7 @@ CALLS = {
     "eighteenth": ("eighteenth(9.0)", "0.5"),
     "negative": ("refusal(eighteenth, -1.0)", "a third of less than nothing"),
     "of_others": ("of_others(np.array([48.0]))", "12.0"),
+    "more_of_others": ("more_of_others(np.array([48.0]))", "13.0"),
     "refused": ("refusal(of_others, np.empty(0))", "no number to divide"),
 }
 REFUSAL = """
@@ -80,6 +85,7 @@ def refusal(function, *arguments):
     [
         (["half", "eighth", "factorial", "third"], ["of_others", "sixteenths", "refused"]),
         (["of_others", "refused"], ["eighth", "sixteenths", "half", "third", "of_others"]),
+        (["of_others"], ["more_of_others"], ["more_of_others", "of_others"]),
         (["sixteenths", "eighteenth"], ["refused", "of_others", "half"], ["eighth", "negative"]),
     ],
 )
