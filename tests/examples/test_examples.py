@@ -60,15 +60,15 @@ def test_the_index_names_every_example() -> None:
 
 @pytest.mark.parametrize("example", OF_TOURS, ids=lambda example: example["file"])
 def test_an_example_is_answered_with_a_choice_of_tours(url: str, example: dict[str, Any]) -> None:
-    body = (EXAMPLES / example["file"]).read_bytes()
-    headers = {"Content-Type": "application/json"}
-    answer = httpx.post(url + example["path"], content=body, headers=headers, timeout=60)
+    body = json.loads((EXAMPLES / example["file"]).read_bytes())
+    body["time_limit"] = 3 * body.get("time_limit", 1.0)  # on a busy machine
+    answer = httpx.post(url + example["path"], json=body, timeout=60)
     assert answer.status_code == 200, answer.text
     lengths = np.array([item["lengths"] for item in answer.json()["front"]])
     # All objectives can be lowered by more than a tenth: there is something to choose. Of the
     # seconds over the day, which include the visits, it is less.
     assert len(lengths) >= 10
-    least = [1.02, 1.03] if "rush-hour" in example["file"] else 1.1
+    least = [1.03, 1.05] if "rush-hour" in example["file"] else 1.1
     assert (lengths.max(axis=0) > least * lengths.min(axis=0)).all()
 
 

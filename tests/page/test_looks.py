@@ -123,7 +123,6 @@ def test_every_text_is_legible_against_what_lies_behind_it(browser: Browser, rel
         page.emulate_media(color_scheme="light")
         wait_for_next_frame(page)
         assert_that_texts_are_legible(page, dark=False)
-        page.emulate_media(reduced_motion="null")
 
 
 def assert_that_texts_are_legible(page: Page, dark: bool) -> None:
