@@ -4,10 +4,14 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import httpx
+import psutil
 import pytest
 
+from tests.helpers.processes import serve_process
 from tests.helpers.processors import ANOTHER_NAME, of_the_level
 
 PLANS = """
@@ -96,7 +100,7 @@ assert not any([load_from_cache(part) for part in Part])
 def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path) -> None:
     queue, end_of_queue = os.pipe()
     os.write(end_of_queue, bytes([0]))
-    command = [sys.executable, "-m", "service.jobs.compiled_code", str(queue), "1", "1"]
+    command = [sys.executable, "-m", "service.jobs.compilers", str(queue), "1", "1"]
     ran = subprocess.run(
         command,
         stdin=subprocess.DEVNULL,
@@ -107,3 +111,16 @@ def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path)
     os.close(queue)
     os.close(end_of_queue)
     assert ran.returncode == 1
+
+
+def test_processes_that_compile_end_with_the_service(tmp_path: Path) -> None:
+    settings = {"NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_DISABLE_JIT": "0", "PARETOUR_WORKERS": "1"}
+    with serve_process(settings) as service:
+        while "compiling" not in httpx.get(f"{service.url}/health/ready").json():
+            time.sleep(0.1)
+        processes = psutil.Process(service.process.pid).children(recursive=True)
+        # The fork server, Python's resource tracker, a worker, and those that compile
+        assert len(processes) >= 3 + len(os.sched_getaffinity(0))
+        service.process.kill()
+        _, left = psutil.wait_procs(processes, timeout=30)
+    assert left == []

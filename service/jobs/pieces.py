@@ -1,0 +1,43 @@
+"""What each part of the compiled code consists of: the functions that compile it, or load it."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from service.coverage import detours
+from service.jobs.parts import Part
+from service.kinds import fleet
+from service.over_the_day import warm_up as day
+from service.replanning import insertion
+from service.search import warm_up as search
+from service.search.several import warm_up as several
+
+Compile = Callable[[], None]
+
+
+class Work(NamedTuple):
+    """The functions that compile a part, or load it.
+
+    Args:
+        whole: Compiles all of it.
+        pieces: Compile most of it, and share little, so that processes do it side by side.
+        seconds: That it takes of a processor, about.
+    """
+
+    whole: Compile
+    pieces: Sequence[Compile]
+    seconds: int
+
+
+WORK: Mapping[Part, Work] = {
+    Part.FEW_CITIES: Work(search.few_cities, (search.two_opt, search.beside_two_opt), 12),
+    Part.MORE_CITIES: Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
+    Part.MAPS: Work(detours.warm_up, (detours.warm_up,), 2),
+    Part.CHANGES: Work(insertion.warm_up, (insertion.warm_up,), 1),
+    Part.FLEETS: Work(fleet.warm_up, (fleet.warm_up,), 2),
+    Part.SEVERAL_OBJECTIVES: Work(
+        several.warm_up, (several.local_search, several.beside_local_search), 9
+    ),
+    Part.OVER_THE_DAY: Work(day.warm_up, (day.warm_up,), 8),
+    Part.MANY_CITIES: Work(search.many_cities, (search.many_cities,), 5),
+}
+PIECES = [(part, piece) for part, work in WORK.items() for piece in work.pieces]
