@@ -134,10 +134,8 @@ class Descents:
         """
         working, archive = self.local_search.working, self.state.archive
         enqueue_cities(working, cities)
-        value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
-        threshold = least_gain(scalarization, value)
         block = 1 + self.n // OFFERS if offering else DESCENT_BLOCK
-        while self.local_search.descend(scalarization, threshold, block) == 0:
+        while self.local_search.descend(scalarization, block) == 0:
             if offering:  # with lengths as updated: to sum them afresh takes as long as the rest
                 insert(archive, (working.length[0], working.length[1]), working.tour)
             yield 0

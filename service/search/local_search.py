@@ -24,6 +24,7 @@ Cities = NDArray[np.int32]
 
 LONGEST_BLOCK = 50  # cities that a perturbation moves at once
 KICKS_PER_END = 8  # one kick in eight of an open route is at an end of it
+NO_END = 1 << 62  # cities: more than any descent takes from its queue
 LEAST_GAIN = 2.0**-46  # as a share of the weighted length, above what rounding adds to a gain
 LEAST_OF_LARGEST = 2.0**-48  # the same of the largest cost, which a tour may have in between
 SPIKE = 16.0  # times a length: if it has been that long in between, it is summed afresh
@@ -79,20 +80,6 @@ def make_move(
     apply_move(working, start, a, b, flip)
     working.length[0] += delta[0]
     working.length[1] += delta[1]
-
-
-@compiled
-def descend(
-    working: WorkingTour, scalarization: Scalarization, threshold: float, budget: int
-) -> int:
-    """Make improving moves at queued cities until the queue or `budget`, in cities, is used up.
-
-    Returns what is left of the budget: 0 if the descent may not have ended.
-    """
-    while working.ring[1] > 0 and budget > 0:
-        improve_at(working, scalarization, dequeue(working), threshold)
-        budget -= 1
-    return budget
 
 
 @inlined
@@ -172,40 +159,56 @@ def sum_afresh(working: QueuedTour, scalarization: Scalarization) -> None:
 
 
 @inlined
-def descend_wholly(
+def descend(
     working: WorkingTour,
     scalarization: Scalarization,
     archive: Archive,
     threshold: float,
+    budget: int,
     offer_all: bool,
-) -> None:
-    """Descend until the queue is empty; with `offer_all` offer the archive the tours on the way."""
-    while working.ring[1] > 0:
+) -> int:
+    """Make improving moves at queued cities until the queue or `budget`, in cities, is used up.
+
+    With `offer_all` the archive is offered the tours on the way. Returns what is left of the
+    budget.
+    """
+    while working.ring[1] > 0 and budget > 0:
         if improve_at(working, scalarization, dequeue(working), threshold) and offer_all:
             offer(working, scalarization, archive)
+        budget -= 1
+    return budget
 
 
 @standalone
-def iterated_local_search(
+def iterated_local_search(  # noqa: PLR0913  # as it is two functions in one
     working: WorkingTour,
     scalarization: Scalarization,
     archive: Archive,
     random: NDArray[np.int64],
     steps: int,
+    budget: int,
     offer_all: bool,
-) -> None:
-    """Perturb and descend `steps` times, returning to the tour before wherever that was better.
+) -> int:
+    """Descend, then perturb and descend `steps` times, returning wherever the tour was better.
 
     Every local optimum is offered to the archive; with `offer_all`, so is every tour on the way.
+    With no steps it is a descent, and nothing is offered: to compile one function for both takes
+    half the time.
+
+    Returns what is left of the budget, in cities of the queue: 0 if the last descent may not have
+    ended.
     """
     w0, w1 = scalarization.w0, scalarization.w1
     value = w0 * working.length[0] + w1 * working.length[1]
     threshold = least_gain(scalarization, value)
-    save(working)
-    for _ in range(steps):
-        perturb(working, scalarization, random)
-        rounded = spiked(working, working.saved_length[0], working.saved_length[1])
-        descend_wholly(working, scalarization, archive, threshold, offer_all)
+    rounded = False
+    for step in range(steps + 1):
+        if step > 0:
+            perturb(working, scalarization, random)
+            rounded = spiked(working, working.saved_length[0], working.saved_length[1])
+        budget = descend(working, scalarization, archive, threshold, budget, offer_all)
+        if steps == 0:
+            break
         if rounded:
             sum_afresh(working, scalarization)
         offer(working, scalarization, archive)
@@ -215,3 +218,4 @@ def iterated_local_search(
             save(working)
         else:
             restore(working)
+    return budget

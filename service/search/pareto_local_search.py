@@ -16,7 +16,7 @@ from service.jit import compiled, inlined
 from service.search.archive import Archive
 from service.search.candidates import CANDIDATES_PER_CITY, Scalarization
 from service.search.costs import Costs
-from service.search.local_search import iterated_local_search, random_below
+from service.search.local_search import NO_END, iterated_local_search, random_below
 from service.search.working_tour import WorkingTour, load
 
 Array = NDArray[np.float64]
@@ -183,4 +183,4 @@ def fill_gaps(state: SearchState, rounds: int) -> None:
         archive.tries[slot] += 1
         scalarization = scalarization_at(state, k)
         load(working, archive.tours[slot], archive.points[k, 0], archive.points[k, 1])
-        iterated_local_search(working, scalarization, archive, state.random, STEPS, True)
+        iterated_local_search(working, scalarization, archive, state.random, STEPS, NO_END, True)

@@ -18,7 +18,7 @@ from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
-from service.search.local_search import least_gain, offer, sum_afresh
+from service.search.local_search import offer, sum_afresh
 from service.search.pareto_local_search import WEIGHTS, fill_gaps
 from service.search.schedule import Search
 from service.search.starts.constructed_tour import constructed_tour
@@ -124,12 +124,12 @@ def _offer(search: Search, local_search: LocalSearch, scalarization: Scalarizati
 
 
 def _descend(search: Search, local_search: LocalSearch) -> None:
-    """Descend and iterate from a tour, with a local search."""
+    """Search from a tour, with a local search."""
     scalarization = search.descents.scalarization(WEIGHTS // 2)
     _rank_candidates(scalarization)
     local_search.load(_TOUR, *lengths(scalarization.costs, _TOUR))
     enqueue_cities(local_search.working, _TOUR)
-    local_search.descend(scalarization, least_gain(scalarization, 1.0), 1)
+    local_search.descend(scalarization, 1)
     local_search.iterate(scalarization, 1)
 
 

@@ -138,9 +138,8 @@ class DescentsOfSeveral:
         """
         working = self._local_search.working
         enqueue_cities(working, cities)
-        threshold = least_gain(scalarization, working.length.sum())
         block = 1 + self._n // OFFERS if offering else DESCENT_BLOCK
-        while self._local_search.descend(scalarization, threshold, block) == 0:
+        while self._local_search.descend(scalarization, block) == 0:
             if offering:
                 offer(self._state, working)
             yield 0

@@ -6,8 +6,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.search import local_search, working_tour
+from service.search import working_tour
 from service.search.candidates import Scalarization
+from service.search.local_search import NO_END, iterated_local_search, least_gain
 from service.search.pareto_local_search import LARGE, MENDING, SearchState
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
@@ -37,8 +38,8 @@ class LocalSearch(Protocol):
     def load(self, tour: Cities, first: float, second: float) -> None:
         """Replace the working tour by another of known lengths, with an empty queue."""
 
-    def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
-        """Make moves that gain more than a threshold; return the rest of the budget of cities."""
+    def descend(self, scalarization: Scalarization, budget: int) -> int:
+        """Make improving moves; return the rest of the budget of cities, 0 if more may follow."""
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
         """Perturb and descend `steps` times, each time returning to the better tour."""
@@ -75,14 +76,18 @@ class TwoOptSearch:
         """Replace the working tour."""
         working_tour.load(self.working, tour, first, second)
 
-    def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
-        """Make moves that gain more."""
-        return local_search.descend(self.working, scalarization, threshold, budget)
+    def descend(self, scalarization: Scalarization, budget: int) -> int:
+        """Make improving moves."""
+        return self._search(scalarization, 0, budget)
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
         """Perturb and descend."""
+        self._search(scalarization, steps, NO_END)
+
+    def _search(self, scalarization: Scalarization, steps: int, budget: int) -> int:
         _, _, archive, working, random = self.state
-        local_search.iterated_local_search(working, scalarization, archive, random, steps, False)
+        given = working, scalarization, archive, random
+        return iterated_local_search(*given, steps, budget, False)
 
 
 @dataclass(frozen=True)
@@ -97,8 +102,11 @@ class ThreeOptSearch:
         """Replace the working tour."""
         undoable_tour.load(self.working, tour, first, second)
 
-    def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
-        """Make exchanges that gain more."""
+    def descend(self, scalarization: Scalarization, budget: int) -> int:
+        """Make improving exchanges."""
+        first, second = self.working.length
+        value = scalarization.w0 * first + scalarization.w1 * second
+        threshold = least_gain(scalarization, value)
         return three_opt.descend(self.working, scalarization, threshold, budget, False)
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
