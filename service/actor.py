@@ -13,6 +13,7 @@ from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
 from service.instance import PLANE, Instance
 from service.onnx_runtime import onnxruntime
+from service.sessions import open_session
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -32,7 +33,7 @@ class OnnxActor:
     """The network of an ONNX file, which runs in a number of threads.
 
     The file's metadata are read at once. `load` or the first call opens its inference session: that
-    takes up to two seconds, and a process often needs only a few of the actors.
+    takes up to a second, and a process often needs only a few of the actors.
 
     Raises:
         ValueError: The file is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
@@ -42,7 +43,7 @@ class OnnxActor:
         content = path.read_bytes()
         self.info = read_actor_info(content, path)
         self.estimate = CallEstimate(self.info.inputs)
-        self._open = partial(_open_session, content, path, threads)
+        self._open = partial(open_session, content, path, threads)
         self._session: onnxruntime.InferenceSession | None = None
         self._loading = Lock()
         self._lock = Lock()
@@ -194,21 +195,6 @@ def _without_tied_costs(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
         return matrices
     factors = np.random.default_rng(0).random(matrices.shape, np.float32)
     return matrices * (1 + np.float32(_JITTER) * factors)
-
-
-def _open_session(content: bytes, path: Path, threads: int) -> onnxruntime.InferenceSession:
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = threads
-    options.inter_op_num_threads = 1
-    # Planning memory for the shapes of a call takes 2 to 3 % of it, and the shapes rarely recur.
-    options.enable_mem_pattern = False
-    # Threads that spin while they wait would slow down the plans of other processes.
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    try:
-        return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
-    except Exception as error:  # ONNX Runtime has a class for each of its codes, and no common one
-        reason = str(error).strip().partition("\n")[0]
-        raise ValueError(f"{path} must be an ONNX file that can be read: {reason}") from error
 
 
 def _run_options(many: bool) -> onnxruntime.RunOptions:

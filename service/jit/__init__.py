@@ -1,6 +1,6 @@
 """Compile functions with numba, and cache them: the one place that configures numba."""
 
-from service.jit.cache import CACHED, PRECOMPILED
+from service.jit.cache import CACHED, PRECOMPILED, folder
 from service.jit.kernels import allocating, compiled, inlined, standalone
 
-__all__ = ["CACHED", "PRECOMPILED", "allocating", "compiled", "inlined", "standalone"]
+__all__ = ["CACHED", "PRECOMPILED", "allocating", "compiled", "folder", "inlined", "standalone"]

@@ -158,16 +158,17 @@ def _locked(folder: str) -> Iterator[None]:
         os.close(descriptor)
 
 
-def _can_be_cached() -> bool:
-    """Return whether numba finds a folder: PRECOMPILED, beside this file, or the user's.
+def folder() -> Path | None:
+    """Return the folder that numba finds: in PRECOMPILED, beside this file, or the user's.
 
-    A read-only container may have none, and each start compiles anew.
+    A read-only container may have none, and each start compiles anew. What else later processes
+    need may be kept there too.
     """
     try:
-        numba.njit(cache=True)(lambda: None)
+        cached: Any = numba.njit(cache=True)(lambda: None)
     except RuntimeError:
-        return False
-    return True
+        return None
+    return Path(cached._cache.cache_path) if hasattr(cached, "_cache") else None  # noqa: SLF001  # it has no getter
 
 
-CACHED = _can_be_cached()  # whether later processes load what is compiled
+CACHED = folder() is not None  # whether later processes load what is compiled

@@ -108,8 +108,16 @@ def test_the_wheel_is_for_this_python_and_platform_and_demands_this_numba(wheel:
         assert f"Requires-Dist: numba=={numba.__version__}\n" in archive.read(metadata).decode()
 
 
+def test_the_wheel_carries_the_graphs_of_the_released_networks(wheel: Path) -> None:
+    with ZipFile(wheel) as archive:
+        graphs = [Path(name) for name in archive.namelist() if name.endswith(".ort")]
+    assert all(graph.is_relative_to("service/precompiled") for graph in graphs)
+    names = {path.stem for path in (ROOT / "service/actors").glob("*.onnx")}
+    assert {graph.stem.rpartition("-")[0] for graph in graphs} == names
+
+
 def test_without_the_request_the_wheel_is_for_all_and_carries_nothing(tmp_path: Path) -> None:
     wheel = wheel_of(ROOT, tmp_path, "0")
     assert wheel.stem.endswith("-py3-none-any")
     with ZipFile(wheel) as archive:
-        assert not [name for name in archive.namelist() if name.endswith((".nbi", ".nbc"))]
+        assert not [name for name in archive.namelist() if name.endswith((".nbi", ".nbc", ".ort"))]
