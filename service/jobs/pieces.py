@@ -1,4 +1,4 @@
-"""What each part of the compiled code consists of: the functions that compile it, or load it."""
+"""The functions that compile each part of the compiled code, or load it."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
