@@ -137,7 +137,7 @@ def test_a_good_file_takes_the_place_of_an_example_under_way(opened: Page) -> No
 
 def test_nothing_is_planned_before_the_page_is_loaded(browser: Browser, released: str) -> None:
     with open_page(browser, f"{released}/page/icon.svg") as page:
-        script = Held(page, "**/page/main.js")
+        script = Held(page, "**/main.js")
         page.goto(released, wait_until="commit")
         expect(button(page, "Plan")).to_be_disabled()
         script.release()

@@ -1,12 +1,18 @@
-"""Static files: the page at `/`, the HTTP reference at `/docs`, and the examples."""
+"""Static files: the page at `/`, the HTTP reference at `/docs`, and the examples.
+
+The page is made of more than a hundred files. Their addresses contain its version, a digest of them
+all, so that a browser asks for them once, and not again at each visit.
+"""
 
 from collections.abc import Awaitable, Callable
+from functools import lru_cache
+from hashlib import sha256
 from pathlib import Path
 
 from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import HTMLResponse, Response
 from starlette.routing import BaseRoute, Route
 from starlette.staticfiles import StaticFiles
 
@@ -16,16 +22,19 @@ _REFERENCE = _SERVICE / "reference"
 _EXAMPLES = _SERVICE / "examples"
 _COMPRESSED = [Middleware(GZipMiddleware)]  # plain text, which anybody may read
 REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
+_KEEP = {"Cache-Control": "public, max-age=31536000, immutable"}  # a year
+_VERSION = "version-"  # how the version begins in the address of a file
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
 
 
 def static_routes() -> list[BaseRoute]:
     """Return the routes of the page, the HTTP reference, and the files that they load."""
+    page = _Page()
     return [
-        Route("/", files(_PAGE), middleware=_COMPRESSED),
+        Route("/", page.index, middleware=_COMPRESSED),
         Route("/docs", files(_REFERENCE), middleware=_COMPRESSED),
-        Route("/page/{path:path}", files(_PAGE), middleware=_COMPRESSED),
+        Route("/page/{path:path}", page.file, middleware=_COMPRESSED),
         Route("/docs/{path:path}", files(_REFERENCE), middleware=_COMPRESSED),
         Route("/examples/{path}.json", files(_EXAMPLES, ".json"), middleware=_COMPRESSED),
     ]
@@ -45,3 +54,43 @@ def files(folder: Path, suffix: str = "") -> _Endpoint:
         return response
 
     return answer
+
+
+class _Page:
+    """The files of the page, and their version when the page was last asked for."""
+
+    def __init__(self) -> None:
+        self._files = StaticFiles(directory=_PAGE)
+        self._version = _version()
+
+    async def index(self, request: Request) -> Response:
+        """Answer with `index.html`, in which the addresses of files have the present version."""
+        self._version = _version()
+        document = (_PAGE / "index.html").read_text()
+        headers = {**REVALIDATE, "ETag": f'"{self._version}"'}
+        if headers["ETag"] in request.headers.get("If-None-Match", ""):
+            return Response(status_code=304, headers=headers)
+        versioned = document.replace('="page/', f'="page/{self._version}/')
+        return HTMLResponse(versioned, headers=headers)
+
+    async def file(self, request: Request) -> Response:
+        """Answer with a file, with or without a version in its address."""
+        path = request.path_params["path"]
+        version, _, rest = path.partition("/")
+        versioned = version.startswith(_VERSION)
+        response = await self._files.get_response(rest if versioned else path, request.scope)
+        # Of another version, which another replica may have, only the address is known.
+        response.headers.update(_KEEP if version == self._version else REVALIDATE)
+        return response
+
+
+def _version() -> str:
+    """Return the version of the page. A developer changes its files while the service runs."""
+    stats = ((path, path.stat()) for path in sorted(_PAGE.rglob("*")) if path.is_file())
+    return _digest(tuple((path, stat.st_mtime_ns, stat.st_size) for path, stat in stats))
+
+
+@lru_cache(maxsize=1)
+def _digest(files: tuple[tuple[Path, int, int], ...]) -> str:
+    contents = (str(path.relative_to(_PAGE)).encode() + path.read_bytes() for path, _, _ in files)
+    return _VERSION + sha256(b"".join(contents)).hexdigest()[:16]
