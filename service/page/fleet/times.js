@@ -1,4 +1,4 @@
-/** The clock of a plan: its times in words, and the marks of an axis. */
+/** The clock of a plan or tour: its times in words, and the marks of an axis. */
 
 import { SECONDS } from "../common/durations.js";
 
@@ -18,6 +18,12 @@ export function clockOf(times, unit) {
   const short = (to - from) * second < SHORT;
   const said = second ? (time) => hours(time * second, short) : (time) => `${Number(time.toPrecision(6))}${unit && ` ${unit}`}`;
   return { from, to, said, marks: (most) => multiples(from, to, stepOf((to - from) / most, second)) };
+}
+
+/** When a tour over the day leaves, as it reaches each of its stops, and when it ends; none of a tour without a day. */
+export function hoursOf(tour) {
+  if (!tour?.times) return [];
+  return tour.times.map(clockOf([tour.departure, ...tour.times], "s").said);
 }
 
 /** Hours and minutes, and seconds too if the whole time is short. */

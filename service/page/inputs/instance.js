@@ -1,13 +1,12 @@
 /** Describe what is asked for, and make the request for it. */
 
-import { isCity } from "./cities.js";
-import { rounded } from "./distances.js";
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
 import { DISTANCE, UNNAMED, namesIn, unnamed } from "../common/objectives.js";
 import { framed } from "./map_ends.js";
 import { nameOf } from "./names.js";
+import { isCity } from "./places.js";
 import { Problem } from "../planning/service.js";
 
 const COUNTS = { 2: "Two", 3: "Three", 4: "Four" };
@@ -96,4 +95,13 @@ function wholeDistances(rows) {
     throw new Problem({ code: "too-many-cities", detail, errors: [{ pointer: "/coordinates", detail }] });
   }
   return [0, 2].map((axis) => rounded(rows.map((row) => row.slice(axis, axis + 2))));
+}
+
+/** Distances in a plane from each place to each, as TSPLIB's EUC_2D has them: rounded to whole numbers. */
+const rounded = (places) =>
+  places.map((from) => places.map((to) => Math.floor(distance(from, to) + 0.5)));
+
+/** Not Math.hypot, whose last digit may be another, and decide what a half is rounded to. */
+function distance([x, y], [u, v]) {
+  return Math.sqrt((x - u) * (x - u) + (y - v) * (y - v));
 }

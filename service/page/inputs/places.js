@@ -1,5 +1,11 @@
 /** Tell where the stops of a request lie: on the earth, in the planes of its objectives, or nowhere. */
 
+/** Cities as text: a row of four numbers on each line. */
+export const textOf = (rows) => rows.map((row) => row.join(", ")).join("\n");
+
+/** Whether the row can be drawn. */
+export const isCity = (row) => row.length === 4 && row.every(Number.isFinite);
+
 /** Marks a map of the earth, in place of the number of an objective's plane. */
 export const EARTH = "earth";
 

@@ -1,6 +1,5 @@
 /** The form, put together: stops as a table and as text, the objectives, and the settings. */
 
-import { isCity, textOf } from "./cities.js";
 import { CostLayers } from "./cost_layers.js";
 import { DayForm } from "./day_form.js";
 import { Fields } from "./fields.js";
@@ -11,6 +10,7 @@ import { RequestText } from "../fleet/request_text.js";
 import { placedAt, withRobotEnd } from "./map_ends.js";
 import { isProposed, withoutLayer } from "./map_proposal.js";
 import { nameOf } from "./names.js";
+import { isCity, textOf } from "./places.js";
 import { PlanLine } from "./plan_line.js";
 import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";

@@ -3,7 +3,7 @@
 import { change, compared } from "../common/amounts.js";
 import { withUnit } from "../common/objectives.js";
 import { noteOn } from "./notes.js";
-import { hoursOf } from "./hours.js";
+import { hoursOf } from "../fleet/times.js";
 
 const HOURS = [["Leaves at", 0], ["Ends at", -1]];
 

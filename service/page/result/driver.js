@@ -3,10 +3,9 @@
 import { SECONDS } from "../common/durations.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
-import { clockOf } from "../fleet/times.js";
+import { clockOf, hoursOf } from "../fleet/times.js";
 import { clockUnit } from "../fleet/units.js";
 import { quoted } from "./exports.js";
-import { hoursOf } from "./hours.js";
 
 const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", "arrives", "load"];
 

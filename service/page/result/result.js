@@ -14,7 +14,7 @@ import { Maps } from "../map/maps.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
-import { hoursOf } from "./hours.js";
+import { hoursOf } from "../fleet/times.js";
 import { visitItem } from "../common/visit_item.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";

@@ -1,23 +1,17 @@
 /** Find the tour of a front that is nearest to a balance or to a place on the chart. */
 
 /** The index of the tour nearest to a balance: 0 at the least first length, 1 at the least second. */
-export function nearest(front, balance) {
-  let best = 0;
-  for (let index = 1; index < front.length; index++) {
-    if (Math.abs(front[index].balance - balance) < Math.abs(front[best].balance - balance)) best = index;
-  }
-  return best;
-}
+export const nearest = (front, balance) => least(front, (item) => Math.abs(item.balance - balance));
 
 /** The index of the tour that is drawn nearest to a place on the chart. */
-export function drawnNearest(front, place, position) {
-  const distance = (item) => {
+export const drawnNearest = (front, place, position) =>
+  least(front, (item) => {
     const [x, y] = position(item.lengths);
     return Math.hypot(x - place[0], y - place[1]);
-  };
-  let best = 0;
-  front.forEach((item, index) => {
-    if (distance(item) < distance(front[best])) best = index;
   });
-  return best;
+
+/** The index of the first tour that is least far; 0 if there is none. */
+function least(front, distance) {
+  const far = front.map(distance);
+  return far.reduce((best, each, at) => (each < far[best] ? at : best), 0);
 }
