@@ -1,9 +1,9 @@
 /** The plane of two of three or more objectives: a dot for each tour, coloured by another objective. */
 
 import { amount, compared, figure } from "../common/amounts.js";
+import { svgElement } from "../common/elements.js";
 import { titled, withUnit } from "../common/objectives.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = { left: 64, right: 16, top: 28, bottom: 40 };
 const REACH = 40; // pixels within which a click selects a dot
 const SHADES = 5; // of the colour, from the least to the greatest
@@ -11,7 +11,7 @@ const CHOICES = [["across", "Across"], ["up", "Up"], ["shade", "Colour"]];
 
 export class Scatter {
   #element;
-  #svg = document.createElementNS(SVG, "svg");
+  #svg = svgElement("svg", { "aria-hidden": true });
   #choices;
   #key = Object.assign(document.createElement("p"), { className: "shades" }); // what the colours mean
   #front = [];
@@ -29,7 +29,6 @@ export class Scatter {
   constructor(element, choices, { onSelect, onPreview }) {
     this.#element = element;
     this.#choices = choices;
-    this.#svg.setAttribute("aria-hidden", "true");
     element.append(this.#svg);
     this.#svg.addEventListener("click", (event) => this.#at(event, onSelect));
     this.#svg.addEventListener("pointermove", (event) => this.#at(event, onPreview, () => onPreview(null)));
@@ -113,9 +112,9 @@ export class Scatter {
   #frame(width, height) {
     const [across, up] = this.#axes;
     const bottom = height - MARGIN.bottom;
-    const line = made("path", { class: "axes", d: `M${MARGIN.left} ${MARGIN.top}V${bottom}H${width - MARGIN.right}` });
+    const line = svgElement("path", { class: "axes", d: `M${MARGIN.left} ${MARGIN.top}V${bottom}H${width - MARGIN.right}` });
     const [[left, right], [low, high]] = [across, up].map((axis) => this.#ends[axis].map((value) => compared(value, this.#objectives[axis])));
-    const said = (x, y, anchor, text) => Object.assign(made("text", { x, y, "text-anchor": anchor }), { textContent: text });
+    const said = (x, y, anchor, text) => svgElement("text", { x, y, "text-anchor": anchor }, text);
     return [
       line,
       said(MARGIN.left, bottom + 16, "start", left),
@@ -140,7 +139,7 @@ export class Scatter {
 
   #dot(lengths, name, r) {
     const [cx, cy] = this.#place(lengths);
-    return made("circle", { class: name, cx, cy, r });
+    return svgElement("circle", { class: name, cx, cy, r });
   }
 
   /** Reports the tour within reach of a pointer, those within the limits first, or none. */
@@ -162,10 +161,4 @@ export class Scatter {
     const ranges = this.#objectives.map((objective, axis) => `${objective.name} from ${this.#ends[axis].map((value) => figure(value, objective)).join(" to ")}`);
     return `A choice of ${count} ${count === 1 ? one : many}: ${ranges.join(", ")}`;
   }
-}
-
-function made(name, attributes) {
-  const element = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  return element;
 }

@@ -1,7 +1,6 @@
 /** The cells of the tables of a fleet: members of stops and vehicles as text, and text as their values. */
 
-import { SECONDS } from "../common/durations.js";
-import { timeOfDay, timeText } from "../common/times_of_day.js";
+import { SECONDS, timeOfDay, timeText } from "../common/durations.js";
 import { clockUnit } from "./units.js";
 
 const [MINUTE, HOUR] = [60, 3600]; // seconds

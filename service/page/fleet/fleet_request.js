@@ -1,4 +1,4 @@
-/** The request of a fleet or of robots, in a few words and as JSON. */
+/** The request of a fleet or of robots: in a few words, and as JSON in a part of the form that unfolds. */
 
 import { counted } from "../common/numbers.js";
 
@@ -19,10 +19,33 @@ export const describedRobots = ({ robots }, map) =>
 const ROWS = ["matrix", "coordinates", "grid", "cost_layer", "layer", "second_matrix", "second_coordinates"];
 
 /** The request as JSON; costs, planes and maps in a few words. */
-export function jsonOf(asked) {
+function jsonOf(asked) {
   const short = (name, value) =>
     ROWS.includes(name) && Array.isArray(value)
       ? `${value.length} rows of ${value[0]?.length ?? 0} numbers`
       : value;
   return JSON.stringify(asked, short, 1);
+}
+
+export class RequestText {
+  #details;
+  #asked = null;
+
+  constructor(details) {
+    this.#details = details;
+    details.addEventListener("toggle", () => this.#write());
+  }
+
+  /** Shows a request; hides itself if there is none. */
+  show(asked) {
+    this.#asked = asked;
+    this.#details.hidden = !asked;
+    this.#write();
+  }
+
+  /** Writes nothing while it is folded: requests may be long. */
+  #write() {
+    const text = this.#asked && this.#details.open ? jsonOf(this.#asked) : "";
+    this.#details.querySelector("pre").textContent = text;
+  }
 }

@@ -1,7 +1,7 @@
 /** One vehicle's lane over time: a line while it is under way, and what it does at each stop. */
 
 import { routeStyle } from "./route_styles.js";
-import { svgElement } from "./svg.js";
+import { svgElement } from "../common/elements.js";
 
 export const LANE = 42; // pixels of height; the name takes the upper half
 const [NAME, BAR] = [17, 12]; // pixels: where the bar begins, and its height

@@ -1,7 +1,7 @@
 /** A lane for each vehicle of a plan over one axis of time, as SVG, in which a stop can be chosen. */
 
 import { LANE, laneElements, stripes, windowElements } from "./lane.js";
-import { svgElement } from "./svg.js";
+import { svgElement } from "../common/elements.js";
 
 const [TOP, SIDE] = [20, 8]; // pixels of room for the axis, and beside the lanes
 const [APART, OF_DAYS] = [64, 92]; // pixels from one mark of the axis to the next, at least; where days are said

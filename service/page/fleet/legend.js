@@ -1,6 +1,7 @@
 /** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, and its lengths. */
 
 import { compared } from "../common/amounts.js";
+import { made } from "../common/elements.js";
 import { isLongest, withUnit } from "../common/objectives.js";
 import { stylesOf, swatch } from "./route_styles.js";
 import { visits } from "./routes_of_plan.js";
@@ -11,27 +12,17 @@ export function showLegend(table, plan, movers, asked, objectives, names) {
   const styles = stylesOf(plan.routes, asked.robots);
   const counts = plan.routes.map((route) => visits(route, movers, asked));
   const rows = plan.routes.map((route, at) => {
-    const head = made("th", names[at], "row");
-    head.prepend(swatch(styles[at]));
+    const head = made("th", { scope: "row" }, swatch(styles[at]), names[at]);
     return [head, ...cells([counts[at], ...said(route)])];
   });
   const all = counts.reduce((sum, count) => sum + count, 0);
-  table.tHead.replaceChildren(line([movers.one, movers.stops, ...objectives.map(titleOf)].map((title) => made("th", title, "col"))));
+  table.tHead.replaceChildren(line([movers.one, movers.stops, ...objectives.map(titleOf)].map((title) => made("th", { scope: "col" }, title))));
   table.tBodies[0].replaceChildren(...rows.map(line));
-  table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...said(plan).map((value, axis) => `${value}${isLongest(objectives[axis]) ? ", the longest" : ""}`)])]));
+  table.tFoot.replaceChildren(line([made("th", { scope: "row" }, "Plan"), ...cells([all, ...said(plan).map((value, axis) => `${value}${isLongest(objectives[axis]) ? ", the longest" : ""}`)])]));
 }
 
 /** The title of a column: each row has the whole of its own route where the plan has the longest of all. */
 const titleOf = (objective) => withUnit(isLongest(objective) ? { ...objective, name: "whole route" } : objective);
 
-const cells = (values) => values.map((value) => made("td", value));
-
-function made(tag, textContent, scope) {
-  return Object.assign(document.createElement(tag), { textContent, ...(scope && { scope }) });
-}
-
-function line(parts) {
-  const row = document.createElement("tr");
-  row.append(...parts);
-  return row;
-}
+const cells = (values) => values.map((value) => made("td", {}, value));
+const line = (parts) => made("tr", {}, ...parts);

@@ -2,8 +2,8 @@
 
 import { amount } from "../common/amounts.js";
 import { UNNAMED } from "../common/objectives.js";
-import { visitItem } from "../common/visit_item.js";
-import { nameOf } from "../inputs/names.js";
+import { visitItem } from "../common/elements.js";
+import { nameOf } from "../inputs/places.js";
 import { ChosenVisit } from "./chosen_visit.js";
 import { knownFleet } from "./known_fleet.js";
 import { Lanes } from "./lanes.js";

@@ -1,5 +1,6 @@
 /** List the cost layers of a robot's map: what each holds, which one shades the map, its name, and a button that takes it away. */
 
+import { made } from "../common/elements.js";
 import { counted, length } from "../common/numbers.js";
 
 const element = (id) => document.getElementById(id);
@@ -38,24 +39,22 @@ export class CostLayers {
 
 function row({ name, layer }, at, { title, fixed, request, alone }) {
   const called = name ?? title;
-  const made = document.createElement("li");
-  const shades = Object.assign(document.createElement("label"), { hidden: alone });
-  shades.append(input({ type: "radio", name: "shaded", value: String(at), checked: at === (request.shaded ?? 0) }, `Shade the map by ${called}`), "shades the map");
+  const shade = input({ type: "radio", name: "shaded", value: String(at), checked: at === (request.shaded ?? 0) }, `Shade the map by ${called}`);
+  const shades = made("label", { hidden: alone }, shade, "shades the map");
   const named = name === null
-    ? Object.assign(document.createElement("b"), { textContent: called })
+    ? made("b", {}, called)
     : input({ name: `layer-${at}`, value: name, autocomplete: "off", maxLength: 100 }, `Name of cost layer ${at + 1}`);
-  const holds = Object.assign(document.createElement("span"), { className: "help", textContent: held(layer, request.grid) });
-  const remove = Object.assign(document.createElement("button"), { type: "button", className: "remove", textContent: "×", hidden: fixed });
+  const holds = made("span", { className: "help" }, held(layer, request.grid));
+  const remove = made("button", { type: "button", className: "remove", hidden: fixed }, "×");
   remove.dataset.remove = at;
   remove.setAttribute("aria-label", `Take ${called} away`);
-  made.append(named, remove, holds, shades);
-  return made;
+  return made("li", {}, named, remove, holds, shades);
 }
 
 function input(members, label) {
-  const made = Object.assign(document.createElement("input"), members);
-  made.setAttribute("aria-label", label);
-  return made;
+  const field = made("input", members);
+  field.setAttribute("aria-label", label);
+  return field;
 }
 
 const known = new WeakMap(); // what layers hold: a large map has a million cells

@@ -2,7 +2,7 @@
 
 import { unitOf } from "../fleet/units.js";
 import { kindOf } from "../common/kinds.js";
-import { timeOfDay, timeText } from "../common/times_of_day.js";
+import { timeOfDay, timeText } from "../common/durations.js";
 
 const [LEAST, MOST] = [0.01, 100]; // factors that the service takes
 const BETWEEN = /\s*[;\n]\s*|\s*,\s*(?=\d{1,3}:)/;

@@ -1,9 +1,9 @@
 /** The fields about the time of day: when tours may leave, and a picture of how the times of travel change. */
 
 import { canHaveDay, changingOver, clockIn, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
-import { svgElement } from "../fleet/svg.js";
+import { svgElement } from "../common/elements.js";
 import { isRead } from "../planning/faults.js";
-import { timeOfDay, timeText } from "../common/times_of_day.js";
+import { timeOfDay, timeText } from "../common/durations.js";
 
 const [HOUR, DAY, LATEST] = [3600, 86400, 864000]; // seconds
 const ROOM = 2 * HOUR; // before the first of the hours, and after the last one

@@ -1,7 +1,7 @@
 /** The fields of a request: their names, and which kinds of request have them. */
 
 import { poseIn } from "./map_ends.js";
-import { nameOf, stopNamed } from "./names.js";
+import { nameOf, stopNamed } from "./places.js";
 
 // Requests for plans have those that say so, others have all; those of coverage stand where there is a grid.
 const FIELDS = [

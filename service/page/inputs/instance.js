@@ -5,8 +5,7 @@ import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
 import { DISTANCE, UNNAMED, namesIn, unnamed } from "../common/objectives.js";
 import { framed } from "./map_ends.js";
-import { nameOf } from "./names.js";
-import { isCity } from "./places.js";
+import { isCity, nameOf } from "./places.js";
 import { Problem } from "../planning/service.js";
 
 const COUNTS = { 2: "Two", 3: "Three", 4: "Four" };

@@ -1,8 +1,9 @@
 /** Propose what to plan on a robot's map that only shows its walls. */
 
-import { nearness } from "./nearness.js";
 import { DISTANCE } from "../common/objectives.js";
 
+const REACH = 10; // cells from a wall, beyond which there is no risk
+const [STRAIGHT, DIAGONAL] = [1, Math.SQRT2];
 const PLACES_ACROSS = 12; // places along the longer side
 const OF_MAP = ["grid", "cell_size", "origin", "cost_layers"];
 const NEARNESS = "nearness to walls";
@@ -32,4 +33,29 @@ export function withoutLayer({ cost_layer: _, cost_layers: layers, names: __, sh
   const left = layers?.toSpliced(at, 1) ?? [];
   if (left.length) return { ...rest, cost_layers: left };
   return Array.isArray(rest.robots) ? rest : { ...rest, ...nearnessOf(rest.grid) };
+}
+
+/** How near each cell is to an obstacle, as a risk: from 1 at a wall to 0 where no wall is in reach. */
+const nearness = (grid) =>
+  distances(grid).map((row) => row.map((cells) => Number(Math.max(0, 1 - cells / REACH).toFixed(2))));
+
+/** Cells to the nearest blocked one, in straight and diagonal steps: one pass down, one up. */
+function distances(grid) {
+  const far = grid.map((row) => row.map((cell) => (cell ? 0 : Infinity)));
+  const forwards = [[-1, -1, DIAGONAL], [-1, 0, STRAIGHT], [-1, 1, DIAGONAL], [0, -1, STRAIGHT]];
+  pass(far, forwards, (size) => Array.from({ length: size }, (_, index) => index));
+  const backwards = forwards.map(([row, column, step]) => [-row, -column, step]);
+  pass(far, backwards, (size) => Array.from({ length: size }, (_, index) => size - 1 - index));
+  return far;
+}
+
+function pass(far, steps, order) {
+  for (const row of order(far.length)) {
+    for (const column of order(far[row].length)) {
+      for (const [down, right, step] of steps) {
+        const before = far[row + down]?.[column + right] ?? Infinity;
+        far[row][column] = Math.min(far[row][column], before + step);
+      }
+    }
+  }
 }

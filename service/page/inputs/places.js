@@ -1,4 +1,13 @@
-/** Tell where the stops of a request lie: on the earth, in the planes of its objectives, or nowhere. */
+/** Tell how the stops of a request are named, and where they lie: on the earth, in the planes of its objectives, or nowhere. */
+
+/** The name of a stop: its id, or if stops have none, its number from 1. */
+export const nameOf = (ids, city) => ids?.[city] ?? String(city + 1);
+
+/** How a request refers to the stop that is named: by its id or its index; the text itself if it is neither. */
+export function stopNamed(ids, name) {
+  if (ids?.includes(name)) return name;
+  return !ids && /^\d+$/.test(name) && Number(name) > 0 ? Number(name) - 1 : name;
+}
 
 /** Cities as text: a row of four numbers on each line. */
 export const textOf = (rows) => rows.map((row) => row.join(", ")).join("\n");

@@ -1,5 +1,6 @@
 /** A table that can be typed in: a name and the cells of each row, and a button that deletes it. */
 
+import { made } from "../common/elements.js";
 import { isOwnName } from "../planning/faults.js";
 
 const PAGE = 50; // rows that are shown at once, since thousands of inputs are slow
@@ -68,9 +69,8 @@ export class EditableTable {
     const wanted = JSON.stringify([this.#columns, rows.length, this.#rows.length]);
     if (wanted === this.#drawn) return this.#fill();
     this.#drawn = wanted;
-    const table = document.createElement("table");
-    table.classList.toggle("grouped", Boolean(this.#columns[0]?.group));
-    table.append(head(this.#noun, this.#columns), body(this.#columns, rows));
+    const className = this.#columns[0]?.group ? "grouped" : "";
+    const table = made("table", { className }, head(this.#noun, this.#columns), body(this.#columns, rows));
     this.#element.replaceChildren(table);
     const left = this.#rows.length - rows.length;
     if (left > 0) this.#element.append(button("more", `Show ${Math.min(left, PAGE)} more of ${left}`));
@@ -118,64 +118,37 @@ export class EditableTable {
 }
 
 function head(noun, columns) {
-  const row = document.createElement("tr");
-  const cells = [noun, ...columns.map(({ title }) => title)].map((title) =>
-    Object.assign(document.createElement("th"), { scope: "col", textContent: title }),
-  );
-  row.append(...cells, document.createElement("td"));
-  const made = document.createElement("thead");
-  made.append(...groups(columns), row);
-  return made;
+  const cells = [noun, ...columns.map(({ title }) => title)].map((title) => made("th", { scope: "col" }, title));
+  return made("thead", {}, ...groups(columns), made("tr", {}, ...cells, made("td")));
 }
 
 /** The names of the groups over their columns, if there are any. */
 function groups(columns) {
   const names = [...new Set(columns.map(({ group }) => group))].filter(Boolean);
   if (!names.length) return [];
-  const row = document.createElement("tr");
-  const cells = names.map((textContent) =>
-    Object.assign(document.createElement("th"), { scope: "colgroup", textContent, colSpan: columns.filter(({ group }) => group === textContent).length }),
-  );
-  row.append(document.createElement("td"), ...cells, document.createElement("td"));
-  return [row];
+  const cells = names.map((name) => made("th", { scope: "colgroup", colSpan: columns.filter(({ group }) => group === name).length }, name));
+  return [made("tr", {}, made("td"), ...cells, made("td"))];
 }
 
 function body(columns, rows) {
-  const made = document.createElement("tbody");
-  made.append(
-    ...rows.map((_, row) => {
-      const line = document.createElement("tr");
-      line.append(
-        cell(input(row, "name", { members: "id", text: true })),
-        ...columns.map((column, at) => cell(input(row, at, column))),
-        cell(remove(row)),
-      );
-      return line;
-    }),
-  );
-  return made;
-}
-
-function cell(content) {
-  const made = document.createElement("td");
-  made.append(content);
-  return made;
+  const lines = rows.map((_, row) => {
+    const cells = [input(row, "name", { members: "id", text: true }), ...columns.map((column, at) => input(row, at, column)), remove(row)];
+    return made("tr", {}, ...cells.map((each) => made("td", {}, each)));
+  });
+  return made("tbody", {}, ...lines);
 }
 
 function input(row, column, { members = "", list, text }) {
-  const made = Object.assign(document.createElement("input"), { autocomplete: "off" });
-  if (text) made.className = "text";
-  else made.inputMode = "decimal";
-  if (list) made.setAttribute("list", list);
-  Object.assign(made.dataset, { row, column, members });
-  return made;
+  const field = made("input", { autocomplete: "off", ...(text ? { className: "text" } : { inputMode: "decimal" }) });
+  if (list) field.setAttribute("list", list);
+  Object.assign(field.dataset, { row, column, members });
+  return field;
 }
 
 function remove(row) {
-  const made = button("remove", "×");
-  made.dataset.remove = row;
-  return made;
+  const each = button("remove", "×");
+  each.dataset.remove = row;
+  return each;
 }
 
-const button = (className, textContent) =>
-  Object.assign(document.createElement("button"), { type: "button", className, textContent });
+const button = (className, said) => made("button", { type: "button", className }, said);

@@ -1,5 +1,7 @@
 /** Show what the columns of an open table were taken for, as lists in which something else can be chosen. */
 
+import { made } from "../common/elements.js";
+
 const LABELS = {
   id: "name",
   place: "place",
@@ -59,20 +61,14 @@ export class ColumnChoices {
 
 function row({ file, name, taken_for: taken }, at, choices) {
   const id = `column-${at}`;
-  const label = Object.assign(document.createElement("label"), { htmlFor: id, textContent: name || `column ${at + 1}` });
-  const list = Object.assign(document.createElement("select"), { id });
+  const label = made("label", { htmlFor: id }, name || `column ${at + 1}`);
+  const list = made("select", { id });
   Object.assign(list.dataset, { file, name });
   const offered = choices.includes(taken) ? choices : [taken, ...choices];
   list.append(...offered.map((each) => new Option(labelOf(each), each)));
   list.value = taken;
   list.classList.toggle("ignored", taken === "ignored");
-  return [wrapped("dt", label), wrapped("dd", list)];
+  return [made("dt", {}, label), made("dd", {}, list)];
 }
 
 const labelOf = (field) => LABELS[field] ?? field.replaceAll("_", " ");
-
-function wrapped(tag, inner) {
-  const made = document.createElement(tag);
-  made.append(inner);
-  return made;
-}

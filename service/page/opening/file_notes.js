@@ -1,6 +1,7 @@
 /** The name of the open file, notes on what was assumed when it was read, and what its columns were taken for. */
 
 import { ColumnChoices } from "./column_choices.js";
+import { made } from "../common/elements.js";
 
 export class FileNotes {
   #status;
@@ -28,10 +29,9 @@ export class FileNotes {
   show(files, chosen, read) {
     const { name, notes } = read;
     this.#columns.show(files, chosen, read);
-    const list = made("ul");
     const said = notes.filter(({ code }) => code !== "columns"); // these are lists to choose from
-    list.append(...said.map(({ text }) => made("li", { textContent: text })));
-    this.#status.replaceChildren(made("p", { textContent: name }), ...(said.length ? [list] : []));
+    const list = made("ul", {}, ...said.map(({ text }) => made("li", {}, text)));
+    this.#status.replaceChildren(made("p", {}, name), ...(said.length ? [list] : []));
     this.#button.setAttribute("aria-label", `Dismiss the notes on ${name}`);
     this.#button.hidden = false;
   }
@@ -47,5 +47,3 @@ export class FileNotes {
     this.#button.hidden = true;
   }
 }
-
-const made = (tag, members) => Object.assign(document.createElement(tag), members);

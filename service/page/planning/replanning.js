@@ -1,7 +1,7 @@
 /** Replanning: the stops of a way, and what has changed on it as the body of `POST /front/{id}/replan`. */
 
 import { Problem } from "./service.js";
-import { timeOfDay } from "../common/times_of_day.js";
+import { timeOfDay } from "../common/durations.js";
 
 /**
  * The stops of a front that can be replanned: all stops so far, also those visited, in the order in which

@@ -1,6 +1,7 @@
 /** Compare the selected tour or plan with the pinned one: when it leaves, its lengths, and the measures of a plan. */
 
 import { change, compared } from "../common/amounts.js";
+import { made } from "../common/elements.js";
 import { withUnit } from "../common/objectives.js";
 import { noteOn } from "./notes.js";
 import { hoursOf } from "../fleet/times.js";
@@ -38,9 +39,6 @@ function hours(selected, pinned) {
 }
 
 function row(name, note, cells) {
-  const made = document.createElement("tr");
-  const head = Object.assign(document.createElement("th"), { scope: "row", textContent: name });
-  if (note) head.append(Object.assign(document.createElement("small"), { textContent: note }));
-  made.append(head, ...cells.map((textContent) => Object.assign(document.createElement("td"), { textContent })));
-  return made;
+  const head = made("th", { scope: "row" }, name, ...(note ? [made("small", {}, note)] : []));
+  return made("tr", {}, head, ...cells.map((said) => made("td", {}, said)));
 }

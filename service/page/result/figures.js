@@ -1,5 +1,6 @@
 /** Show a front's hypervolume, the angle of a tour, and the time that the front took. */
 
+import { made } from "../common/elements.js";
 import { kindNamed } from "../common/kinds.js";
 import { titled } from "../common/objectives.js";
 import { degrees, length, share } from "../common/numbers.js";
@@ -43,7 +44,4 @@ const ENDS = {
   cancelled: "stopped",
 };
 
-const pair = ([term, said]) => [
-  Object.assign(document.createElement("dt"), { textContent: term }),
-  Object.assign(document.createElement("dd"), { textContent: said }),
-];
+const pair = ([term, said]) => [made("dt", {}, term), made("dd", {}, said)];

@@ -7,15 +7,16 @@ import { placeIn } from "./chosen.js";
 import { compare } from "./comparison.js";
 import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
-import { nameOf } from "../inputs/names.js";
+import { nameOf } from "../inputs/places.js";
 import { shadeOf } from "../map/gridmap.js";
 import { showGround } from "../map/key.js";
 import { Maps } from "../map/maps.js";
+import { roundOf } from "../map/planes.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
 import { hoursOf } from "../fleet/times.js";
-import { visitItem } from "../common/visit_item.js";
+import { visitItem } from "../common/elements.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
 import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
@@ -207,7 +208,7 @@ export class Result {
   /** The names of the stops of the selected tour, back to its start where it is closed. */
   #names() {
     const names = named(this.#selected, this.#ids);
-    return this.#closed && names.length > 1 ? [...names, names[0]] : names;
+    return roundOf(names, this.#closed && names.length > 1);
   }
 
   get #picture() {
@@ -226,7 +227,7 @@ export class Result {
 
   /** The cities of a tour, back to its start if it is closed; none for a plan. */
   #round({ tour = [], closed = this.#closed }) {
-    return closed && tour.length ? [...tour, tour[0]] : tour;
+    return roundOf(tour, closed);
   }
 
   /** Keeps the selected tour on the maps while the rest of it is planned. */
