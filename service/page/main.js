@@ -19,9 +19,8 @@ import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
-import { Reading, read, takePasted } from "./opening/reading.js";
+import { Reading, read, takeDropped, takePasted } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
-import { takeDropped } from "./opening/dropping.js";
 import { Problem, Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);

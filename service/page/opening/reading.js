@@ -1,4 +1,4 @@
-/** Let the service read files, and pasted text as if it were a file, one reading at a time. */
+/** Let the service read files, also dropped ones, and pasted text as if it were a file, one reading at a time. */
 
 import { namesIn } from "../common/objectives.js";
 import { inRows } from "../inputs/instance.js";
@@ -73,6 +73,22 @@ async function checked(file) {
   } catch {
     throw new Problem({ code: "unreadable-file", detail: `${file.name}: the browser cannot read it: choose it again` });
   }
+}
+
+/**
+ * Marks an element while something is dragged over the page, and opens the files that are dropped. A
+ * browser gives no content of folders, so only the name of the first one is passed on.
+ */
+export function takeDropped(marked, openFiles, onFolder) {
+  for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
+  addEventListener("dragover", () => marked.classList.add("over"));
+  addEventListener("dragleave", () => marked.classList.remove("over"));
+  addEventListener("drop", ({ dataTransfer: { files, items } }) => {
+    marked.classList.remove("over");
+    const folder = [...items].map((item) => item.webkitGetAsEntry?.()).find((entry) => entry?.isDirectory);
+    if (folder) onFolder(folder.name);
+    else openFiles([...files]);
+  });
 }
 
 /** Opens text of a file, wherever it is pasted; rows of numbers go into their box. */

@@ -3,8 +3,7 @@
 import { colour } from "../common/colours.js";
 import { amount } from "../common/amounts.js";
 import { axisOf, ticksOf } from "../common/axes.js";
-import { mapPanel } from "./picture_map.js";
-import { SIDE, dot, round, text } from "./picture_parts.js";
+import { SIDE, dot, mapPanel, round, text } from "./picture_map.js";
 
 const MARGIN = { left: 70, right: 20, top: 40, bottom: 50 };
 const TICKS = 4;

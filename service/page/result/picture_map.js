@@ -1,7 +1,8 @@
-/** A map as a panel of a picture, in SVG: its ground, lines, places, and the names of routes. */
+/** The parts of a picture's panels, in SVG; and a map as a panel: its ground, lines, places, and the names of routes. */
 
-import { SIDE, dot, round, text } from "./picture_parts.js";
 import { colour } from "../common/colours.js";
+
+export const SIDE = 420; // units of each panel's width and height
 
 const ROOM = 40; // units beside the map
 const [NAMES, ACROSS, MOST_LETTERS] = [8, 4, 12]; // the list of names: how many, how many in a line, and their length
@@ -46,3 +47,13 @@ function namesOf(lines) {
     return `${lineOf({ ...line, places: [[x, y], [x + 14, y]] }, (place) => place)}${text(x + 18, y + 3, said, { size: 9 })}`;
   }).join("");
 }
+
+export const round = (value) => Number(value.toFixed(2));
+
+export const dot = ([x, y], radius, name) => `<circle cx="${x}" cy="${y}" r="${radius}" fill="${colour(name)}"/>`;
+
+export function text(x, y, said, { size, weight = 400, anchor = "start" }) {
+  return `<text x="${x}" y="${y}" font-size="${size}" font-weight="${weight}" text-anchor="${anchor}" fill="${colour("ink")}">${escaped(said)}</text>`;
+}
+
+const escaped = (said) => said.replace(/[&<>]/g, (each) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[each]);
