@@ -72,6 +72,18 @@ MAP = json.dumps(
         "places": [[1, 1], [1, 9], [9, 5]],
     }
 )
+SERVED = FLEET.replace('"demand": [2]', '"demand": [2], "vehicle": "van"')
+LAYERED = json.dumps(
+    {
+        "grid": [[0] * 12] * 12,
+        "cell_size": 1,
+        "spacing": 5,
+        "cost_layers": [
+            {"name": "noise", "layer": [list(range(12))] * 12},
+            {"name": "dust", "layer": [[row] * 12 for row in range(12)]},
+        ],
+    }
+)
 RADIUS = "Robot\N{RIGHT SINGLE QUOTATION MARK}s radius, m"
 SPEED = "Speed of the second objective, km/h"
 
@@ -154,6 +166,39 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
         (ON_EARTH, "Latitude of shop", "95", "stops", "Latitude of shop must be"),
         (NAMED, "Name of stop 2", "depot", "stops", "Each stop needs a name of its own"),
         (PLANES, "First objective", "", "objectives", "Each objective needs a name of its own"),
+        (
+            FLEET,
+            "Start of van",
+            "yard",
+            "vehicles",
+            "Start of van must be the name of a stop, got “yard”",
+        ),
+        (
+            FLEET,
+            "End of van",
+            "yard",
+            "vehicles",
+            "End of van must be the name of a stop, got “yard”",
+        ),
+        (
+            SERVED,
+            "Served by of shop",
+            "bike",
+            "stops",
+            "Served by of shop must be the name of a vehicle, got “bike”",
+        ),
+        (FLEET, "Window of school", "8:00-10:00; 9:00-12:00", "stops", "neither overlap nor touch"),
+        (FLEET, "Shift of van", "8:00-12:00; 12:00-16:00", "vehicles", "neither overlap nor touch"),
+        (DAY, "Start", "order-8", "start", "Start must be the name of a stop"),
+        (DAY, "End elsewhere", "order-8", "end", "must be the name of a stop"),
+        (LAYERED, "Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
+        (
+            LAYERED,
+            "Name of cost layer 2",
+            "distance",
+            "cost_layers",
+            "layer needs a name of its own",
+        ),
     ],
 )
 def test_a_value_that_is_refused_keeps_the_last_plan(
@@ -180,6 +225,20 @@ def test_a_value_that_is_refused_keeps_the_last_plan(
     plan(window)
     wait_until_planned(window)
     expect(window.locator(f"#{fault}-fault")).to_be_empty()
+
+
+def test_a_layer_is_named_as_another_was_once_that_name_is_free(window: Page) -> None:
+    open_files(window, {"map.json": LAYERED})
+    write(window, "Name of cost layer 2", "noise")
+    expect(window.locator("#cost_layers-fault")).to_contain_text("name of its own, got “noise”")
+    write(window, "Name of cost layer 1", "sound")
+    expect(window.locator("#cost_layers-fault")).to_be_empty()
+    layers = curl_body(window, "coverage")["cost_layers"]
+    assert [each["name"] for each in layers] == ["sound", "noise"]
+    write(window, "Name of cost layer 1", "noise")
+    open_files(window, {"map.json": LAYERED})
+    expect(window.get_by_label("Name of cost layer 1")).to_have_value("noise")
+    expect(window.get_by_label("Name of cost layer 2")).to_have_value("dust")
 
 
 def test_a_name_that_was_taken_is_taken_over_once_it_is_free(window: Page) -> None:

@@ -30,8 +30,8 @@ const TYPES = {
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },
   spans: {
     write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
-    read: (text, second) => all(pieces(text, /[;,]/), (each) => span(each, second)),
-    hint: "two times in order, as 8:00-12:30, or 22:00-26:00, or several with ; between",
+    read: (text, second) => apart(all(pieces(text, /[;,]/), (each) => span(each, second))),
+    hint: "two times in order, as 8:00-12:30, or 22:00-26:00, or several in order that neither overlap nor touch, with ; between",
   },
   breaks: {
     write: (value, second) => listOf(value).map((each) => `${spanText(each?.window, second)} ${lastingText(each?.length, second)}`).join("; "),
@@ -51,8 +51,9 @@ export function cellText(item, column, second) {
 
 export const isNumber = (type) => type in NUMBERS;
 
-/** Whether a cell holds what is not understood or refused. */
-export const isUnread = (item, column) => !["text", "words"].includes(column.type) && typeof valueOf(item, column) === "string";
+/** Whether a cell holds what is not understood or refused, or the name of a stop or vehicle that there is not. */
+export const isUnread = (item, column) =>
+  listOf(valueOf(item, column)).some((each) => typeof each === "string" && !(column.names?.includes(each) ?? ["text", "words"].includes(column.type)));
 
 /** What to write into a cell of a column. */
 export const hintOf = ({ type }, second) => (!second && ["time", "spans", "lasting"].includes(type) ? COUNTED : TYPES[type].hint);
@@ -125,6 +126,9 @@ function span(text, second) {
   const ends = all(text.split(/\s*(?:[-–—]|\bto\b)\s*/), (each) => time(each, second));
   return ends?.length === 2 && ends[0] <= ends[1] ? ends : undefined;
 }
+
+/** Spans that each begin after the one before; undefined if they do not. */
+const apart = (spans) => (spans?.every(([from], at) => !at || from > spans[at - 1][1]) ? spans : undefined);
 
 function pause(text, second) {
   const [, between, long] = BREAK.exec(text) ?? [];

@@ -34,9 +34,15 @@ const OF_VEHICLES = [
 ];
 const ALL = { stops: OF_STOPS, vehicles: OF_VEHICLES };
 
-/** The columns of the table of `stops` or `vehicles` of a request. The limit on a route is a time if there is a clock. */
-export function columnsOf(table, { clock }) {
-  return ALL[table].map((column) => (column.member === "longest" && clock ? { ...column, type: "lasting" } : column));
+/**
+ * The columns of the table of `stops` or `vehicles` of a request, with the `names` of those that refer to stops or vehicles.
+ * The limit on a route is a time if there is a clock.
+ */
+export function columnsOf(table, { clock, ...asked }) {
+  return ALL[table].map((column) => {
+    const names = column.list && asked[`${column.list.replace("-names", "")}s`]?.map((each) => each?.id);
+    return column.member === "longest" && clock ? { ...column, type: "lasting" } : { ...column, names };
+  });
 }
 
 /** The columns that are shown: those that a row has something for, those that always are, and members that were added. */

@@ -72,15 +72,26 @@ export class FleetForm {
 
   /** Marks the cells that are not understood, and says what the first of each table must be; faults were cleared before. */
   mark() {
-    const second = secondsIn(this.#asked);
     for (const [name, table] of [["stops", this.#stops], ["vehicles", this.#vehicles]]) {
       table.mark();
-      const columns = this.#shown(name);
-      const item = this.#items(name).find((one) => columns.some((each) => isUnread(one, each)));
-      if (item) tellFault(name, unread(item, columns.find((each) => isUnread(item, each)), second));
+      const fault = this.#faultIn(name);
+      if (fault) tellFault(name, fault.detail);
     }
     const doubt = doubtOfTimes(this.#asked);
     if (doubt) tellFault("objectives", doubt);
+  }
+
+  /** The first cell that is not understood, as an error of a request; undefined if there is none. */
+  get fault() {
+    return this.#faultIn("stops") ?? this.#faultIn("vehicles");
+  }
+
+  #faultIn(name) {
+    const columns = this.#shown(name);
+    for (const [row, item] of this.#items(name).entries()) {
+      const column = columns.find((each) => isUnread(item, each));
+      if (column) return { pointer: `/${name}/${row}/${column.member}/${column.part}`, detail: unread(item, column, secondsIn(this.#asked)) };
+    }
   }
 
   /** Takes the text of a cell. */
@@ -163,5 +174,8 @@ function choose(id, options, value) {
   element(id).value = value;
 }
 
-const unread = (item, column, second) =>
-  `${column.title} of ${item.id} cannot be “${cellText(item, column, second)}”: write ${hintOf(column, second)}`;
+function unread(item, column, second) {
+  const [cell, text] = [`${column.title} of ${item.id}`, `“${cellText(item, column, second)}”`];
+  if (column.list) return `${cell} must be the name of a ${column.list.replace("-names", "")}, got ${text}`;
+  return `${cell} cannot be ${text}: write ${hintOf(column, second)}`;
+}

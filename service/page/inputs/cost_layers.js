@@ -2,6 +2,8 @@
 
 import { made } from "../common/elements.js";
 import { counted, length } from "../common/numbers.js";
+import { DISTANCE } from "../common/objectives.js";
+import { isOwnName } from "../planning/faults.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -11,6 +13,7 @@ export const layersOf = ({ grid, cost_layer: layer, cost_layers: layers }) =>
 
 export class CostLayers {
   #told;
+  #layers = []; // as they are shown
 
   /**
    * @param {{ onName: (at: number, name: string) => void, onShade: (at: number) => void, onRemove: (at: number) => void }}
@@ -23,17 +26,29 @@ export class CostLayers {
     list.addEventListener("click", ({ target }) => target.dataset.remove && told.onRemove(Number(target.dataset.remove)));
   }
 
-  /** Shows the layers of a request: one without a name by this title, `fixed` if it cannot be taken away. */
+  /** Shows the layers of a request: one without a name by this title, `fixed` if it cannot be taken away. A name that cannot be taken stays. */
   show(request, title, fixed) {
     const layers = layersOf(request);
+    const same = layers.length === this.#layers.length && layers.every(({ layer }, at) => layer === this.#layers[at].layer);
+    const typed = same ? [...element("layers-list").querySelectorAll(":invalid")] : [];
+    this.#layers = layers;
     element("layers").hidden = !layers.length;
     const rows = layers.map((item, at) => row(item, at, { title, fixed, request, alone: layers.length === 1 }));
     element("layers-list").replaceChildren(...rows);
+    for (const { dataset, value, validationMessage } of typed) {
+      const field = Object.assign(rows[dataset.at].firstChild, { value });
+      field.setCustomValidity(validationMessage);
+    }
   }
 
-  #changed({ name, value }) {
-    if (name === "shaded") return this.#told.onShade(Number(value));
-    this.#told.onName(Number(name.slice("layer-".length)), value.trim());
+  /** Takes another name, unless it is one of the others; without letters it stays as it was. */
+  #changed(field) {
+    if (field.name === "shaded") return this.#told.onShade(Number(field.value));
+    const names = [DISTANCE, ...this.#layers].map(({ name }) => name);
+    const at = Number(field.dataset.at);
+    const [before] = names.splice(at + 1, 1);
+    const name = field.value.trim() || before;
+    if (isOwnName(field, name, names, "cost layer")) this.#told.onName(at, name);
   }
 }
 
@@ -43,7 +58,8 @@ function row({ name, layer }, at, { title, fixed, request, alone }) {
   const shades = made("label", { hidden: alone }, shade, "shades the map");
   const named = name === null
     ? made("b", {}, called)
-    : input({ name: `layer-${at}`, value: name, autocomplete: "off", maxLength: 100 }, `Name of cost layer ${at + 1}`);
+    : input({ value: name, autocomplete: "off", maxLength: 100 }, `Name of cost layer ${at + 1}`);
+  named.dataset.at = at;
   const holds = made("span", { className: "help" }, held(layer, request.grid));
   const remove = made("button", { type: "button", className: "remove", hidden: fixed }, "×");
   remove.dataset.remove = at;

@@ -18,7 +18,7 @@ import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
-import { firstFault, readAgain } from "../planning/faults.js";
+import { firstFault, problemOf, readAgain } from "../planning/faults.js";
 
 const element = (id) => document.getElementById(id);
 const titled = (titles, members) => titles.map((title) => ({ title, members }));
@@ -130,7 +130,16 @@ export class RequestForm {
 
   /** The fault of the first field whose text cannot be taken; null if there is none. */
   get fault() {
-    return firstFault(this.#form);
+    return problemOf(this.#untaken);
+  }
+
+  /** The same, as an error of a request. */
+  get #untaken() {
+    return firstFault(this.#form) ?? (this.#isFleet ? this.#fleet.fault : null);
+  }
+
+  #isPlaced(value, column) {
+    return Number.isFinite(value) && !(this.#brought.stops && Math.abs(value) > DEGREES[column]);
   }
 
   /** Reads what was typed now, as `TypedRows.settle` does. */
@@ -243,10 +252,9 @@ export class RequestForm {
     this.mark();
   }
 
-  /** Names a cost layer. The service refuses names that are not different; one without letters stays as it was. */
   #nameLayer(at, name) {
     const { cost_layers: layers } = this.#brought;
-    if (name) this.#brought = { ...this.#brought, cost_layers: layers.with(at, { ...layers[at], name }) };
+    this.#brought = { ...this.#brought, cost_layers: layers.with(at, { ...layers[at], name }) };
     this.#objectives = ownNames(this.#brought);
     this.#edited(false);
   }
@@ -287,7 +295,7 @@ export class RequestForm {
     const value = numberOr(text.replace(",", "."));
     if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
     else this.#show(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)));
-    this.#edited(true, Number.isFinite(value) && !(this.#brought.stops && Math.abs(value) > DEGREES[column]));
+    this.#edited(true, this.#isPlaced(value, column));
   }
 
   #delete(row) {

@@ -18,7 +18,7 @@ export function showFaults(problem) {
     const [member, row, part] = parts;
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const cell = cellOf(parts);
-    const said = seen(document.getElementById(`${cell?.closest(".stops").id ?? field}-fault`)) ?? document.getElementById("request-fault");
+    const said = seen(document.getElementById(`${cell?.closest(".stops")?.id ?? field}-fault`)) ?? document.getElementById("request-fault");
     said.textContent ||= sentence(cell && member !== "coordinates" ? ofCell(detail, cell) : inWords(detail, field));
     if (cell) cell.setAttribute("aria-invalid", "true");
     first ??= cell ?? (member === "cities" ? markText(row) : mark(REPLANNED[member] ?? field, member === "matrices" ? undefined : row, part));
@@ -66,11 +66,14 @@ export function isRead(field, readable, fault) {
 export const isOwnName = (field, name, others, what) =>
   isRead(field, Boolean(name) && !others.includes(name), `Each ${what} needs a name of its own, got “${name}”`);
 
-/** The fault of the first invalid field of a form; null if there is none. */
+/** The fault of the first invalid field of a form, as an error of a request; null if there is none. */
 export function firstFault(form) {
   const field = form.querySelector(INVALID);
-  return field && new Problem({ detail: field.validationMessage, errors: [{ pointer: pointerOf(field) }] });
+  return field && { detail: field.validationMessage, pointer: pointerOf(field) };
 }
+
+/** A fault as a Problem. */
+export const problemOf = (fault) => fault && new Problem({ ...fault, errors: [fault] });
 
 /** Reads the invalid fields of a form again, as others have changed. */
 export function readAgain(form) {
@@ -79,7 +82,8 @@ export function readAgain(form) {
 
 /** The member of a request that a field is about. */
 function pointerOf(field) {
-  const { row, members, axis, member } = field.dataset;
+  const { row, members, axis, member, at } = field.dataset;
+  if (at) return `/cost_layers/${at}/name`;
   if (row) return `/${field.closest(".stops").id}/${row}/${members}`;
   return axis ? `/objectives/${axis}/${member}` : `/${field.id}`;
 }
@@ -95,6 +99,7 @@ export function revealFault() {
 function cellOf([member, row, part, ...rest]) {
   if (member === "coordinates") return cellOfPlane(0, row, part);
   if (member === "objectives" && part === "coordinates") return cellOfPlane(row, ...rest); // of stops with names
+  if (member === "cost_layers") return document.querySelector(`#layers-list [data-at="${row}"]`);
   if (!part || !["stops", "vehicles"].includes(member)) return null;
   const cells = document.querySelectorAll(`#${member} [data-row="${row}"][data-members~="${CSS.escape(part)}"]`);
   return cells[rest[0]] ?? cells[0] ?? null; // a location has two
