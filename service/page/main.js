@@ -46,7 +46,7 @@ const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"),
   onChosen: openFiles,
 });
 const surroundings = new Surroundings(service, result);
-const exporting = new ExportButtons(service, screen);
+const exporting = new ExportButtons(service, screen, fail);
 const replanForm = new ReplanForm(replan, result.wait);
 const reading = new Reading(offer, () => planning || say(""));
 
@@ -93,6 +93,7 @@ async function screen() {
   const asked = way?.replanned ? null : answered;
   return {
     request: input.request,
+    refused: input.refused,
     asked,
     example: examples.unchanged(asked),
     objectives,
@@ -246,7 +247,7 @@ function fail(error) {
   say("");
   showFaults(error);
   input.mark();
-  element("waiting").textContent = revealFault(); // a phone shows the form below
+  return (element("waiting").textContent = revealFault()); // a phone shows the form below
 }
 
 function openChosen() {

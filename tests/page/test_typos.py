@@ -241,6 +241,40 @@ def test_a_layer_is_named_as_another_was_once_that_name_is_free(window: Page) ->
     expect(window.get_by_label("Name of cost layer 2")).to_have_value("dust")
 
 
+@pytest.mark.parametrize("name", ["curl", "Python"])
+@pytest.mark.parametrize(
+    ("content", "label", "typed", "said"),
+    [
+        (PLANES, "x₂ of 2", "6o", "X₂ of stop 2 must be a number."),
+        (ON_EARTH, "Latitude of shop", "95", "Latitude of shop must be a number."),
+        (FLEET, "Name of stop 2", "school", "Each stop needs a name of its own, got “school”."),
+        (FLEET, "Count of van", "two", "Count of van cannot be “two”: write a whole number"),
+        (DAY, "Leaves at, or from", "7.3o", "Leaves at must be a time, as 7:30."),
+        (DAY, "Start", "order-8", "Start must be the name of a stop."),
+        (PLANES, "End elsewhere", "shop", "End elsewhere must be the number of a stop."),
+        (MAP, RADIUS, "0,1o", f"{RADIUS} must be a number."),
+    ],
+)
+def test_no_request_is_copied_before_what_was_typed_is_mended(
+    window: Page, content: str, label: str, typed: str, said: str, name: str
+) -> None:
+    open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
+    window.evaluate("navigator.clipboard.writeText('before')")
+    field = window.get_by_label(label, exact=True).locator("visible=true")
+    before = field.input_value()
+    field.fill(typed)
+    button = window.get_by_role("button", name=f"Copy as {name}")
+    button.click()
+    expect(window.locator("#link-help")).to_contain_text(f"Mend this first, to copy it: {said}")
+    expect(button).to_have_text(name)
+    expect(field).to_be_focused()
+    expect(field).to_have_attribute("aria-invalid", "true")
+    assert window.evaluate("navigator.clipboard.readText()") == "before"
+    field.fill(before)
+    assert copied(window, f"as {name}").startswith(("curl ", "from paretour"))
+    expect(window.locator("#link-help")).to_be_empty()
+
+
 def test_a_name_that_was_taken_is_taken_over_once_it_is_free(window: Page) -> None:
     open_files(window, {"stops.json": FLEET})
     write(window, "Name of stop 3", "shop")

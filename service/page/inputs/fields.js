@@ -51,6 +51,14 @@ export class Fields {
     return { ...Object.fromEntries(given), ...bound, ...detours, ...this.#ends(filled.map(([name]) => name)) };
   }
 
+  /** The first that is not a number, or an end that is not a stop, as an error of a request; undefined if there is none. */
+  get fault() {
+    const found = Object.entries(this.members).find(([, value]) => typeof value === "string" && !this.#ids?.includes(value));
+    if (!found) return undefined;
+    const [name] = found;
+    return { pointer: `/${name}`, detail: `${name} must be ${ENDS.includes(name) ? `the ${this.#ids ? "name" : "number"} of a stop` : "a number"}` };
+  }
+
   /** Takes the names of stops, and offers them in the fields. */
   name(ids, cities) {
     if (this.#form.start.value === nameOf(this.#ids, 0)) this.#form.start.value = nameOf(ids, 0);

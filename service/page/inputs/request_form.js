@@ -138,6 +138,23 @@ export class RequestForm {
     return firstFault(this.#form) ?? (this.#isFleet ? this.#fleet.fault : null);
   }
 
+  /** That fault, or the one of what is sent as it was typed, so that the service names it. */
+  get refused() {
+    return problemOf(this.#untaken ?? this.#misplaced ?? this.#fields.fault);
+  }
+
+  /** The first place that is not of numbers, as an error of a request. */
+  get #misplaced() {
+    const form = formOf(this.#brought);
+    const columns = this.#columns(form);
+    const rows = this.#brought.stops?.map(({ location }) => [location ?? []].flat()) ?? this.#rows;
+    for (const [row, place] of rows.entries()) {
+      const column = columns.findIndex((_, at) => at in place && !this.#isPlaced(place[at], at));
+      const at = form === "stops" ? `location/${column}` : column;
+      if (column >= 0) return { pointer: `/${form}/${row}/${at}`, detail: `${columns[column].title} of ${this.ids?.[row] ?? `stop ${row + 1}`} must be a number` };
+    }
+  }
+
   #isPlaced(value, column) {
     return Number.isFinite(value) && !(this.#brought.stops && Math.abs(value) > DEGREES[column]);
   }

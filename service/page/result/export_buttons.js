@@ -24,20 +24,26 @@ export class ExportButtons {
 
   /**
    * @param {Service} service the service that has the front
-   * @param {() => Promise<{ request: object, asked: object, example: string | null, objectives: object[],
+   * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, example: string | null, objectives: object[],
    *   picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
    *   screen, the file of its example, whether its lines can follow the streets, and the selected tour or
-   *   plan, as of `routesOf`; null if the form cannot be read
+   *   plan, as of `routesOf`; null if the form cannot be read. `refused` is what the request would be refused for
+   * @param {(problem: Problem) => string} mend shows what must be mended at its field, and returns it
    */
-  constructor(service, screen) {
+  constructor(service, screen, mend) {
     this.#service = service;
     const on = (id, act) =>
       element(id).addEventListener("click", async ({ target }) => {
         const shown = await screen();
         if (shown) act(shown, target);
       });
-    on("curl", ({ request }, button) => copy(curl(request), button));
-    on("python", ({ request, balance }, button) => copy(python(request, balance), button));
+    const onRequest = (id, written) =>
+      on(id, (shown, button) => {
+        say(shown.refused ? `Mend this first, to copy it: ${mend(shown.refused)}` : "");
+        if (!shown.refused) copy(written(shown), button);
+      });
+    onRequest("curl", ({ request }) => curl(request));
+    onRequest("python", ({ request, balance }) => python(request, balance));
     on("link", (shown, button) => this.#copyLink(shown, button));
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
     on("csv", (shown) => download("front.csv", "text/csv", csv(this.#shown, shown.objectives, this.#place(shown))));
