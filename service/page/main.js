@@ -16,7 +16,7 @@ import { holdStill } from "./inputs/pressing.js";
 import { ReplanForm } from "./planning/replan_form.js";
 import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
-import { say, sentence } from "./planning/status.js";
+import { SURVEY, say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
 import { Reading, read, takeDropped, takePasted } from "./opening/reading.js";
@@ -143,7 +143,7 @@ function show(state) {
       replanForm.show(way);
     }
   }
-  say(sentence(state));
+  say(sentence(state, kindOf(input.asked).onGrid));
 }
 
 /** The names of the objectives of an answer; those on the page where the service had none, as when the rest of a tour is planned. */
@@ -156,7 +156,7 @@ function namesOf({ objectives: named, scale }) {
 function plan() {
   if (input.fault) return fail(input.fault);
   const onGrid = kindOf(input.asked).onGrid;
-  return run((mine) => planned(mine.plan(input.request)), onGrid ? "The paths between the places of the map are being found." : undefined);
+  return run((mine) => planned(mine.plan(input.request)), onGrid ? SURVEY : undefined);
 }
 
 /** Leaves the front before as it is until there is another one: the request may be refused. */

@@ -13,6 +13,7 @@ from playwright.sync_api import Browser, Page, Route, expect
 
 from service.requests.maps.fields import MapRequest
 from tests.helpers.browsing import (
+    Held,
     curl_body,
     needs_chromium,
     open_page,
@@ -273,5 +274,42 @@ def test_a_map_that_takes_too_long_is_refused_in_the_words_of_the_page(opened: P
     opened.route("**/coverage", refuse)
     opened.get_by_role("button", name="Plan", exact=True).click()
     expect(opened.locator("#request-fault")).to_contain_text("give about 40 places")
-    assert asked == [0, 5]  # a longer time limit admits larger maps
+    assert asked == [5]  # a longer time limit admits larger maps
+    opened.unroute("**/coverage")
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [{"cost_layer": [[1] * 9] * 3}, {"robots": [{"id": "left"}, {"id": "right", "start": 1}]}],
+    ids=["tours", "plans"],
+)
+@pytest.mark.parametrize("seconds", [0, 0.3])
+def test_a_map_is_surveyed_once(opened: Page, kind: dict[str, Any], seconds: float) -> None:
+    places = [[0, 0], [2, 3], [0, 8]]
+    office = {"grid": [[0] * 9] * 3, "cell_size": 0.5, "places": places, **kind}
+    open_request(opened, {**office, "time_limit": seconds})
+    asked: list[float] = []
+
+    def note(route: Route) -> None:
+        asked.append(json.loads(route.request.post_data or "{}")["time_limit"])
+        route.continue_()
+
+    opened.route("**/coverage", note)
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    assert asked == [seconds]
+    assert shown_front(opened)["places"] == places
+    opened.unroute("**/coverage")
+
+
+def test_the_page_says_that_the_paths_of_a_map_are_being_found(opened: Page) -> None:
+    office = {"grid": [[0] * 9] * 3, "cell_size": 0.5, "places": [[0, 0], [0, 8]]}
+    open_request(opened, {**office, "cost_layer": [[1] * 9] * 3, "time_limit": 0.3})
+    held = Held(opened, "**/coverage")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    expect(opened.locator("#status")).to_have_text(
+        "The paths between the places of the map are being found."
+    )
+    held.release()
+    wait_until_planned(opened)
     opened.unroute("**/coverage")

@@ -1,4 +1,4 @@
-/** Plan a request in two steps: the network's front at once, then the improved one. */
+/** Plan a request in two steps: the network's front at once, then the improved one. On maps, in one. */
 
 import { kindOf } from "../common/kinds.js";
 import { Problem } from "./service.js";
@@ -7,8 +7,8 @@ const GLANCE = 300; // milliseconds between two requests for a growing front
 const MOST_WAIT = 5; // seconds between two attempts
 const MANY = 1500; // stops: for more, the network's front may take longer than a search
 const REFUSED = Symbol("the network has no plan");
-// With shipments, tight windows or very many stops, only the search finds plans; a longer time limit admits larger maps.
-const SEARCH_ALONE = ["no-plan", "too-many-for-network", "survey-too-long"];
+// With shipments, tight windows or very many stops, only the search finds plans.
+const SEARCH_ALONE = ["no-plan", "too-many-for-network"];
 const FINAL = ["done", "cancelled", "failed"];
 
 /**
@@ -30,8 +30,10 @@ export class Planning {
 
   async *plan(request) {
     const { time_limit: seconds = 1 } = request.body;
+    // For a draft, a map would be surveyed twice, which takes longer than the search needs for its first front.
+    const isSearched = kindOf(request.body).onGrid || stopsIn(request.body) > MANY;
     // A time that is refused is refused before a draft is shown.
-    if (!(seconds >= 0) || (seconds !== 0 && stopsIn(request.body) > MANY)) return yield* this.#improved(request, null);
+    if (!(seconds >= 0) || (seconds !== 0 && isSearched)) return yield* this.#improved(request, null);
     for await (const alone of this.#alone(request)) {
       if (alone === null) yield { stage: "warming-up", alone: null, answer: null };
       else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };

@@ -18,9 +18,11 @@ export function say(text) {
 
 // If the network has no front to show.
 const SEARCH_ALONE = { queued: "The search waits for its turn.", running: "The search is running." };
+export const SURVEY = "The paths between the places of the map are being found.";
 
-/** The sentence for a state of a planning. */
-export const sentence = (state) =>
+/** The sentence for a state of a planning; on a map, its search begins with a survey. */
+export const sentence = (state, onMap = false) =>
+  (onMap && state.stage === "running" && !state.answer && SURVEY) ||
   (state.stage === "kept" && `This is the ${kindNamed(state.answer).noun.one} of the link.`) ||
   (state.stage === "warming-up" && warmingUp(state)) ||
   (!state.alone && SEARCH_ALONE[state.stage]) || SAID[state.stage] || ended(state);
