@@ -47,13 +47,16 @@ def log_of(folder: Path) -> Path:
 
 
 @pytest.mark.usefixtures("compiled")
-@pytest.mark.parametrize("name", ["service/__init__.py", "service.py", "numpy.py", "signal.py"])
+@pytest.mark.parametrize(  # a package hides a module of its name
+    "names", [["service/__init__.py"], ["service.py", "numpy.py", "signal.py"]]
+)
 def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
-    tmp_path: Path, quick_actors: dict[str, str], name: str
+    tmp_path: Path, quick_actors: dict[str, str], names: list[str]
 ) -> None:
-    module = tmp_path / name
-    module.parent.mkdir(exist_ok=True)
-    module.write_text("raise RuntimeError('not the one that is installed')")
+    for name in names:
+        module = tmp_path / name
+        module.parent.mkdir(exist_ok=True)
+        module.write_text("raise RuntimeError('not the one that is installed')")
     with served(tmp_path, **quick_actors) as (process, url):
         until_ok(f"{url}/health/ready", process, log_of(tmp_path))
         answer = httpx.post(f"{url}/front", json={"coordinates": CITIES, "time_limit": 0.1})
