@@ -62,11 +62,14 @@ DRAWN = """canvas => {
 }"""
 
 # What the clipboard holds, as soon as it holds anything.
-CLIPBOARD_TEXT = """async () => {
-  let text = "";
-  while (!text) text = await navigator.clipboard.readText();
-  return text;
-}"""
+CLIPBOARD_TEXT = f"""async () => {{
+  const end = Date.now() + {30 * SECOND};
+  for (;;) {{
+    const text = await navigator.clipboard.readText();
+    if (text) return text;
+    if (Date.now() > end) throw new Error("nothing was copied");
+  }}
+}}"""
 
 expect.set_options(timeout=30 * SECOND)  # five seconds are too few on a busy machine
 
