@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.search import working_tour
 from service.search.candidates import Scalarization
-from service.search.local_search import NO_END, iterated_local_search, least_gain
+from service.search.local_search import NO_END, iterated_local_search
 from service.search.pareto_local_search import LARGE, MENDING, SearchState
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
@@ -104,10 +104,7 @@ class ThreeOptSearch:
 
     def descend(self, scalarization: Scalarization, budget: int) -> int:
         """Make improving exchanges."""
-        first, second = self.working.length
-        value = scalarization.w0 * first + scalarization.w1 * second
-        threshold = least_gain(scalarization, value)
-        return three_opt.descend(self.working, scalarization, threshold, budget, False)
+        return three_opt.descend(self.working, scalarization, budget, False)
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
         """Perturb and descend."""

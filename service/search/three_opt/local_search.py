@@ -48,7 +48,6 @@ def improve_at(
 def descend(
     working: UndoableTour,
     scalarization: Scalarization,
-    threshold: float,
     budget: int,
     undoable: bool,
 ) -> int:
@@ -57,6 +56,8 @@ def descend(
     Returns what is left of the budget: 0 if the descent may not have ended. Where it need not be
     undone, the log is emptied on the way; else the budget is one that the log holds.
     """
+    value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
+    threshold = least_gain(scalarization, value)
     while working.ring[1] > 0 and budget > 0:
         if not undoable:
             save(working)
@@ -114,7 +115,7 @@ def iterated_local_search(
     for step in range(1, steps + 1):
         perturb(working, scalarization, random)
         rounded = spiked(working, working.saved_length[0], working.saved_length[1])
-        descend(working, scalarization, threshold, MOST_CITIES, True)
+        descend(working, scalarization, MOST_CITIES, True)
         if rounded:
             sum_afresh(working, scalarization)
         if step % every == 0:

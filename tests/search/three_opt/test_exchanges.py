@@ -167,7 +167,7 @@ def test_a_search_of_a_route_keeps_its_ends_and_returns_to_the_best(fixed: str) 
         load(working, working.tour.copy(), *lengths(scalarization.costs, working.tour))
         archive = make_archive(13)
         enqueue_cities(working, working.tour.copy())
-        while descend(working, scalarization, LEAST, 3, False) == 0:
+        while descend(working, scalarization, 3, False) == 0:
             pass
         value = weighted_length(scalarization, working.tour)
         random = np.array([seed + 1])
