@@ -1,6 +1,6 @@
 """A set of worker processes: each is started, warmed up, and replaced when it is lost.
 
-The first process compiles the code, part by part, and the others load what it has compiled.
+The first process has the code compiled, part by part, and the others load what is compiled.
 """
 
 import asyncio
