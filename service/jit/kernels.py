@@ -18,6 +18,7 @@ from numba import types
 from numba.core import config
 
 from service.jit.cache import name_by_place
+from service.jit.indices import trust_indices
 from service.jit.loading import use_cache
 from service.jit.native_code import Standalone, generate_late
 
@@ -26,12 +27,14 @@ R = TypeVar("R")
 _tuple_of: Any = types.BaseTuple.from_types
 
 generate_late()
+trust_indices()
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function that creates no array.
 
-    Division follows numpy, and the interpreter's lock is released.
+    Division follows numpy, and the interpreter's lock is released. Only an index that is a number
+    in the source may be negative.
     """
     return _kernel(function, _compile_as_part, _nrt=False)
 
