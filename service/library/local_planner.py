@@ -99,18 +99,17 @@ class LocalPlanner:
 
         Its network is opened meanwhile, which holds no lock of Python.
         """
-        with ThreadPoolExecutor(1) as threads:
-            actor = self.runner.actors.get(task.actor or "")
-            opening = threads.submit(actor.load) if actor else None
-            self._load(task, display)
-            if opening is not None:
-                opening.result()
+        actor = self.runner.actors.get(task.actor or "")
+        if missing := parts_of(task) - self.loaded:
+            with ThreadPoolExecutor(1) as threads:
+                if actor is not None:
+                    threads.submit(actor.load)
+                self._load(missing, display)
+        if actor is not None:
+            actor.load()
 
-    def _load(self, task: Task, display: Display) -> None:
-        """Compile what a task needs, or load it, and show how far that is."""
-        missing = parts_of(task) - self.loaded
-        if not missing:
-            return
+    def _load(self, missing: frozenset[Part], display: Display) -> None:
+        """Compile parts of the code, or load them, and show how far that is."""
         with display.loading() as say:
 
             def tell(told: Part | Compiling) -> None:

@@ -90,7 +90,7 @@ def _finite(text: str) -> float:
 
 def members(value: Any, where: str) -> Members:
     """Read an object."""
-    if not isinstance(value, Mapping):
+    if type(value) is not dict and not isinstance(value, Mapping):  # the latter takes a while
         raise unexpected(where, "an object", value)
     return Members(value, where)
 
