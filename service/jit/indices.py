@@ -6,6 +6,7 @@ that counts from the end is written there as a number, as in `tour[-1]`. With NU
 index that is negative otherwise is an IndexError.
 """
 
+from contextvars import ContextVar
 from typing import Any
 
 from llvmlite import ir
@@ -13,13 +14,32 @@ from numba.core import types
 from numba.np import arrayobj
 
 _numba_fix_integer_index: Any = arrayobj.fix_integer_index
+_trusting = ContextVar("trusting", default=False)  # whether a kernel is being compiled
+
+
+def trust_indices(kernel: Any) -> None:
+    """Let the dispatcher of a function that creates no array compile it so."""
+    compile_core = kernel._compiler._compile_core  # noqa: SLF001  # numba has no option for it
+
+    def compile_trusting(*given: Any) -> Any:
+        token = _trusting.set(True)
+        try:
+            return compile_core(*given)
+        finally:
+            _trusting.reset(token)
+
+    kernel._compiler._compile_core = compile_trusting  # noqa: SLF001  # as above
 
 
 def _fix_integer_index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
-    """Do as numba does if the function may create arrays, or the index is written as a number."""
-    if context.enable_nrt or isinstance(_as_inserted(index), ir.Constant):
-        return _numba_fix_integer_index(context, builder, kind, index, size)
-    return context.cast(builder, index, kind, types.intp)
+    """Do as numba does, unless the function is a kernel and the index is not written as a number.
+
+    Functions that are compiled because a kernel calls them may create arrays.
+    """
+    trusted = _trusting.get() and not context.enable_nrt
+    if trusted and not isinstance(_as_inserted(index), ir.Constant):
+        return context.cast(builder, index, kind, types.intp)
+    return _numba_fix_integer_index(context, builder, kind, index, size)
 
 
 def _as_inserted(index: Any) -> Any:
@@ -34,6 +54,4 @@ def _as_inserted(index: Any) -> Any:
     return index
 
 
-def trust_indices() -> None:
-    """Let functions that create no array look elements up so, from here on."""
-    arrayobj.fix_integer_index = _fix_integer_index
+arrayobj.fix_integer_index = _fix_integer_index

@@ -27,7 +27,6 @@ R = TypeVar("R")
 _tuple_of: Any = types.BaseTuple.from_types
 
 generate_late()
-trust_indices()
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -78,7 +77,10 @@ def _dispatcher(function: Callable[P, R], options: Mapping[str, bool]) -> Any:
     usual = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
     # Where it is not said, numba takes it from the kernel for which another is compiled first.
     usual["forceinline"] = False
-    return compile_lazily(**{**usual, **options})(function)
+    dispatcher = compile_lazily(**{**usual, **options})(function)
+    if not (options["_nrt"] or config.DISABLE_JIT):  # type: ignore[attr-defined]  # as below
+        trust_indices(dispatcher)
+    return dispatcher
 
 
 def _compile_as_part(kernel: Any, options: Mapping[str, bool]) -> None:

@@ -26,6 +26,10 @@ def at(numbers, place):
 def of_others(numbers, place):
     return numbers[place]
 
+@numba.njit(_nrt=False)
+def of_others_without_arrays(numbers, place):
+    return numbers[place]
+
 @jit.allocating
 def copied(numbers, place):
     return numbers.copy()[place]
@@ -54,9 +58,9 @@ def test_numbers_in_the_source_count_from_the_end_and_so_do_indices_of_others(
 ) -> None:
     code = (
         "print(last(numbers), last_of_row(numbers.reshape(2, 3), 0), at(numbers, 5),"
-        " of_others(numbers, -2), copied(numbers, -2))"
+        " of_others(numbers, -2), of_others_without_arrays(numbers, -2), copied(numbers, -2))"
     )
-    assert printed(tmp_path, code) == "5.0 2.0 5.0 4.0 4.0"
+    assert printed(tmp_path, code) == "5.0 2.0 5.0 4.0 4.0 4.0"
 
 
 def test_a_check_of_bounds_finds_any_other_negative_index(tmp_path: Path) -> None:
