@@ -78,7 +78,7 @@ def _dispatcher(function: Callable[P, R], options: Mapping[str, bool]) -> Any:
     # Where it is not said, numba takes it from the kernel for which another is compiled first.
     usual["forceinline"] = False
     dispatcher = compile_lazily(**{**usual, **options})(function)
-    if not (options["_nrt"] or config.DISABLE_JIT):  # type: ignore[attr-defined]  # as below
+    if not (options["_nrt"] or config.DISABLE_JIT):  # type: ignore[attr-defined]  # as above
         trust_indices(dispatcher)
     return dispatcher
 

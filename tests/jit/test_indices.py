@@ -1,9 +1,8 @@
 """An index counts from the end of an array where it is a number in the source, and nowhere else."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
+
+from tests.helpers.kernel_processes import printed
 
 KERNELS = """
 import numba
@@ -38,31 +37,18 @@ numbers = np.arange(6.0)
 """
 
 
-def printed(tmp_path: Path, code: str, **variables: str) -> str:
-    """Run code after that of KERNELS, and return what it prints."""
-    (tmp_path / "kernels.py").write_text(KERNELS)
-    environment = {
-        **os.environ,
-        "NUMBA_CACHE_DIR": str(tmp_path),
-        "PYTHONPATH": f"{tmp_path}:.",
-        **variables,
-    }
-    command = [sys.executable, "-c", f"from kernels import *\n{code}"]
-    ran = subprocess.run(command, env=environment, capture_output=True, text=True)
-    assert ran.stderr == ""
-    return ran.stdout.strip()
-
-
 def test_numbers_in_the_source_count_from_the_end_and_so_do_indices_of_others(
     tmp_path: Path,
 ) -> None:
+    (tmp_path / "kernels.py").write_text(KERNELS)
     code = (
         "print(last(numbers), last_of_row(numbers.reshape(2, 3), 0), at(numbers, 5),"
         " of_others(numbers, -2), of_others_without_arrays(numbers, -2), copied(numbers, -2))"
     )
-    assert printed(tmp_path, code) == "5.0 2.0 5.0 4.0 4.0 4.0"
+    assert printed(tmp_path, code) == "5.0 2.0 5.0 4.0 4.0 4.0\n"
 
 
 def test_a_check_of_bounds_finds_any_other_negative_index(tmp_path: Path) -> None:
+    (tmp_path / "kernels.py").write_text(KERNELS)
     code = "try:\n    at(numbers, -1)\nexcept IndexError as error:\n    print(error)"
-    assert printed(tmp_path, code, NUMBA_BOUNDSCHECK="1") == "index is out of bounds"
+    assert printed(tmp_path, code, NUMBA_BOUNDSCHECK="1") == "index is out of bounds\n"

@@ -1,11 +1,10 @@
 """Native code for the functions that Python calls, compiled and loaded in any order."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests.helpers.kernel_processes import printed
 
 KERNELS = """
 import numba
@@ -110,10 +109,6 @@ def test_code_finds_a_standalone_function_that_was_compiled_after_it(tmp_path: P
 
 def call(folder: Path, *names: str) -> None:
     """Call functions in a process of its own, with a cache in a folder."""
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder), "PYTHONPATH": f"{folder}:."}
-    printed = "".join(f"print({CALLS[name][0]})\n" for name in names)
-    code = f"from kernels import *\n{REFUSAL}{printed}"
-    command = [sys.executable, "-W", "error", "-c", code]
-    ran = subprocess.run(command, env=environment, capture_output=True, text=True)
-    assert ran.stderr == ""
-    assert ran.stdout.split("\n") == [*(CALLS[name][1] for name in names), ""]
+    calls = "".join(f"print({CALLS[name][0]})\n" for name in names)
+    answers = printed(folder, f"{REFUSAL}{calls}")
+    assert answers.split("\n") == [*(CALLS[name][1] for name in names), ""]
