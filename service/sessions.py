@@ -33,24 +33,27 @@ def open_session(content: bytes, path: Path, threads: int) -> onnxruntime.Infere
         folder = jit.folder() if path.parent == RELEASED else None
         if folder is None:
             return _session(content, _options(threads))
-        return _released(content, folder, path.stem, threads)
+        return _released(content, folder, path, threads)
     except Exception as error:  # ONNX Runtime has a class for each of its codes, and no common one
         reason = str(error).strip().partition("\n")[0]
         raise ValueError(f"{path} must be an ONNX file that can be read: {reason}") from error
 
 
 def _released(
-    content: bytes, folder: Path, name: str, threads: int
+    content: bytes, folder: Path, path: Path, threads: int
 ) -> onnxruntime.InferenceSession:
     """Open a session from the graph that is kept, or keep it."""
     digest = sha256(onnxruntime.__version__.encode() + content).hexdigest()
-    kept = folder / f"{name}-{digest[:16]}.ort"
-    if (optimised := _read(kept)) is not None:
-        return _session(optimised, _options(threads))
-    try:
-        return _session_to_keep(content, kept, threads)
-    except Exception:  # nothing can be written: ONNX Runtime's own error, or the system's
-        return _session(content, _options(threads))
+    kept = folder / f"{path.stem}-{digest[:16]}.ort"
+    optimised = _read(kept)
+    if optimised is None:
+        try:
+            with jit.locked(path):  # of processes that open it together, one optimises it
+                if (optimised := _read(kept)) is None:
+                    return _session_to_keep(content, kept, threads)
+        except Exception:  # nothing can be written: ONNX Runtime's own error, or the system's
+            return _session(content, _options(threads))
+    return _session(optimised, _options(threads))
 
 
 def _session_to_keep(content: bytes, kept: Path, threads: int) -> onnxruntime.InferenceSession:

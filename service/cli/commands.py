@@ -4,7 +4,6 @@ Each command imports the modules that it needs when it runs, so that --help and 
 are fast.
 """
 
-import os
 import sys
 from functools import partial
 from typing import Annotated
@@ -220,8 +219,6 @@ def serve(
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
     from service.jobs.workers import fork_server
 
-    if not any(name.upper() == "PARETOUR_REDIS_URL" for name in os.environ):
-        fork_server.start()  # now: it imports as long as this process does
     with fork_server.interrupts_blocked():
         from service import server
         from service.cli.configuration import load_settings, load_with

@@ -1,6 +1,15 @@
 """Compile functions with numba, and cache them: the one place that configures numba."""
 
-from service.jit.cache import CACHED, PRECOMPILED, folder
+from service.jit.cache import CACHED, PRECOMPILED, folder, locked
 from service.jit.kernels import allocating, compiled, inlined, standalone
 
-__all__ = ["CACHED", "PRECOMPILED", "allocating", "compiled", "folder", "inlined", "standalone"]
+__all__ = [
+    "CACHED",
+    "PRECOMPILED",
+    "allocating",
+    "compiled",
+    "folder",
+    "inlined",
+    "locked",
+    "standalone",
+]

@@ -110,7 +110,7 @@ class CacheFile(_NumbaCacheFile):  # type: ignore[misc]
         """Keep what was compiled, unless the folder cannot be written."""
         if not os.access(self._cache_path, os.W_OK):
             return
-        with _locked(self._cache_path):
+        with locked(self._cache_path):
             files = self._load_index()
             if key not in files:
                 files[key] = self._free_name(files.values())
@@ -147,9 +147,9 @@ caching.CacheImpl._locator_classes.insert(0, _PrecompiledLocator)  # noqa: SLF00
 
 
 @contextmanager
-def _locked(folder: str) -> Iterator[None]:
-    """Wait until no other process holds a folder, and hold it."""
-    descriptor = os.open(folder, os.O_RDONLY)
+def locked(path: str | Path) -> Iterator[None]:
+    """Wait until no other process holds a folder or file, and hold it."""
+    descriptor = os.open(path, os.O_RDONLY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
         yield

@@ -14,6 +14,7 @@ from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 
 # The limits of the search, which cannot be imported here.
+_ENUMERATED = 9  # cities up to which all tours are tried
 _THREE_OPT = 250  # cities from which on three-opt searches; fewer where costs differ by direction
 # Cities from which on candidates or tours are found by other code.
 _MANY = {"coordinates": 600, "matrices": 2_000}
@@ -23,6 +24,7 @@ class Part(Enum):
     """A part of the compiled code. They are compiled in this order: by how often they are used."""
 
     FEW_CITIES = "few-cities"
+    FEWEST_CITIES = "fewest-cities"  # whose tours are all tried
     MORE_CITIES = "more-cities"  # and costs that differ by direction
     MAPS = "maps"
     CHANGES = "changes"
@@ -30,6 +32,7 @@ class Part(Enum):
     SEVERAL_OBJECTIVES = "several-objectives"  # three and four
     OVER_THE_DAY = "over-the-day"
     MANY_CITIES = "many-cities"
+    BOUNDS = "bounds"
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,12 @@ class Compiling:
 
 def parts_of(task: Task) -> frozenset[Part]:
     """Return the parts that a task needs."""
+    parts = _of_subject(task)
+    return parts if task.options.bound else parts - {Part.BOUNDS}
+
+
+def _of_subject(task: Task) -> frozenset[Part]:
+    """Return the parts that a task needs if it asks for a bound."""
     match task.subject:
         case SharedCoverage():
             return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY}
@@ -77,10 +86,12 @@ def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
     few = stops.kind == "coordinates" and stops.n < _THREE_OPT and not several and not replanned
     needed = {
         Part.FEW_CITIES: True,
+        Part.FEWEST_CITIES: stops.n <= _ENUMERATED,
         Part.MORE_CITIES: not few,
         Part.CHANGES: replanned,
         Part.SEVERAL_OBJECTIVES: several or stops.hours is not None,
         Part.MANY_CITIES: stops.n >= _MANY[stops.kind],
         Part.OVER_THE_DAY: stops.hours is not None,
+        Part.BOUNDS: True,
     }
     return frozenset(part for part, is_needed in needed.items() if is_needed)

@@ -1,6 +1,7 @@
 """The functions that compile each part of the compiled code, or load it."""
 
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from typing import NamedTuple
 
 from service.coverage import detours
@@ -28,10 +29,23 @@ class Work(NamedTuple):
     seconds: int
 
 
+def _maps() -> None:
+    """Compile what maps need, and import what their survey does."""
+    detours.warm_up()
+    import_module("scipy.ndimage")
+
+
+def _bounds() -> None:
+    """Compile the bounds on hypervolumes of two objectives, and of three and four."""
+    search.bounds()
+    several.bounds()
+
+
 WORK: Mapping[Part, Work] = {
-    Part.FEW_CITIES: Work(search.few_cities, (search.two_opt, search.beside_two_opt), 12),
+    Part.FEW_CITIES: Work(search.few_cities, (search.two_opt, search.beside_two_opt), 10),
+    Part.FEWEST_CITIES: Work(search.fewest_cities, (search.fewest_cities,), 1),
     Part.MORE_CITIES: Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
-    Part.MAPS: Work(detours.warm_up, (detours.warm_up,), 2),
+    Part.MAPS: Work(_maps, (detours.warm_up,), 2),
     Part.CHANGES: Work(insertion.warm_up, (insertion.warm_up,), 1),
     Part.FLEETS: Work(fleet.warm_up, (fleet.warm_up,), 2),
     Part.SEVERAL_OBJECTIVES: Work(
@@ -39,5 +53,6 @@ WORK: Mapping[Part, Work] = {
     ),
     Part.OVER_THE_DAY: Work(day.warm_up, (day.warm_up,), 8),
     Part.MANY_CITIES: Work(search.many_cities, (search.many_cities,), 5),
+    Part.BOUNDS: Work(_bounds, (_bounds,), 4),
 }
 PIECES = [(part, piece) for part, work in WORK.items() for piece in work.pieces]

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from service.actor import load_actors
 from service.actor_info import ActorInfo
@@ -16,10 +17,12 @@ from service.kinds.front_document import FrontDocument
 from service.kinds.kind import NamedActor, Report, Tools
 from service.kinds.run import RUNS
 from service.requests.limits import Limits
-from service.requests.road_measurer import BlockingMeasurer, needs_roads
+from service.requests.parser import DEFAULT_ACTORS
 from service.requests.task import Task
-from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
+
+if TYPE_CHECKING:
+    from service.requests.road_measurer import BlockingMeasurer
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class TaskRunner:
 
     actors: Mapping[str, NamedActor]
     limits: Limits
-    measurer: BlockingMeasurer | None = None
+    measurer: "BlockingMeasurer | None" = None
     search: SearchFunction | None = None
 
     def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
@@ -48,13 +51,15 @@ class TaskRunner:
         """Return the front of a task. Its time limit begins once its network is open."""
         if task.actor in self.actors:
             self.actors[task.actor].load()
-        if self.measurer is not None and needs_roads(task):
+        if self.measurer is not None and task.needs_roads:
             task = self.measurer.measured(task, stop)
         return RUNS[task.kind](task, Tools(self.actors, self.limits, self.search), stop, report)
 
     def _open_networks(self) -> None:
-        for actor in self.actors.values():
-            actor.load()
+        """Open all, those first that build the tours of most requests."""
+        for name in (*DEFAULT_ACTORS.values(), *self.actors):
+            if name in self.actors:
+                self.actors[name].load()
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""
@@ -77,8 +82,16 @@ def load_runner(
     Raises:
         ValueError: As of load_actors, load_constructors and load_search.
     """
-    measurer = None if roads is None else BlockingMeasurer(RoadClient(roads))
     actors = load_actors(directory, threads, own_directory)
     constructors = load_constructors(extensions.constructors, actors)
     search = load_search(extensions.search)
-    return TaskRunner({**actors, **constructors}, limits, measurer, search)
+    return TaskRunner({**actors, **constructors}, limits, _measurer(roads), search)
+
+
+def _measurer(roads: RouterSettings | None) -> "BlockingMeasurer | None":
+    if roads is None:
+        return None
+    from service.requests.road_measurer import BlockingMeasurer
+    from service.roads.client import RoadClient  # imports a client of HTTP, which takes 0.2 s
+
+    return BlockingMeasurer(RoadClient(roads))

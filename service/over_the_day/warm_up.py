@@ -1,12 +1,11 @@
 """Compile the search over the day, or load it from the cache."""
 
 import math
-from itertools import islice
 
 import numpy as np
 
 from service.over_the_day.day import CostsOfDay, Day
-from service.over_the_day.search import WEIGHTS, DaySearch
+from service.over_the_day.search import DaySearch
 
 _N = 12  # cities: too many to try all tours
 
@@ -15,8 +14,7 @@ def warm_up() -> None:
     """Compile it by searches that use all of it."""
     for n in (4, _N):
         search = _search(n)
-        for _ in islice(search.run(), 4 * WEIGHTS[2]):
-            pass
+        any(search.run())  # until it has iterated
         search.driven(search.found()[1], math.inf)
 
 

@@ -16,11 +16,6 @@ from service.search.forbidden_legs import check_ways
 _POLL_SECONDS = 0.05  # between two checks whether to stop
 
 
-def needs_roads(task: Task) -> bool:
-    """Return whether a task lacks costs by road."""
-    return task.stops is not None and bool(task.stops.road_measures or task.stops.traffic)
-
-
 async def measured_by_road(task: Task, client: RoadClient) -> Task:
     """Return a task with its costs by road, and the time that it took to ask for them.
 

@@ -165,6 +165,12 @@ class Task:
         return None
 
     @property
+    def needs_roads(self) -> bool:
+        """Whether it lacks costs by road."""
+        stops = self.stops
+        return stops is not None and bool(stops.road_measures or stops.traffic)
+
+    @property
     def city_names(self) -> CityNames:
         """The names of its cities in refusals; a request to replan has no part that lists them."""
         names = CityNames()

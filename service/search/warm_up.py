@@ -18,7 +18,7 @@ from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
-from service.search.local_search import offer, sum_afresh
+from service.search.local_search import least_gain, offer, sum_afresh
 from service.search.pareto_local_search import WEIGHTS, fill_gaps
 from service.search.schedule import Search
 from service.search.starts.constructed_tour import constructed_tour
@@ -32,7 +32,7 @@ _TOUR = np.arange(_N, dtype=np.int32)
 
 def warm_up() -> None:
     """Compile the whole search."""
-    for compile_part in (few_cities, more_cities, many_cities):
+    for compile_part in (few_cities, fewest_cities, more_cities, many_cities, bounds):
         compile_part()
 
 
@@ -45,21 +45,15 @@ def few_cities() -> None:
 
 def two_opt() -> None:
     """Compile the local search by two-opt, and that from points of the front."""
-    instance = _instance(coordinates=True)
-    search = _search(instance)
-    _descend(search, search.local_search)
-    scalarization = search.descents.scalarization(0)
-    _offer(search, search.local_search, scalarization)
-    for number in range(WEIGHTS):
-        _rank_candidates(search.descents.scalarization(number))
-    fill_gaps(search.state, 1)
+    search = _search(_instance(coordinates=True))
+    search.local_search.descend(search.descents.scalarization(0), 0)  # iterates as well
+    fill_gaps(search.state, 0)
 
 
 def beside_two_opt() -> None:
-    """Compile what a search by two-opt needs besides, and the enumeration of few cities."""
+    """Compile what a search by two-opt needs besides."""
     instance = _instance(coordinates=True)
     best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
-    hypervolume_bound(instance, instance.reference_point)
     search = _search(instance)
     for _ in search.pool_candidates():
         pass
@@ -69,8 +63,13 @@ def beside_two_opt() -> None:
     search.add(_TOUR[np.newaxis])
     search.not_covered(_TOUR[np.newaxis])
     search.descents.load_start(search.local_search, scalarization)
+    _offer(search, search.local_search, scalarization)
     dominated_area(search.state.archive, *search.corner)
     constructed_tour(instance, scalarization, greedy=False)
+
+
+def fewest_cities() -> None:
+    """Compile the enumeration of tours."""
     exact_tours(_instance(coordinates=True, n=5))
 
 
@@ -86,18 +85,21 @@ def more_cities() -> None:
 def three_opt() -> None:
     """Compile the local search by three-opt."""
     search = _search(_instance(coordinates=True))
-    _descend(search, _three_opt(search))
+    local_search, scalarization = _three_opt(search), search.descents.scalarization(0)
+    local_search.descend(scalarization, 0)
+    local_search.iterate(scalarization, 0)
 
 
 def beside_three_opt() -> None:
-    """Compile the assembly of tours, and the bound where costs differ by direction."""
+    """Compile the assembly of tours."""
     search = _search(_instance(coordinates=True))
     tour, scalarization = _TOUR.copy(), search.descents.scalarization(WEIGHTS // 2)
     _rank_candidates(scalarization)
     assemble((tour, tour.copy(), tour[::-1].copy()), scalarization, 0.0, search.state.random)
-    _offer(search, _three_opt(search), scalarization)
-    matrices = _instance(coordinates=False)
-    hypervolume_bound(matrices, matrices.reference_point)
+    local_search = _three_opt(search)
+    _offer(search, local_search, scalarization)
+    enqueue_cities(local_search.working, _TOUR)
+    least_gain(scalarization, 1.0)
 
 
 def many_cities() -> None:
@@ -106,6 +108,13 @@ def many_cities() -> None:
     candidates.warm_up(instance)
     search = _search(instance)
     constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
+
+
+def bounds() -> None:
+    """Compile the bounds on the hypervolume."""
+    for coordinates in (True, False):
+        instance = _instance(coordinates=coordinates)
+        hypervolume_bound(instance, instance.reference_point)
 
 
 def _search(instance: Instance) -> Search:
@@ -121,16 +130,6 @@ def _offer(search: Search, local_search: LocalSearch, scalarization: Scalarizati
     local_search.load(_TOUR, *lengths(scalarization.costs, _TOUR))
     sum_afresh(local_search.working, scalarization)
     offer(local_search.working, scalarization, search.state.archive)
-
-
-def _descend(search: Search, local_search: LocalSearch) -> None:
-    """Search from a tour, with a local search."""
-    scalarization = search.descents.scalarization(WEIGHTS // 2)
-    _rank_candidates(scalarization)
-    local_search.load(_TOUR, *lengths(scalarization.costs, _TOUR))
-    enqueue_cities(local_search.working, _TOUR)
-    local_search.descend(scalarization, 1)
-    local_search.iterate(scalarization, 1)
 
 
 def _rank_candidates(scalarization: Scalarization) -> None:

@@ -14,7 +14,7 @@ import pytest
 from service.errors import Cancelled, RouterUnusable
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
-from service.requests.road_measurer import BlockingMeasurer, measured_by_road, needs_roads
+from service.requests.road_measurer import BlockingMeasurer, measured_by_road
 from service.requests.stops import Matrix, Stops
 from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
@@ -58,7 +58,7 @@ def _settings(url: str) -> RouterSettings:
 
 def test_a_task_is_measured_once() -> None:
     task = _parsed(_source("road_time"))
-    assert needs_roads(task)
+    assert task.needs_roads
 
     async def measure(url: str) -> Task:
         client = RoadClient(_settings(url))
@@ -69,7 +69,7 @@ def test_a_task_is_measured_once() -> None:
 
     with fake_osrm() as fake:
         measured = asyncio.run(measure(fake.url))
-    assert not needs_roads(measured)
+    assert not measured.needs_roads
     assert isinstance(measured.subject, Stops)
     time_source, risk_source = measured.subject.sources
     assert isinstance(time_source, Matrix)
@@ -79,7 +79,7 @@ def test_a_task_is_measured_once() -> None:
 
 
 def test_a_task_without_roads_needs_no_engine() -> None:
-    assert not needs_roads(_parsed(_source("great_circle")))
+    assert not _parsed(_source("great_circle")).needs_roads
 
 
 def test_a_process_measures_one_task_after_another() -> None:
@@ -88,10 +88,10 @@ def test_a_process_measures_one_task_after_another() -> None:
     with ExitStack() as stack:
         fake = stack.enter_context(fake_osrm(lambda *_: next(replies, None)))
         measurer = stack.enter_context(_blocking(replace(_settings(fake.url), cache_bytes=0)))
-        assert not needs_roads(measurer.measured(task, lambda: False))
+        assert not measurer.measured(task, lambda: False).needs_roads
         with pytest.raises(RouterUnusable):
             measurer.measured(task, lambda: False)
-        assert not needs_roads(measurer.measured(task, lambda: False))
+        assert not measurer.measured(task, lambda: False).needs_roads
 
 
 def test_a_process_that_is_told_to_stop_waits_no_longer() -> None:

@@ -13,10 +13,5 @@ from importlib import import_module
 from service.jobs.compiled_code import load_or_begin
 
 load_or_begin()  # before the other modules, as it lasts longest
-for name in (
-    "scipy.ndimage",  # as the first survey does
-    "service.jobs.workers.messages",
-    "service.kinds.run",
-    "service.requests.road_measurer",
-):
+for name in ("service.jobs.workers.messages", "service.kinds.run"):
     import_module(name)

@@ -32,7 +32,7 @@ from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
 from service.jobs.workers.worker_process import MakeRunner
 from service.jobs.workers.worker_set import Worker, WorkerSet
 from service.kinds.front_document import FrontDocument
-from service.requests.road_measurer import measured_by_road, needs_roads
+from service.requests.road_measurer import measured_by_road
 from service.requests.task import Task
 from service.roads.client import RoadClient
 
@@ -191,7 +191,7 @@ class WorkerPool:
 
     def queue(self, submission: Submission) -> None:
         """Queue a submission that has a place, at once or when its costs by road are there."""
-        if self._roads is None or not needs_roads(submission.task):
+        if self._roads is None or not submission.task.needs_roads:
             self._append(submission)
             return
         measuring = asyncio.create_task(self._measure(submission, self._roads))

@@ -28,6 +28,14 @@ def bound_of_several(
     instance: Instance, reference_point: Array, deadline: float | None, stop: Callable[[], bool]
 ) -> float:
     """Return an upper bound on the hypervolume of any front of the instance, 0 to 1."""
+    weights, lowest = lowest_lengths(instance, deadline, stop)
+    return volume_above(weights * scaled_reference(instance, reference_point), lowest)
+
+
+def lowest_lengths(
+    instance: Instance, deadline: float | None = None, stop: Callable[[], bool] = lambda: False
+) -> tuple[Array, Array]:
+    """Return weights, shape (k, m), and a lower bound on the length of all tours under each."""
     shares = lattice(instance.objectives, PARTS[instance.objectives]).clip(LEAST_SHARE)
     weights = shares[spread_out(shares)] / np.ldexp(instance.scale, instance.shifts)
     weights /= weights.sum(axis=1, keepdims=True)
@@ -37,7 +45,7 @@ def bound_of_several(
         lowest[k] = max(lowest[k], value * (1 - SLACK))
         if stop() or (deadline is not None and time.monotonic() >= deadline):
             break
-    return volume_above(weights * scaled_reference(instance, reference_point), lowest)
+    return weights, lowest
 
 
 def _bounds(costs: list[Costs], weights: Array) -> Iterator[tuple[int, float]]:

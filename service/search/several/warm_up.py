@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.search.best_subset import best_subset
-from service.search.bound.hypervolume import hypervolume_bound
+from service.search.bound.several import lowest_lengths
 from service.search.enumeration import exact_tours
 from service.search.hypervolume import hypervolume
 from service.search.improve import improve
@@ -32,10 +32,14 @@ def beside_local_search() -> None:
     """Compile what follows a search, and the enumeration of few cities."""
     best_subset(np.eye(3), 2, np.full(3, 2.0))
     hypervolume(np.eye(3), np.full(3, 2.0))
-    for instance in _instances():
-        hypervolume_bound(instance, instance.reference_point)
     for objectives in (3, 4):
         exact_tours(Instance(coordinates=_planes(objectives)[:5]))
+
+
+def bounds() -> None:
+    """Compile the bounds on the hypervolume, up to the volume, for which nothing is compiled."""
+    for instance in _instances():
+        lowest_lengths(instance)
 
 
 def _instances() -> tuple[Instance, Instance]:
