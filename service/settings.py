@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Annotated
 from urllib.parse import urlsplit
 
-from limits import parse
 from pydantic import (
     AfterValidator,
     BeforeValidator,
@@ -26,8 +25,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.actor_info import RELEASED
 from service.api.keys import KeyHash
-from service.api.site.tiles import checked_template
-from service.api.transport.proxies import MOST_LETTERS, ROOT_PATH
+from service.api.transport.root_path import is_root_path
 from service.extensions.names import Extensions
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
@@ -51,6 +49,9 @@ _MOST_PATH_CELLS = 2**23  # of up to 40 bytes each, which are stored as one valu
 _MOST_TOURS = 10_000  # choosing these from the search's 50,000 takes 2 GB
 _MOST_ENTRIES = 1_000_000
 _LEAST = 0.001  # of shares, seconds and metres
+# No spaces, commas or semicolons: the server's name becomes part of a header.
+_TILES = re.compile(r"https?://[A-Za-z0-9.{}:-]+/[A-Za-z0-9_.~/{}?&=%@+-]*")
+_PARTS_OF_TILES = ("{z}", "{x}", "{y}")
 
 
 def _cores() -> int:
@@ -88,6 +89,8 @@ def _secret(value: object) -> object:
 
 
 def _checked_rate(value: str) -> str:
+    from limits import parse  # imported late: it takes 0.1 s, and few set a rate
+
     try:
         rate = parse(value)
     except ValueError:
@@ -107,8 +110,16 @@ def _checked_address(value: str) -> str:
 
 
 def _checked_root_path(value: str) -> str:
-    if not (value and len(value) <= MOST_LETTERS and ROOT_PATH.fullmatch(value)):
+    if not value or not is_root_path(value):
         raise ValueError("must be like /tours")
+    return value
+
+
+def _checked_tiles(value: str) -> str:
+    """Return the template of a tile's address."""
+    server = urlsplit(value).netloc.removeprefix("{s}.") if _TILES.fullmatch(value) else "{"
+    if "{" in server or not all(value.count(part) == 1 for part in _PARTS_OF_TILES):
+        raise ValueError("must be like https://tiles.example.org/{z}/{x}/{y}.png")
     return value
 
 
@@ -189,7 +200,7 @@ class Settings(BaseSettings):
     """path under which a proxy serves all this, such as /tours, and which it takes away"""
 
     # Map tiles under the stops on the page, which browsers load from there.
-    tiles: Annotated[str, AfterValidator(checked_template)] | None = None
+    tiles: Annotated[str, AfterValidator(_checked_tiles)] | None = None
     """address of map tiles with {z}, {x}, {y}; without it no streets are drawn"""
     tiles_credit: str = "© OpenStreetMap contributors"
     """credit for the map tiles, shown on the map"""
@@ -273,7 +284,7 @@ class Settings(BaseSettings):
     # Access.
     api_keys: KeyHashes = ()
     """callers and their keys, as CALLER:HASH,CALLER:HASH; without it all may call"""
-    rate: Rate = "1000/minute"
+    rate: Rate = Field(default="1000/minute", validate_default=False)
     """the most requests of each caller; without keys, of each address"""
     origins: Words = ()
     """origins whose pages may call (CORS), separated by commas; or *"""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import httpx
 from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
 from paretour.calls import address_of
+from paretour.uncollected import uncollected
 from rich.console import Console
 
 from service.cli.errors import UsageError
@@ -82,10 +83,11 @@ class LocalBackend:
             Refused: A routing engine is needed, and fails.
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
-        from service.cli.configuration import load_settings, load_with
-        from service.library.local_planner import load_planner
+        with uncollected():
+            from service.cli.configuration import load_settings, load_with
+            from service.library.local_planner import load_planner
 
-        planner = load_with(load_planner, load_settings())
+            planner = load_with(load_planner, load_settings())
         try:
             return planner.plan(plan, ConsoleDisplay(console)).front()
         except Refused as error:

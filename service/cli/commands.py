@@ -8,6 +8,7 @@ import sys
 from functools import partial
 from typing import Annotated
 
+from paretour.uncollected import uncollected
 from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
@@ -219,7 +220,7 @@ def serve(
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
     from service.jobs.workers import fork_server
 
-    with fork_server.interrupts_blocked():
+    with uncollected(), fork_server.interrupts_blocked():
         from service import server
         from service.cli.configuration import load_settings, load_with
         from service.cli.errors import exit_on_error

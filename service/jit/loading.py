@@ -5,6 +5,8 @@ the modules of its own whose code the function contains, one of which imports ha
 takes longer than to load a search. A process that compiles imports all of it then.
 """
 
+from collections.abc import Callable
+from functools import cache, partial
 from importlib import import_module
 from typing import Any
 
@@ -41,19 +43,35 @@ def _rebuild_environment(module: str, constants: list[Any], name: str) -> Any:
     return found
 
 
+class _OnDemand:
+    """A cache that looks for its files when it is first used: most functions are never loaded.
+
+    They are parts of others.
+    """
+
+    def __init__(self, make: Callable[[], _Cache]) -> None:
+        self._make = cache(make)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._make(), name)
+
+
 def use_cache(dispatcher: Any, *, apart: bool = False) -> None:
     """Let the dispatcher of a function load what it has compiled before.
 
     With `apart`, that is kept apart from what another dispatcher of the function has compiled.
     """
-    if not CACHED:
-        return
-    cache = _Cache(dispatcher.py_func)
+    if CACHED:  # as its enable_caching does
+        dispatcher._cache = _OnDemand(partial(_cache_of, dispatcher.py_func, apart))  # noqa: SLF001
+
+
+def _cache_of(function: Any, apart: bool) -> _Cache:
+    found = _Cache(function)
     if apart:
-        name = f"{cache._impl.filename_base}-part"  # noqa: SLF001  # numba has no option for it
-        stamp = cache._impl.locator.get_source_stamp()  # noqa: SLF001
-        cache._cache_file = CacheFile(cache.cache_path, name, stamp)  # noqa: SLF001
-    dispatcher._cache = cache  # noqa: SLF001  # as its enable_caching does
+        name = f"{found._impl.filename_base}-part"  # noqa: SLF001  # numba has no option for it
+        stamp = found._impl.locator.get_source_stamp()  # noqa: SLF001
+        found._cache_file = CacheFile(found.cache_path, name, stamp)  # noqa: SLF001
+    return found
 
 
 environment._rebuild_env = _rebuild_environment  # noqa: SLF001

@@ -143,6 +143,7 @@ def _compile_pieces(queue: int, done: int) -> None:
 
     Compiling makes objects that stay, so Python seldom looks for those that could go.
     """
+    gc.enable()  # it may have been forked while none was collected
     gc.set_threshold(20_000)
     with install_listener("numba:compile", Count(lambda: os.write(done, bytes([FUNCTION])))):
         while number := os.read(queue, 1):

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence, Sized
 from difflib import SequenceMatcher, get_close_matches
 from functools import cache
 from heapq import nlargest
+from threading import Lock
 from typing import Any, TypeVar
 
 import numpy as np
@@ -32,6 +33,7 @@ _DEMANDS = {
     "greater_than_equal": "must be at least {ge:.16g}, got {value}",
     "less_than_equal": "must be at most {le:.16g}, got {value}",
 }
+_building = Lock()  # as pydantic does not build one model in two threads (pydantic#13419)
 _NO_BRACKETS = bytes(set(range(256)).difference(b"[]{}"))
 
 
@@ -41,6 +43,8 @@ def parse_json(model: type[Model], body: bytes) -> Model:
     Raises:
         Refusal: The body is not JSON, or does not fit the model.
     """
+    with _building:
+        model.model_rebuild()  # unless it was built before
     try:
         return model.model_validate_json(body)
     except ValidationError as error:

@@ -1,16 +1,11 @@
 """Map tiles under the stops on the page: where they come from, and the policy for browsers."""
 
-import re
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
-
-# No spaces, commas or semicolons: the server's name becomes part of a header.
-_TEMPLATE = re.compile(r"https?://[A-Za-z0-9.{}:-]+/[A-Za-z0-9_.~/{}?&=%@+-]*")
-_PARTS = ("{z}", "{x}", "{y}")
 
 
 @dataclass(frozen=True)
@@ -46,15 +41,3 @@ class Tiles:
             return JSONResponse(answer, headers={"Cache-Control": "no-cache"})
 
         return Route("/page/map.json", tell)
-
-
-def checked_template(url: str) -> str:
-    """Return the template of a tile's address.
-
-    Raises:
-        ValueError: The text is not such a template.
-    """
-    server = urlsplit(url).netloc.removeprefix("{s}.") if _TEMPLATE.fullmatch(url) else "{"
-    if "{" in server or not all(url.count(part) == 1 for part in _PARTS):
-        raise ValueError("must be like https://tiles.example.org/{z}/{x}/{y}.png")
-    return url

@@ -1,16 +1,13 @@
 """Take a client's address, and the path under which it sees the service, from trusted proxies."""
 
-import re
-
 from starlette.datastructures import Headers
 from starlette.types import Scope
 from uvicorn._types import ASGIReceiveCallable, ASGISendCallable
 from uvicorn._types import Scope as AnyScope
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-# Segments without escapes, and not .. or empty: //other.example would be another server.
-ROOT_PATH = re.compile(r"(/[A-Za-z0-9_~-][A-Za-z0-9._~-]*)*")
-MOST_LETTERS = 200
+from service.api.transport.root_path import is_root_path
+
 HIDDEN = "hidden_client"  # in a request's scope: whether a proxy that is not trusted passed it on
 _PASSED_ON = ("x-forwarded-for", "forwarded")
 
@@ -41,7 +38,7 @@ def _set_root_path(scope: Scope) -> None:
     """Set the root path of a request to its X-Forwarded-Prefix, in place of the setting."""
     prefixes = Headers(scope=scope).getlist("x-forwarded-prefix")
     root_path = prefixes[0].removesuffix("/") if len(prefixes) == 1 else None
-    if root_path is None or len(root_path) > MOST_LETTERS or not ROOT_PATH.fullmatch(root_path):
+    if root_path is None or not is_root_path(root_path):
         return
     former = scope["root_path"]
     scope["root_path"] = root_path

@@ -10,7 +10,6 @@ from io import BytesIO
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from service.errors import Refusal, invalid
 from service.requests.arrays import check_size
@@ -55,6 +54,8 @@ def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.
 
 
 def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    from PIL import Image  # imported late: few requests have a map
+
     with Image.open(BytesIO(picture), formats=["PNG"]) as image:
         check_size(*image.size, most_cells)  # what the decoder is going to unpack
         if image.mode not in (*_MODES, _DEEP_GREY):
