@@ -62,7 +62,7 @@ def make_candidate_pool(n: int) -> CandidatePool:
 def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterator[None]:
     """Fill a pool with the cheapest cities under weights (k, 2), and yield every few milliseconds.
 
-    O(n^2) where costs are tabulated, else O(n log^2 n).
+    O(n^2) where costs are tabulated, else O(n log n).
     """
     n = len(pool.cities)
     if len(costs.matrix):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
 from service.search.costs import SIDES, Costs, step_costs
+from service.search.selection import select
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -38,6 +39,14 @@ class Nearest(NamedTuple):
     costs: Array  # (count,), the weighted costs, ascending
     nodes: Cities  # (WAITING,)
     bounds: Array  # (WAITING,)
+
+
+class Scratch(NamedTuple):
+    """Scratch space to fill a tree of m cities."""
+
+    cities: Cities  # (m,)
+    keys: Array  # (m,)
+    selected: Array  # (m,)
 
 
 def make_kd_trees(weights: Array, cities: Cities, sides: int) -> KdTrees:
@@ -68,30 +77,49 @@ def make_nearest(count: int) -> Nearest:
 
 @allocating
 def fill_kd_tree(trees: KdTrees, costs: Costs, k: int) -> None:
-    """Sort the cities into the tree of weight k, level by level. O(m log^2 m)."""
+    """Put the cities into the tree of weight k, level by level. O(m log m)."""
     order, boxes = trees.cities[k], trees.boxes[k]
+    scratch = Scratch(np.empty_like(order), np.empty(len(order)), np.empty(len(order)))
     leaves = len(trees.begins) - 1
     width = leaves  # of a node, in leaves
     node = 0
     while width > 0:
         for leaf in range(0, leaves, width):
-            part = order[trees.begins[leaf] : trees.begins[leaf + width]]
+            begin, end = trees.begins[leaf], trees.begins[leaf + width]
+            part = order[begin:end]
             side = fill_box(boxes[node], costs.cities, part, trees.weights[k])
             if width > 1:
-                coordinates = np.empty(len(part))
-                for place in range(len(part)):
-                    coordinates[place] = costs.cities[part[place], side]
-                sort_cities(part, coordinates)
+                middle = trees.begins[leaf + width // 2]
+                split(part, costs.cities[:, side], middle - begin, scratch)
             node += 1
         width //= 2
 
 
-@allocating
-def sort_cities(cities: Cities, keys: Array) -> None:
-    """Sort cities by their keys."""
-    ordered = cities[np.argsort(keys)]
-    for place in range(len(cities)):  # numba compiles 30 functions for an assignment of all
-        cities[place] = ordered[place]
+@compiled
+def split(cities: Cities, coordinates: Array, count: int, scratch: Scratch) -> None:
+    """Put the `count` cities with the least coordinates first, and else keep their order. O(m)."""
+    m = len(cities)
+    for place in range(m):
+        city = cities[place]
+        scratch.cities[place] = city
+        scratch.keys[place] = scratch.selected[place] = coordinates[city]
+    middle = select(scratch.selected[:m], count)
+    below, equal = 0, 0
+    for place in range(m):
+        below += scratch.keys[place] < middle
+        equal += scratch.keys[place] == middle
+    first, second, third = 0, below, below + equal
+    for place in range(m):
+        city, key = scratch.cities[place], scratch.keys[place]
+        if key < middle:
+            cities[first] = city
+            first += 1
+        elif key == middle:
+            cities[second] = city
+            second += 1
+        else:
+            cities[third] = city
+            third += 1
 
 
 @compiled

@@ -16,6 +16,7 @@ from service.search.closing import is_closing
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
+Edges = NDArray[np.int64]  # by their places in the lists of candidates
 
 MOST_COMPARED = 10_000  # ends of other paths; there are fewer unless many cities coincide
 
@@ -63,7 +64,7 @@ def is_candidate(scalarization: Scalarization, i: int, j: int) -> bool:
 
 
 @compiled
-def collect_edges(scalarization: Scalarization, edges: NDArray[np.int64], costs: Array) -> int:
+def collect_edges(scalarization: Scalarization, edges: Edges, costs: Array) -> int:
     """Collect each candidate edge once, by its place in the lists; return how many there are."""
     count = 0
     candidates, closing = scalarization.candidates, scalarization.costs.closing
@@ -105,11 +106,12 @@ def nearest_end(scalarization: Scalarization, ends: Cities, count: int, city: in
 def walk_paths(scalarization: Scalarization, paths: Paths, tour: Cities) -> None:
     """Fill `tour` with one path after another, from its first city on if that is an end."""
     n = len(tour)
-    ends = np.flatnonzero(paths.degree < 2).astype(np.int32)
-    place = np.full(n, -1, np.int32)
-    for k in range(len(ends)):
-        place[ends[k]] = k
-    count = len(ends)
+    ends, place = np.empty(n, np.int32), np.full(n, -1, np.int32)
+    count = 0
+    for city in range(n):
+        if paths.degree[city] < 2:
+            ends[count], place[city] = city, count
+            count += 1
     city = tour[0] if place[tour[0]] >= 0 else ends[0]
     before = -1
     for k in range(n):
@@ -126,19 +128,27 @@ def walk_paths(scalarization: Scalarization, paths: Paths, tour: Cities) -> None
 
 
 @allocating
+def join_in_order(scalarization: Scalarization, edges: Edges, begun: int, tour: Cities) -> None:
+    """Fill a tour as `greedy_edge` does, from its candidate edges in order."""
+    n = len(tour)
+    paths = Paths(np.zeros((n, 2), np.int32), np.zeros(n, np.int32), np.arange(n).astype(np.int32))
+    for k in range(begun - 1):
+        join(paths, tour[k], tour[k + 1])
+    width = scalarization.candidates.shape[1]
+    for edge in edges:
+        join(paths, edge // width, scalarization.candidates[edge // width, edge % width])
+    walk_paths(scalarization, paths, tour)
+
+
 def greedy_edge(scalarization: Scalarization, begun: int, tour: Cities) -> None:
     """Fill a tour that has its first `begun` cities, at most two: steps between them stay in it.
 
     Of symmetric costs. With one city begun the tour may begin elsewhere. O(n log n), and the square
     of the number of paths.
     """
-    n = len(tour)
-    paths = Paths(np.zeros((n, 2), np.int32), np.zeros(n, np.int32), np.arange(n).astype(np.int32))
-    for k in range(begun - 1):
-        join(paths, tour[k], tour[k + 1])
-    width = scalarization.candidates.shape[1]
-    edges, costs = np.empty(n * width, np.int64), np.empty(n * width)
+    size = scalarization.candidates.size
+    edges, costs = np.empty(size, np.int64), np.empty(size)
     count = collect_edges(scalarization, edges, costs)
-    for edge in edges[np.argsort(costs[:count])]:
-        join(paths, edge // width, scalarization.candidates[edge // width, edge % width])
-    walk_paths(scalarization, paths, tour)
+    # Not in compiled code: numba compiles a dozen functions to sort.
+    in_order = edges[costs[:count].argsort(kind="stable")]
+    join_in_order(scalarization, in_order, begun, tour)
