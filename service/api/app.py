@@ -155,7 +155,11 @@ def create_app(
     app.include_router(_health_router(engine))
     # Last, because routes are tried in order and these are many.
     app.routes.extend(
-        [edge.tiles.route(edge.streets is not None), *static_routes(), *guide_routes()]
+        [
+            edge.tiles.route(edge.streets is not None, limits.seconds),
+            *static_routes(),
+            *guide_routes(),
+        ]
     )
     return app
 

@@ -52,6 +52,7 @@ const reading = new Reading(offer, () => planning || say(""));
 
 let way = null; // the way on which the front shown can be replanned
 let objectives = UNNAMED; // the names in the front shown
+let mostSeconds = Infinity; // of a plan, until the service says so
 let planning = null; // the planning that is running
 let answer = null; // the best front so far
 let answered = null; // its request
@@ -107,7 +108,7 @@ const placeResult = () => arrange(form, element("result"), answer || planning);
 async function run(states, waiting = "A first try is being made.") {
   if (input.unread && !(await settled())) return;
   leave();
-  const mine = (planning = new Planning(service));
+  const mine = (planning = new Planning(service, mostSeconds));
   clear();
   offer();
   placeResult();
@@ -382,6 +383,7 @@ const started = start();
 offer(); // only now: before, the browser itself would send the form
 openChosen(); // while the page was being loaded
 equipment.then((map) => map && result.equip(map, service));
+equipment.then((map) => (mostSeconds = map?.seconds ?? mostSeconds));
 equipment.then((map) => map?.roads === false && offerNoRoads());
 
 /** Opens what the address names, or else the first example, unless the user opened or typed something meanwhile. */

@@ -17,7 +17,7 @@ TEMPLATE = "https://{s}.tiles.example.org:8443/streets/{z}/{x}/{y}.png?key=a-b"
 def answer_of(tiles: Tiles) -> tuple[object, str]:
     """Return what the page is told of tiles, and the policy beside it."""
     edge = Edge(tiles=tiles)
-    app = Starlette(routes=[edge.tiles.route(False)], middleware=edge.middleware)
+    app = Starlette(routes=[edge.tiles.route(False, 60.0)], middleware=edge.middleware)
 
     async def answer() -> httpx.Response:
         async with httpx.AsyncClient(transport=httpx.ASGITransport(app=app)) as client:
@@ -29,13 +29,13 @@ def answer_of(tiles: Tiles) -> tuple[object, str]:
 
 def test_the_policy_names_the_server_of_the_tiles() -> None:
     told, policy = answer_of(Tiles(TEMPLATE, "© somebody"))
-    assert told == {"tiles": TEMPLATE, "credit": "© somebody", "roads": False}
+    assert told == {"tiles": TEMPLATE, "credit": "© somebody", "roads": False, "seconds": 60.0}
     assert "img-src 'self' data: https://*.tiles.example.org:8443; " in policy
 
 
 def test_without_tiles_images_come_from_the_service_alone() -> None:
     told, policy = answer_of(Tiles())
-    assert told == {"tiles": None, "credit": "", "roads": False}
+    assert told == {"tiles": None, "credit": "", "roads": False, "seconds": 60.0}
     assert "img-src 'self' data:; " in policy
 
 

@@ -189,6 +189,7 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
         ),
         (FLEET, "Window of school", "8:00-10:00; 9:00-12:00", "stops", "neither overlap nor touch"),
         (FLEET, "Shift of van", "8:00-12:00; 12:00-16:00", "vehicles", "neither overlap nor touch"),
+        (NAMED, "Seconds of planning", "100000", "time_limit", "must be at most 60"),
         (DAY, "Start", "order-8", "start", "Start must be the name of a stop"),
         (DAY, "End elsewhere", "order-8", "end", "must be the name of a stop"),
         (LAYERED, "Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
@@ -225,6 +226,19 @@ def test_a_value_that_is_refused_keeps_the_last_plan(
     plan(window)
     wait_until_planned(window)
     expect(window.locator(f"#{fault}-fault")).to_be_empty()
+
+
+def test_no_first_try_is_asked_for_where_the_service_refuses_the_seconds(window: Page) -> None:
+    open_files(window, {"stops.csv": NAMED})
+    window.get_by_label("Seconds of planning").fill("100000")
+    asked: list[float] = []
+    window.on(
+        "request",
+        lambda each: each.method == "POST" and asked.append(each.post_data_json["time_limit"]),
+    )
+    plan(window)
+    expect(window.locator("#time_limit-fault")).to_contain_text("must be at most 60")
+    assert asked == [100_000]
 
 
 def test_a_layer_is_named_as_another_was_once_that_name_is_free(window: Page) -> None:

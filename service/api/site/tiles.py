@@ -29,13 +29,14 @@ class Tiles:
         scheme, server, *_ = urlsplit(self.url)
         return f"{scheme}://{server.replace('{s}', '*')}"
 
-    def route(self, roads: bool) -> Route:
-        """Return the route that tells the page what it may draw on its map.
+    def route(self, roads: bool, seconds: float) -> Route:
+        """Return the route that tells the page what it may draw on its map, and may ask for.
 
         Args:
             roads: Whether tours can be drawn along streets, which a routing engine knows.
+            seconds: The most seconds of planning.
         """
-        answer = {"tiles": self.url, "credit": self.credit, "roads": roads}
+        answer = {"tiles": self.url, "credit": self.credit, "roads": roads, "seconds": seconds}
 
         async def tell(_: Request) -> Response:
             return JSONResponse(answer, headers={"Cache-Control": "no-cache"})

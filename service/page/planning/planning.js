@@ -19,13 +19,15 @@ const FINAL = ["done", "cancelled", "failed"];
  */
 export class Planning {
   #service;
+  #mostSeconds; // of a plan
   #left = new AbortController();
   #id = null; // the id of the job, while there is one
   #own = false; // whether the job was begun here
   #stopped = null; // the front when it was stopped
 
-  constructor(service) {
+  constructor(service, mostSeconds) {
     this.#service = service;
+    this.#mostSeconds = mostSeconds;
   }
 
   async *plan(request) {
@@ -33,7 +35,7 @@ export class Planning {
     // For a draft, a map would be surveyed twice, which takes longer than the search needs for its first front.
     const isSearched = kindOf(request.body).onGrid || stopsIn(request.body) > MANY;
     // A time that is refused is refused before a draft is shown.
-    if (!(seconds >= 0) || (seconds !== 0 && isSearched)) return yield* this.#improved(request, null);
+    if (!(seconds >= 0 && seconds <= this.#mostSeconds) || (seconds !== 0 && isSearched)) return yield* this.#improved(request, null);
     for await (const alone of this.#alone(request)) {
       if (alone === null) yield { stage: "warming-up", alone: null, answer: null };
       else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };
