@@ -23,6 +23,7 @@ Told = Callable[[Part | Compiling], None]
 
 _A_FUNCTION = 0.125  # seconds that one of the functions takes, on average
 _TELL_EVERY = 0.25  # seconds
+_loaded: set[Part] = set()  # by this process, or by that from which it was forked
 _forked: int | None = None  # what processes tell that an ancestor of this one has forked
 
 
@@ -76,13 +77,14 @@ def load_from_cache(part: Part) -> bool:
 
     Where numba's compilation is switched off, nothing has to be.
     """
-    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+    if config.DISABLE_JIT or part in _loaded:  # type: ignore[attr-defined]  # set from outside
         return True
     try:
         with install_listener("numba:compile", _RefuseCompilation()):
             WORK[part].whole()
     except _NotCached:
         return False
+    _loaded.add(part)
     return True
 
 
