@@ -13,6 +13,7 @@ from threading import get_ident
 
 from numba import config
 from numba.core.event import Event, Listener, install_listener
+from paretour.uncollected import uncollected
 
 from service import jit
 from service.jobs import compilers
@@ -80,7 +81,7 @@ def load_from_cache(part: Part) -> bool:
     if config.DISABLE_JIT or part in _loaded:  # type: ignore[attr-defined]  # set from outside
         return True
     try:
-        with install_listener("numba:compile", _RefuseCompilation()):
+        with uncollected(), install_listener("numba:compile", _RefuseCompilation()):
             WORK[part].whole()
     except _NotCached:
         return False

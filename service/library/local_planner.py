@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, cast
 from paretour import FrontOfAnyKind, Plan, Progress, Refused
 from paretour.bars import Display
 from paretour.kinds import parse_any
-from paretour.uncollected import uncollected
 
 from service.errors import Cancelled, Refusal
 from service.jobs.compiled_code import warm_up
@@ -102,7 +101,7 @@ class LocalPlanner:
         """
         actor = self.runner.actors.get(task.actor or "")
         if missing := parts_of(task) - self.loaded:
-            with ThreadPoolExecutor(1) as threads, uncollected():
+            with ThreadPoolExecutor(1) as threads:
                 if actor is not None:
                     threads.submit(actor.load)
                 self._load(missing, display)

@@ -4,8 +4,8 @@ Workers then start with these modules, and with the compiled code if an earlier 
 the cache. If not, other processes compile it: that takes most of a minute, and there are no
 workers, not even for requests of the network alone, until this module is imported.
 
-Garbage is not collected meanwhile, and what is loaded is never looked through for it again: workers
-share its memory as long as they do not write to it.
+The garbage collector waits meanwhile, and later leaves out what was loaded here: to look through
+that is to write to it, and workers share this memory as long as none of them writes.
 
 Do not import the service or ONNX Runtime: a fork copies the locks of their threads, but not the
 threads.
