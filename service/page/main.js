@@ -58,6 +58,7 @@ let answer = null; // the best front so far
 let answered = null; // its request
 let shown = false; // whether anything was opened or typed
 let awaited = null; // the file of an example that will be shown, unless files are opened instead
+let vehiclesRead; // of the files, as JSON
 let refusal = null; // the refusal of such files, while that example is fetched nevertheless
 
 /** Opens a request in the form, and shows its stops under their objectives. */
@@ -265,13 +266,22 @@ async function openFiles(files, columns = []) {
       const brought = await brings(files, columns, signal);
       signal.throwIfAborted();
       forgetExample();
-      open(brought.members, brought.objectives);
+      openRead(brought, columns.length);
       fileNotes.show(files, columns, brought);
     });
   } catch (error) {
     fileNotes.refused(files, columns, error);
     await unread(error);
   }
+}
+
+/** Opens what was read; where that was for other columns, with the vehicles that were edited. */
+function openRead({ members, objectives }, anew) {
+  const { vehicles } = input.asked;
+  const stay = anew && members.vehicles && JSON.stringify(vehicles) !== vehiclesRead;
+  if (stay) members.vehicles = vehicles.map((each, at) => ({ ...members.vehicles[at], ...each }));
+  open(members, objectives);
+  if (!stay) vehiclesRead = JSON.stringify(input.asked.vehicles);
 }
 
 async function brings(files, columns, signal) {
@@ -363,7 +373,7 @@ form.addEventListener("submit", (event) => {
 });
 form.addEventListener("input", ({ target }) => {
   element("file-fault").textContent = "";
-  if (target.id === "cities") clearFaults();
+  if (target.matches("#cities, [aria-invalid]:valid")) clearFaults();
 });
 holdStill();
 narrow.addEventListener("change", placeResult);
@@ -382,9 +392,12 @@ const equipment = service.get("page/map.json").catch(() => null);
 const started = start();
 offer(); // only now: before, the browser itself would send the form
 openChosen(); // while the page was being loaded
-equipment.then((map) => map && result.equip(map, service));
-equipment.then((map) => (mostSeconds = map?.seconds ?? mostSeconds));
-equipment.then((map) => map?.roads === false && offerNoRoads());
+equipment.then((map) => {
+  if (!map) return;
+  mostSeconds = map.seconds;
+  result.equip(map, service);
+  if (!map.roads) offerNoRoads();
+});
 
 /** Opens what the address names, or else the first example, unless the user opened or typed something meanwhile. */
 async function start() {

@@ -75,6 +75,25 @@ def test_a_table_that_is_not_understood_can_be_explained(window: Page) -> None:
     assert curl_body(window)["stops"][1] == {"id": "A", "location": [24.95, 60.18]}
 
 
+def test_vehicles_that_were_edited_stay_when_another_column_is_chosen(window: Page) -> None:
+    rows = "name,lat,lon,sacks,crates,spent\nA,60.18,24.95,3,8,5\nB,60.16,24.93,2,9,7\n"
+    open_files(window, {"orders.csv": rows})
+    window.get_by_label("sacks", exact=True).select_option("load")
+    expect(window.locator("#brought")).to_be_visible()
+    unedited = curl_body(window, "fleet")["vehicles"]
+    window.get_by_label("sacks", exact=True).select_option("not used")
+    window.get_by_label("crates", exact=True).select_option("load")
+    expect(window.locator("#brought")).to_be_visible()
+    [vehicle] = curl_body(window, "fleet")["vehicles"]
+    assert [vehicle] != unedited  # it holds crates
+    count = window.get_by_label("Count of vehicle")
+    count.fill("2")
+    count.press("Tab")
+    window.get_by_label("spent", exact=True).select_option("time at the stop")
+    expect(window.get_by_label("Service of A")).to_be_visible()
+    assert curl_body(window, "fleet")["vehicles"] == [{**vehicle, "count": 2}]
+
+
 def test_a_choice_that_cannot_be_is_said_and_can_be_taken_back(window: Page) -> None:
     open_files(window, {"orders.csv": ORDERS})
     window.get_by_label("remarks", exact=True).select_option("load")

@@ -228,7 +228,7 @@ def test_a_value_that_is_refused_keeps_the_last_plan(
     expect(window.locator(f"#{fault}-fault")).to_be_empty()
 
 
-def test_no_first_try_is_asked_for_where_the_service_refuses_the_seconds(window: Page) -> None:
+def test_seconds_that_are_refused_get_no_first_try_and_no_fault_once_mended(window: Page) -> None:
     open_files(window, {"stops.csv": NAMED})
     window.get_by_label("Seconds of planning").fill("100000")
     asked: list[float] = []
@@ -239,6 +239,8 @@ def test_no_first_try_is_asked_for_where_the_service_refuses_the_seconds(window:
     plan(window)
     expect(window.locator("#time_limit-fault")).to_contain_text("must be at most 60")
     assert asked == [100_000]
+    window.get_by_label("Seconds of planning").fill("3")
+    expect(window.locator("#time_limit-fault")).to_be_empty()
 
 
 def test_a_layer_is_named_as_another_was_once_that_name_is_free(window: Page) -> None:
