@@ -52,13 +52,13 @@ const reading = new Reading(offer, () => planning || say(""));
 
 let way = null; // the way on which the front shown can be replanned
 let objectives = UNNAMED; // the names in the front shown
-let mostSeconds = Infinity; // of a plan, until the service says so
+let mostSeconds = Infinity; // of a plan
 let planning = null; // the planning that is running
 let answer = null; // the best front so far
 let answered = null; // its request
 let shown = false; // whether anything was opened or typed
 let awaited = null; // the file of an example that will be shown, unless files are opened instead
-let vehiclesRead; // of the files, as JSON
+let vehiclesRead; // as JSON
 let refusal = null; // the refusal of such files, while that example is fetched nevertheless
 
 /** Opens a request in the form, and shows its stops under their objectives. */

@@ -118,3 +118,16 @@ def test_stops_without_places_have_no_gpx(window: Page) -> None:
     text = given(window, "Save the stops of the selected tour")
     assert text.splitlines()[0] == "position,stop"
     assert len(text.splitlines()) == 1 + 3 + 1
+
+
+def test_places_of_robots_are_counted_from_1_as_on_the_page(window: Page) -> None:
+    robots = [{"id": "left", "start": 0}, {"id": "right", "start": 2}]
+    places = [[0, 0], [0, 1], [0, 6]]
+    request = {"grid": [[0] * 7], "cell_size": 1, "places": places, "robots": robots}
+    front = planned(window, {"robots.json": json.dumps(request)})
+    rows = list(csv.DictReader(io.StringIO(given(window, "Save the stops of the selected tour"))))
+    assert [(row["vehicle"], row["stop"]) for row in rows] == [
+        (route["robot"], str(place + 1))
+        for route in front["front"][0]["routes"]
+        for place in route["tour"]
+    ]

@@ -20,7 +20,7 @@ const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", "arrive
  */
 export function routesOf({ item, round, movers }, answer, asked) {
   const places = new Map(answer.stops?.map(({ id, location }) => [String(id), location]));
-  const visit = (stop, arrives, load) => ({ stop: String(stop), place: places.get(String(stop)) ?? null, arrives, load });
+  const visit = (stop, arrives, load) => ({ stop: typeof stop === "number" ? stop + 1 : stop, place: places.get(String(stop)) ?? null, arrives, load });
   if (!movers) {
     const hours = hoursOf(item);
     return [{ name: "", visits: round.map((stop, at) => visit(stop, hours[at] ?? "", "")) }];
