@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Request, expect
 
 from tests.helpers.browsing import (
     DESK,
@@ -232,12 +232,15 @@ def test_seconds_that_are_refused_get_no_first_try_and_no_fault_once_mended(wind
     open_files(window, {"stops.csv": NAMED})
     window.get_by_label("Seconds of planning").fill("100000")
     asked: list[float] = []
-    window.on(
-        "request",
-        lambda each: each.method == "POST" and asked.append(each.post_data_json["time_limit"]),
-    )
+
+    def note(request: Request) -> None:
+        if request.url.endswith("/front"):
+            asked.append(request.post_data_json["time_limit"])
+
+    window.on("request", note)
     plan(window)
     expect(window.locator("#time_limit-fault")).to_contain_text("must be at most 60")
+    window.remove_listener("request", note)
     assert asked == [100_000]
     window.get_by_label("Seconds of planning").fill("3")
     expect(window.locator("#time_limit-fault")).to_be_empty()
