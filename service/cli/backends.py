@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Protocol
 import httpx
 from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
 from paretour.calls import address_of
-from paretour.uncollected import uncollected
 from rich.console import Console
 
 from service.cli.errors import UsageError
 from service.cli.options import Service
 from service.cli.progress import ConsoleDisplay, progress_bar
+from service.jobs.uncollected import uncollected
 
 if TYPE_CHECKING:
     from service.actor_info import ActorInfo

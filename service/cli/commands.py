@@ -8,12 +8,12 @@ import sys
 from functools import partial
 from typing import Annotated
 
-from paretour.uncollected import uncollected
 from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
 from service.cli import options
 from service.cli.options import with_groups
+from service.jobs.uncollected import uncollected
 
 app = Typer(
     name="paretour",

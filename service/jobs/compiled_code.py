@@ -13,12 +13,12 @@ from threading import get_ident
 
 from numba import config
 from numba.core.event import Event, Listener, install_listener
-from paretour.uncollected import uncollected
 
 from service import jit
 from service.jobs import compilers
 from service.jobs.parts import Compiling, Part
 from service.jobs.pieces import PIECES, WORK
+from service.jobs.uncollected import uncollected
 
 Told = Callable[[Part | Compiling], None]
 

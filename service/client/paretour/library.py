@@ -26,7 +26,6 @@ from paretour.members import (
 )
 from paretour.plans import FleetFront, RobotFront
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.uncollected import uncollected
 from paretour.values import Front
 
 _planned: WeakKeyDictionary[FrontOfAnyKind, Any] = WeakKeyDictionary()  # what `replan` starts from
@@ -180,7 +179,7 @@ def _run(plan: Plan, progress: bool, earlier: Any = None) -> FrontOfAnyKind:
 
 @cache
 def _planner() -> Any:
-    with uncollected():
+    with whole_package("service.jobs.uncollected").uncollected():
         return whole_package("service.library.local_planner").load_default_planner()
 
 

@@ -14,7 +14,7 @@ threads.
 import gc
 from importlib import import_module
 
-from paretour.uncollected import uncollected
+from service.jobs.uncollected import uncollected
 
 with uncollected():
     from service.jobs.compiled_code import load_or_begin
