@@ -114,7 +114,10 @@ async def takes_work(redis_url: str) -> bool:
     deadline = Deadline.after(_LOST_AFTER)
     try:
         workers, waiting, idle = await script.call("idle", gethostname(), QUEUE)
-        while workers and waiting and idle and not deadline.over():
+        # A machine that was asleep has no worker until that one's next heartbeat.
+        while not workers or (waiting and idle):
+            if deadline.over():
+                return False
             await asyncio.sleep(_CHECK_EVERY)
             workers, waiting, still = await script.call("idle", gethostname(), QUEUE)
             idle = set(idle).intersection(still)
@@ -122,4 +125,4 @@ async def takes_work(redis_url: str) -> bool:
         return True
     finally:
         await script.close()
-    return bool(workers) and not (waiting and idle)
+    return True
