@@ -1,9 +1,12 @@
 """Static files: the page at `/`, the HTTP reference at `/docs`, and the examples.
 
 The page is made of more than a hundred files. Their addresses contain its version, a digest of them
-all, so that a browser asks for them once, and not again at each visit.
+all, so that a browser asks for them once, and not again at each visit. Its own scripts are sent
+without their comments, which are a fifth of their bytes, and with their line numbers.
 """
 
+import os
+import re
 from collections.abc import Awaitable, Callable
 from functools import lru_cache
 from hashlib import sha256
@@ -15,15 +18,18 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 from starlette.routing import BaseRoute, Route
 from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
 
 _SERVICE = Path(__file__).parents[2]
 _PAGE = _SERVICE / "page"
+_VENDORED = _PAGE / "vendor"
 _REFERENCE = _SERVICE / "reference"
 _EXAMPLES = _SERVICE / "examples"
 _COMPRESSED = [Middleware(GZipMiddleware)]  # plain text, which anybody may read
 REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
 _KEEP = {"Cache-Control": "public, max-age=31536000, immutable"}  # a year
 _VERSION = "version-"  # how the version begins in the address of a file
+_COMMENT = re.compile(r"^[ \t]*(?:/\*\*.*?\*/|//[^\n]*)$", re.DOTALL | re.MULTILINE)
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
 
@@ -60,7 +66,7 @@ class _Page:
     """The files of the page, and their version when the page was last asked for."""
 
     def __init__(self) -> None:
-        self._files = StaticFiles(directory=_PAGE)
+        self._files = _PageFiles(directory=_PAGE)
         self._version = _version()
 
     async def index(self, request: Request) -> Response:
@@ -82,6 +88,25 @@ class _Page:
         # Of another version, which another replica may have, only the address is known.
         response.headers.update(_KEEP if version == self._version else REVALIDATE)
         return response
+
+
+class _PageFiles(StaticFiles):
+    """The files of the page; its scripts have empty lines for comments."""
+
+    def file_response(
+        self,
+        full_path: str | os.PathLike[str],
+        stat_result: os.stat_result,
+        scope: Scope,
+        status_code: int = 200,
+    ) -> Response:
+        found = super().file_response(full_path, stat_result, scope, status_code)
+        script = Path(full_path)
+        if found.status_code != 200 or script.suffix != ".js" or script.is_relative_to(_VENDORED):
+            return found
+        lines = _COMMENT.sub(lambda comment: "\n" * comment[0].count("\n"), script.read_text())
+        kept = {name: found.headers[name] for name in ("etag", "last-modified")}
+        return Response(lines, headers=kept, media_type="text/javascript")
 
 
 def _version() -> str:
