@@ -1,18 +1,20 @@
 /** Put the page together: a request on the left, its front on the right. */
 
 import { arrange, narrow } from "./result/arrangement.js";
+import { keepDraft, keptDraft } from "./opening/draft.js";
 import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, revealFault, showFault, showFaults } from "./planning/faults.js";
 import { FileNotes } from "./opening/file_notes.js";
 import { formOf, kindOf } from "./common/kinds.js";
-import { keptAnswer } from "./result/chosen.js";
+import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
 import { holdStill } from "./inputs/pressing.js";
+import { Undo } from "./inputs/undo.js";
 import { ReplanForm } from "./planning/replan_form.js";
 import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
@@ -49,6 +51,7 @@ const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen, fail);
 const replanForm = new ReplanForm(replan, result.wait);
 const reading = new Reading(offer, () => planning || say(""));
+const undo = new Undo(element("undo"), ({ unset, objectives: names }) => change({ ...unset, ...input.settings }, names));
 
 let way = null; // the way on which the front shown can be replanned
 let objectives = UNNAMED; // the names in the front shown
@@ -56,6 +59,7 @@ let mostSeconds = Infinity; // of a plan
 let planning = null; // the planning that is running
 let answer = null; // the best front so far
 let answered = null; // its request
+let last = null; // the state in which the last plan was done, and its request
 let shown = false; // whether anything was opened or typed
 let awaited = null; // the file of an example that will be shown, unless files are opened instead
 let vehiclesRead; // as JSON
@@ -63,12 +67,20 @@ let refusal = null; // the refusal of such files, while that example is fetched 
 
 /** Opens a request in the form, and shows its stops under their objectives. */
 function open(wanted, names) {
+  undo.forget();
+  change(wanted, names);
+}
+
+function change(wanted, names) {
   reading.end();
   element("order").open = !kindOf(wanted).onGrid && formOf(wanted) !== "coordinates";
   input.open(wanted, names);
 }
 
-/** Drops the front: it is not of these stops. Without an instance, what was typed cannot be read, and the front stays. */
+/**
+ * Drops the front, as it is not of these stops, and shows the last again if they are as they were. Without an instance,
+ * what was typed cannot be read, and the front stays.
+ */
 function edited(instance, fit) {
   shown = true;
   awaited = null;
@@ -76,11 +88,23 @@ function edited(instance, fit) {
   clear();
   if (!reading.isRunning) say("");
   if (!instance) return;
+  undo.note(JSON.stringify(input.unset), { unset: input.unset, objectives: input.objectives });
+  const again = last && isAsked(last.asked);
+  if (answer && isAsked(answered)) {
+    if (again) tell(last.state);
+    return;
+  }
   result.name((objectives = input.objectives), input.ids);
   result.clear(instance, { fit });
   way = null;
   take(null);
+  if (again) show(last.state);
 }
+
+/** Whether the form asks for this request. */
+const isAsked = (request) => JSON.stringify(input.asked) === JSON.stringify(request);
+
+const tell = (state) => say(sentence(state, kindOf(input.asked).onGrid));
 
 function take(found) {
   answer = found;
@@ -144,8 +168,9 @@ function show(state) {
       way ??= new Way(input.instance, input.ids, state.answer.cities);
       replanForm.show(way);
     }
+    last = state.stage === "done" && !way?.replanned ? { asked: answered, state } : null;
   }
-  say(sentence(state, kindOf(input.asked).onGrid));
+  tell(state);
 }
 
 /** The names of the objectives of an answer; those on the page where the service had none, as when the rest of a tour is planned. */
@@ -345,11 +370,11 @@ function forgetExample() {
   surroundings.forget();
 }
 
-/** Opens the front that the address names. Returns false if it names none. */
-async function openLinked() {
-  const link = await linked(location.hash);
+/** Opens the front that a link names. Returns false if it names none. */
+async function openLinked(link) {
   if (!link) return false;
   if (!(await openAsked(link))) return true;
+  if (!link.id) return true;
   const carried = keptAnswer(link, input.instance, input.ids);
   result.want(link.balance, carried?.front[0], link.asked?.limits);
   const request = link.asked?.request || examples.chosen ? input.request : null;
@@ -366,6 +391,17 @@ async function openAsked({ example, asked }) {
   return true;
 }
 
+/** What is shown, as a link; null where that is nothing, or an example without a front. The front of a rest is not of the request. */
+function draft() {
+  if (!shown) return null;
+  const request = input.asked;
+  const example = examples.unchanged(request);
+  const { balance, limits, selected } = result.taken;
+  const { id } = (!way?.replanned && answer) || {};
+  if (!id) return example ? null : { asked: { request, objectives } };
+  return { id, balance, example, asked: { request, objectives, limits, chosen: chosenOf(answer, selected.item, true) } };
+}
+
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (narrow.matches) element("result").scrollIntoView();
@@ -380,13 +416,16 @@ narrow.addEventListener("change", placeResult);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {
   forgetExample();
-  open({ coordinates: [] });
+  change({ coordinates: [] });
 });
 element("example").addEventListener("change", ({ target }) => planExample(target.value));
 element("file").addEventListener("change", openChosen);
 takeDropped(element("drop"), openFiles, tellFolder);
 takePasted(openFiles);
-addEventListener("hashchange", openLinked);
+addEventListener("hashchange", async () => openLinked(await linked(location.hash)));
+for (const leaving of ["beforeunload", "pagehide"]) {
+  addEventListener(leaving, (event) => keepDraft(draft()) || event.preventDefault());
+}
 
 const equipment = service.get("page/map.json").catch(() => null);
 const started = start();
@@ -407,7 +446,7 @@ async function start() {
     if (!shown) open({ coordinates: [] });
     return fail(error);
   }
-  if ((await openLinked()) || shown) return;
+  if ((await openLinked(keptDraft() ?? (await linked(location.hash)))) || shown) return;
   if (reading.isRunning) awaited = examples.first;
   else planExample(examples.first);
 }

@@ -71,6 +71,9 @@ CLIPBOARD_TEXT = f"""async () => {{
   }}
 }}"""
 
+# Have a page keep nothing of what it shows in its window.
+FORGET_DRAFT = "sessionStorage.clear(); Storage.prototype.setItem = () => {}"
+
 expect.set_options(timeout=30 * SECOND)  # five seconds are too few on a busy machine
 
 needs_chromium = pytest.mark.skipif(
@@ -118,6 +121,7 @@ def open_page(
     page.goto(address)
     yield page
     if not page.is_closed():
+        page.evaluate(FORGET_DRAFT)
         page.goto(NOTHING)
         page.unroute_all()
         page.remove_listener("pageerror", note_error)

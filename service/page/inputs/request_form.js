@@ -100,8 +100,20 @@ export class RequestForm {
   }
 
   get asked() {
-    const typed = { rows: this.#rows, whole: element("rounded").checked };
-    return askedFor(this.#brought, this.#fields.members, typed);
+    return this.#askedWith(this.settings);
+  }
+
+  /** What is asked for without its settings. */
+  get unset() {
+    return this.#askedWith({});
+  }
+
+  get settings() {
+    return this.#fields.members;
+  }
+
+  #askedWith(settings) {
+    return askedFor(this.#brought, settings, { rows: this.#rows, whole: element("rounded").checked });
   }
 
   get request() {

@@ -1,0 +1,125 @@
+"""What a tab shows is there after a reload and the guide, and once a change is taken back."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+
+pytestmark = needs_chromium
+
+TOUR = "id,x,y,u,v\n" + "".join(f"order-{k},{k},{k % 3},{k % 4},{k % 5}\n" for k in range(9))
+FLEET = "id,lat,lon,demand\ndepot,60.1,24.9,0\n" + "".join(
+    f"order-{k},{60.1 + k / 100},{24.9 + k % 3 / 50},{k}\n" for k in range(1, 9)
+)
+# As many characters as a tab may keep.
+FILL = """
+let text = "x".repeat(8 << 20);
+for (let at = 0; text; text = text.slice(text.length / 2 + 0.5)) {
+  try { sessionStorage.setItem(at++, text); text = "x".repeat(text.length * 2); } catch {}
+}
+"""
+
+
+@pytest.fixture(params=[TOUR, FLEET], ids=["tour", "fleet"])
+def own(request: pytest.FixtureRequest) -> str:
+    """A file of nine stops that somebody brings."""
+    text: str = request.param
+    return text
+
+
+def plan(page: Page) -> None:
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+
+
+def choice(page: Page) -> str:
+    return page.locator("#choice").inner_text()
+
+
+@pytest.fixture
+def page(own: str, browser: Browser, released: str) -> Iterator[Page]:
+    """The page with those stops planned."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        open_files(page, {"orders.csv": own})
+        plan(page)
+        yield page
+
+
+def write(page: Page, text: str) -> str:
+    """Write into the first number of the third stop, and return what was there."""
+    cell = page.locator('#stops [data-row="2"][data-column="0"]')
+    before = cell.input_value()
+    cell.fill(text)
+    cell.press("Tab")
+    return before
+
+
+def test_a_plan_is_there_after_a_reload(page: Page) -> None:
+    write(page, "24.91")
+    plan(page)
+    chosen = choice(page)
+    sent: list[str] = []
+    page.on("request", lambda each: sent.append(each.method))
+    page.reload()
+    wait_until_planned(page)
+    expect(page.locator("#count")).to_have_text("9 stops")
+    assert write(page, "24.91") == "24.91"
+    assert choice(page) == chosen
+    assert "POST" not in sent
+
+
+def test_stops_without_a_plan_are_there_after_the_guide(
+    own: str, browser: Browser, released: str
+) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        open_files(page, {"orders.csv": own})
+        page.get_by_role("link", name="Guide", exact=True).click()
+        page.wait_for_url("**/guide/")
+        page.goto(released)
+        expect(page.locator("#count")).to_have_text("9 stops")
+        expect(page.get_by_role("button", name="Copy link")).to_be_disabled()
+
+
+def test_a_tab_left_before_anything_is_shown_opens_an_example(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, released) as page:
+        page.reload(wait_until="commit")
+        page.reload()
+        wait_until_planned(page)
+        expect(page.locator("#example")).not_to_have_value("")
+
+
+def test_leaving_asks_first_where_a_browser_cannot_keep_so_much(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        open_files(page, {"orders.csv": TOUR})
+        page.evaluate(FILL)
+        with page.expect_event("dialog") as asked:
+            page.evaluate("setTimeout(() => location.reload())")
+        assert asked.value.type == "beforeunload"
+        asked.value.dismiss()
+        expect(page.locator("#count")).to_have_text("9 stops")
+
+
+def test_a_plan_is_there_again_once_a_change_is_taken_back(page: Page) -> None:
+    chosen, said = choice(page), page.locator("#status").inner_text()
+    before = write(page, "25.5")
+    expect(page.locator("#status")).to_be_empty()
+    expect(page.get_by_role("button", name="Copy link")).to_be_disabled()
+    write(page, before)
+    expect(page.locator("#status")).to_have_text(said)
+    assert choice(page) == chosen
+
+
+def test_a_plan_stays_while_a_typo_is_mended(page: Page) -> None:
+    chosen, said = choice(page), page.locator("#status").inner_text()
+    write(page, write(page, "25x"))
+    expect(page.locator("#status")).to_have_text(said)
+    assert choice(page) == chosen

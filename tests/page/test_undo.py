@@ -1,0 +1,91 @@
+"""Changes of stops and vehicles are taken back, and made again."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+
+pytestmark = needs_chromium
+
+FLEET = "id,lat,lon,demand\ndepot,60.1,24.9,0\n" + "".join(
+    f"order-{k},{60.1 + k / 100},{24.9 + k % 3 / 50},{k}\n" for k in range(1, 6)
+)
+
+
+@pytest.fixture
+def page(browser: Browser, released: str) -> Iterator[Page]:
+    """The page with a depot and five orders."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        open_files(page, {"orders.csv": FLEET})
+        yield page
+
+
+def undo(page: Page) -> None:
+    page.get_by_role("button", name="Undo").click()
+
+
+def write(page: Page, label: str, text: str) -> None:
+    field = page.get_by_label(label, exact=True)
+    field.fill(text)
+    field.press("Tab")
+
+
+def test_each_change_of_stops_is_taken_back_and_made_again(page: Page) -> None:
+    button, count = page.get_by_role("button", name="Undo"), page.locator("#count")
+    expect(button).to_be_disabled()
+    write(page, "Demand of order-2", "7")
+    page.get_by_role("button", name="Delete order-4").click()
+    expect(count).to_have_text("5 stops")
+    page.get_by_role("button", name="Clear").click()
+    expect(count).to_have_text("0 stops")
+    undo(page)
+    expect(count).to_have_text("5 stops")
+    page.keyboard.press("Control+z")
+    expect(count).to_have_text("6 stops")
+    page.keyboard.press("Control+Shift+Z")
+    expect(count).to_have_text("5 stops")
+    undo(page)
+    undo(page)
+    expect(page.get_by_label("Demand of order-2", exact=True)).to_have_value("2")
+    expect(button).to_be_disabled()
+    page.keyboard.press("Control+y")
+    expect(page.get_by_label("Demand of order-2", exact=True)).to_have_value("7")
+
+
+def test_the_settings_of_now_stay_when_a_change_is_taken_back(page: Page) -> None:
+    write(page, "Demand of order-2", "7")
+    write(page, "Seconds of planning", "4")
+    undo(page)
+    expect(page.get_by_label("Demand of order-2", exact=True)).to_have_value("2")
+    expect(page.get_by_label("Seconds of planning")).to_have_value("4")
+
+
+def test_text_that_is_being_typed_is_taken_back_by_the_browser(page: Page) -> None:
+    write(page, "Demand of order-2", "7")
+    field = page.get_by_label("Demand of order-3", exact=True)
+    field.press_sequentially("5")
+    field.press("Control+z")
+    expect(field).to_have_value("3")
+    expect(page.get_by_label("Demand of order-2", exact=True)).to_have_value("7")
+
+
+def test_a_plan_is_shown_again_with_its_stops(page: Page) -> None:
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    said = page.locator("#status").inner_text()
+    page.get_by_role("button", name="Delete order-4").click()
+    expect(page.locator("#status")).to_be_empty()
+    page.keyboard.press("Control+z")
+    expect(page.locator("#status")).to_have_text(said)
+    expect(page.locator("#count")).to_have_text("6 stops")
+
+
+def test_what_was_opened_is_not_taken_back(page: Page) -> None:
+    write(page, "Demand of order-2", "7")
+    open_files(page, {"others.csv": FLEET.replace("order", "other")})
+    expect(page.get_by_role("button", name="Undo")).to_be_disabled()
+    page.keyboard.press("Control+z")
+    expect(page.get_by_label("Demand of other-2", exact=True)).to_have_value("2")
