@@ -1,4 +1,4 @@
-/** What was shown before each change, so that changes can be taken back and made again. */
+/** Take changes of what is planned back, and make them again. */
 
 const MOST = 200; // changes
 
