@@ -3,21 +3,29 @@
 import { daysOf, knownFleet } from "./known_fleet.js";
 
 /**
- * The name of each route: its robot, or its type of vehicle and its shift, with a number if several
- * routes have the same ones.
+ * The name of each route: that of its vehicle or robot, and its shift.
  *
  * @param {object} asked the request, as far as it is known
  */
-export function namesOf(routes, { by }, asked) {
-  const used = new Map();
+export const namesOf = (routes, movers, asked) =>
+  moversOf(routes, movers, asked).map((name, at) => (routes[at].shift === undefined ? name : `${name}, ${shiftOf(routes[at], asked)}`));
+
+/**
+ * The name of each route's vehicle or robot: its id, with a number if several routes have the same id and shift.
+ * A number is left out if there is a vehicle of that name: beside "van 1", two vehicles "van" are "van 2" and "van 3".
+ */
+export function moversOf(routes, { by }, { vehicles = [] }) {
+  const taken = new Set([...routes.map((route) => route[by]), ...vehicles.map((type) => type?.id)]);
+  const last = new Map(); // the number given last, by id and shift
   const alike = (one, other) => one[by] === other[by] && one.shift === other.shift;
   return routes.map((route) => {
     const { [by]: name, shift } = route;
-    const during = shift === undefined ? "" : `, ${shiftOf(route, asked)}`;
-    if (routes.filter((other) => alike(route, other)).length === 1) return `${name}${during}`;
+    if (routes.filter((other) => alike(route, other)).length === 1) return name;
     const key = JSON.stringify([name, shift]);
-    used.set(key, (used.get(key) ?? 0) + 1);
-    return `${name} ${used.get(key)}${during}`;
+    let number = (last.get(key) ?? 0) + 1;
+    while (taken.has(`${name} ${number}`)) number += 1;
+    last.set(key, number);
+    return `${name} ${number}`;
   });
 }
 

@@ -46,7 +46,7 @@ export class ExportButtons {
     onRequest("python", ({ request, balance }) => python(request, balance));
     on("link", (shown, button) => this.#copyLink(shown, button));
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
-    on("csv", (shown) => download("front.csv", "text/csv", csv(this.#shown, shown.objectives, this.#place(shown))));
+    on("csv", (shown) => download("front.csv", "text/csv", csv(this.#shown, shown, this.#place(shown))));
     on("geojson", (shown) => this.#saveGeojson(shown.driven, this.#place(shown)));
     on("stops-csv", (shown) => download("stops.csv", "text/csv", csvOfVisits(this.#routes(shown))));
     on("tour-json", (shown) => download("tour.json", "application/json", JSON.stringify(alone(this.#shown, this.#item(shown)))));

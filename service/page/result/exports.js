@@ -2,6 +2,7 @@
 
 import { kindNamed } from "../common/kinds.js";
 import { unnamed } from "../common/objectives.js";
+import { moversOf } from "../fleet/routes_of_plan.js";
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {
@@ -19,11 +20,16 @@ export function alone({ id, kind, closed, objectives, places, stops }, item) {
  * A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, the answer's ids
  * where it has them, and the departure in seconds of the day where it has one. The last column says whether it is the
  * selected one, whose place in the front is `selected`.
+ *
+ * @param {object | null} asked the request, as far as it is known
  */
-export function csv({ kind, front }, objectives, selected) {
+export function csv({ kind, front }, { objectives, asked }, selected) {
   const { movers } = kindNamed({ kind });
   const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
-  if (movers) return csvOfPlans(front, titles, movers, selected);
+  if (movers) {
+    const plans = front.map((plan) => ({ ...plan, names: moversOf(plan.routes, movers, asked ?? {}) }));
+    return csvOfPlans(plans, titles, movers, selected);
+  }
   const rows = front.map(({ angle, departure, lengths, tour, stops }, at) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
     return [...[angle, departure].filter((each) => each !== undefined), ...lengths, places.join(" "), yesOrNo(at === selected)];
@@ -32,14 +38,14 @@ export function csv({ kind, front }, objectives, selected) {
   return [[...before, ...titles, "tour", "selected"], ...rows].map(line).join("");
 }
 
-/** A route on each line, after the members of its plan; with its shift, if its vehicle has several. */
-function csvOfPlans(plans, titles, { one, stops, by, through }, selected) {
+/** A route on each line, after the members of its plan, with the name of its vehicle or robot; with its shift, if its vehicle has several. */
+function csvOfPlans(plans, titles, { one, stops, through }, selected) {
   const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
-  const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
-    routes.map((route) => {
+  const rows = plans.flatMap(({ balance, lengths, routes, names }, plan) =>
+    routes.map((route, at) => {
       const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
       const before = balance === undefined ? [plan] : [plan, balance];
-      return [...before, ...lengths, route[by], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places, yesOrNo(plan === selected)];
+      return [...before, ...lengths, names[at], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places, yesOrNo(plan === selected)];
     }),
   );
   const flat = titles.length === 2 ? ["balance"] : [];
