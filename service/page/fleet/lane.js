@@ -2,6 +2,7 @@
 
 import { routeStyle } from "./route_styles.js";
 import { svgElement } from "../common/elements.js";
+import { departureNote } from "./visit_sentence.js";
 
 export const LANE = 42; // pixels of height; the name takes the upper half
 const [NAME, BAR] = [17, 12]; // pixels: where the bar begins, and its height
@@ -18,25 +19,29 @@ export const LATE = "late-stripes"; // the pattern of what is late
 export function laneElements({ name, visits }, at, { left, top, place, said, lasting }) {
   const y = top + LANE * at;
   const style = routeStyle(at);
-  const line = { d: `M${place(visits[0].arrival)} ${y + NAME + BAR / 2}H${place(visits.at(-1).end)}`, "stroke-dasharray": style.dash.join(" ") };
+  const note = departureNote(visits, said);
+  const line = { d: `M${place(visits[0].arrival)} ${y + NAME + BAR / 2}H${place(visits.at(-1).leaves)}`, "stroke-dasharray": style.dash.join(" ") };
   const box = (kind, from, to, fill) => {
     const width = Math.max(place(to) - place(from), LEAST);
     return svgElement("rect", { x: place(from), y: y + NAME, width, height: BAR, class: kind, fill });
   };
   const stopOf = (visit, order) => {
-    const { stop, kind, arrival, begin, end, due, late } = visit;
+    const { stop, kind, arrival, begin, end, waiting, due, late } = visit;
     const label = `${name}, ${stop}${DOES[kind]}, ${said(begin)}${end > begin ? ` to ${said(end)}` : ""}${late ? `, ${lasting(late)} late` : ""}`;
     const made = svgElement("g", { class: "stop", role: "button", tabindex: -1, "aria-label": label, "aria-pressed": false, "data-lane": at, "data-at": order });
     const x = place(begin);
-    if (begin > arrival) made.append(box("wait", arrival, begin, "var(--card)"));
+    if (waiting) made.append(box("wait", arrival, begin, "var(--card)"));
     if (kind === "loading") made.append(svgElement("path", { d: diamond(x, y + NAME + BAR / 2), class: "visit loading" }));
     else made.append(box("visit", begin, end, `var(--${style.colour})`));
     if (late) made.append(...delay(place(due), Math.max(x, place(due) + LEAST), y + NAME + BAR));
-    made.append(svgElement("title", {}, label));
+    made.append(svgElement("title", {}, note && !order ? `${label}. ${note}` : label));
     return made;
   };
+  const named = svgElement("g");
+  named.append(svgElement("text", { x: left, y: y + NAME - 5, class: "name" }, name));
+  if (note) named.append(svgElement("title", {}, note));
   return [
-    svgElement("text", { x: left, y: y + NAME - 5, class: "name" }, name),
+    named,
     svgElement("path", { ...line, stroke: "var(--ink)", "stroke-width": CASING }),
     svgElement("path", { ...line, stroke: `var(--${style.colour})`, "stroke-width": LINE }),
     ...visits.map(stopOf),

@@ -1,6 +1,5 @@
 /** The selected plan by vehicle or robot: legend, lanes over time, stops, and what is left out. */
 
-import { amount } from "../common/amounts.js";
 import { UNNAMED } from "../common/objectives.js";
 import { visitItem } from "../common/elements.js";
 import { nameOf } from "../inputs/places.js";
@@ -11,9 +10,7 @@ import { leftOut, reason } from "./left_out.js";
 import { showLegend } from "./legend.js";
 import { namesOf } from "./routes_of_plan.js";
 import { ServeBy } from "./serve_by.js";
-import { clockOf } from "./times.js";
-import { clockUnit } from "./units.js";
-import { visitTimes } from "./visit_times.js";
+import { timetable } from "./timetable.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -66,30 +63,21 @@ export class PlanView {
     const known = knownFleet(this.#asked);
     const names = namesOf(plan.routes, movers, this.#asked);
     showLegend(element("fleet-legend"), plan, movers, this.#asked, this.#objectives, names);
-    this.#showTimes(plan, names, known);
+    this.#showTimes(plan, names);
     element("fleet-left-out-title").textContent = reason(plan, this.#objectives);
     list("fleet-left-out", leftOut(plan, known.stops, this.#objectives));
   }
 
   /** Shows a lane for each vehicle if the plan has times, and the stops of each vehicle in order. */
-  #showTimes(plan, names, known) {
+  #showTimes(plan, names) {
     const { routes } = plan;
-    const timed = routes.length > 0 && routes.every(({ arrivals }) => arrivals);
-    const lanes = timed ? routes.map((route, at) => ({ name: names[at], visits: visitTimes(route, known) })) : [];
-    const clock = timed ? this.#clockOf(lanes) : null;
+    const { lanes, clock } = timetable(routes, names, this.#asked);
     this.#lanes.show(lanes, clock);
     this.#chosen.show(plan, lanes, clock);
     showSigns(lanes);
     const visit = (stop, time) => visitItem(nameOfStop(stop), clock?.said(time));
     const visits = (route) => route[this.#movers.through].map((stop, at) => visit(stop, route.arrivals?.[at]));
     element("fleet-stops").replaceChildren(...routes.map((route, at) => listed(names[at], visits(route))));
-  }
-
-  /** The clock of these lanes, which also says how long something takes. */
-  #clockOf(lanes) {
-    const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end]));
-    const unit = clockUnit(this.#asked);
-    return { ...clockOf(times, unit), lasting: (time) => amount(time, { measure: "waiting", unit }) };
   }
 }
 
@@ -99,7 +87,7 @@ function showSigns(lanes) {
   const there = {
     drives: visits.length,
     visits: visits.length,
-    waits: visits.some(({ arrival, begin }) => begin > arrival),
+    waits: visits.some(({ waiting }) => waiting),
     loads: visits.some(({ kind }) => kind === "loading"),
     late: visits.some(({ late }) => late),
     windows: visits.some(({ windows }) => windows.length),

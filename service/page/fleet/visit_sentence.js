@@ -9,22 +9,45 @@ export function visitSentence({ name: named, visits }, at, { said, lasting }) {
   const visit = visits[at];
   const name = named.includes(", ") ? `${named},` : named; // with its shift
   const from = at ? ` from ${visits[at - 1].stop}` : "";
-  const { stop, kind, arrival, begin, due, late, released } = visit;
-  if (kind === "start") return `${stop}: ${name} leaves at ${said(arrival)}${waited(released, arrival)}.`;
+  const { stop, kind, arrival, begin, waiting, rests, due, late, released } = visit;
+  if (kind === "start") {
+    const shift = laterThanShift(visit, said);
+    return `${stop}: ${name} ${leaving(visits, said)}${shift && `; its shift is from ${shift}`}.`;
+  }
   const arrives = `${name} arrives at ${said(arrival)}${from}`;
   if (kind === "end") return `${stop}: ${arrives}${late ? `, ${lasting(late)} after its shift ends at ${said(due)}` : " and is done"}.`;
-  const waits = begin > arrival ? ` and waits ${lasting(begin - arrival)}` : "";
-  if (kind === "loading") return `${stop}: ${name} loads again at ${said(begin)}${waited(released, begin)}; it arrives at ${said(arrival)}${from}${waits}.`;
-  return `${stop}: ${asked(visit, said)}begins ${said(begin)}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${tripOf(visits, at, said)}.`;
+  const waits = waiting ? ` and waits ${lasting(waiting)}` : "";
+  const rest = rests.length ? `; the driver has a break from ${spansIn(rests, said).join(" and from ")}` : "";
+  if (kind === "loading") return `${stop}: ${name} loads again at ${said(begin)}${waited(released, begin)}; it arrives at ${said(arrival)}${from}${waits}${rest}.`;
+  return `${stop}: ${asked(visit, said)}begins ${said(begin)}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${rest}${tripOf(visits, at, said)}.`;
 }
 
 const waited = (released, begin) => (released && released >= begin ? ", when its load is released" : "");
 
+/** The sentence that a vehicle leaves later than its shift begins, and why; "" if it does not. */
+export function departureNote(visits, said) {
+  const shift = laterThanShift(visits[0], said);
+  return shift && `Shift from ${shift}; ${leaving(visits, said)}.`;
+}
+
+/** When the shift of a vehicle begins that leaves later; "" if none does. */
+const laterThanShift = ({ shift, arrival }, said) => (arrival > shift && said(arrival) !== said(shift) ? said(shift) : "");
+
+/** When a vehicle leaves, and what for, if it could leave earlier: it would wait at the first stop that opens when it is visited. */
+function leaving(visits, said) {
+  const { arrival, released } = visits[0];
+  const loaded = waited(released, arrival);
+  const opening = laterThanShift(visits[0], said) && !loaded && visits.find(({ opens }) => opens !== undefined);
+  return `leaves at ${said(arrival)}${loaded}${opening ? `, to be at ${opening.stop} when it opens at ${said(opening.opens)}` : ""}`;
+}
+
 /** What the stop asks for: when it is open, and when a visit is due. */
 function asked({ windows, due }, said) {
-  const open = windows.map(([opens, closes]) => `${said(opens)} to ${said(closes)}`).join(" or ");
-  return `${open && `open ${open}, `}${due === undefined ? "" : `due ${said(due)}, `}`;
+  return `${windows.length ? `open ${spansIn(windows, said).join(" or ")}, ` : ""}${due === undefined ? "" : `due ${said(due)}, `}`;
 }
+
+/** Windows or breaks in words, such as "8:00 to 10:00". */
+export const spansIn = (spans, said) => spans.map(([from, to]) => `${said(from)} to ${said(to)}`);
 
 function punctual({ due, late }, lasting) {
   if (due === undefined) return "";

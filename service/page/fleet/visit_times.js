@@ -1,27 +1,50 @@
 /** Compute what a vehicle does at each stop of its route, and when. */
 
+import { breaksAt } from "./breaks.js";
+
 const NEAR = 1e-6; // times that differ by less, relative to them, are equal
 
 /**
  * What a vehicle does at each stop of a route: `kind` is start, visit, loading (again) or end;
- * `begin` is when it has arrived and waited; `due` is when a visit should begin, or a shift ends,
- * and `late` how much later that is; `windows` are those of the stop; `released` is when the last
- * load of the trip that begins there is released, 0 without one.
+ * `begin` and `end` are those of the visit, after the vehicle has arrived and waited; `waiting` is how long it waits before,
+ * `rests` are breaks there, each `[from, to]`, and `leaves` is when it goes on; `due` is when a visit should begin, or a shift
+ * ends, and `late` how much later that is; `windows` are those of the stop, and it `opens` when the visit begins, if it was
+ * closed before; `released` is when the last load of the trip that begins there is released, 0 without one; `shift` is when
+ * the shift of a vehicle that starts there begins.
  *
- * @param {{ vehicle: string, stops: string[], arrivals: number[], shift?: number }} route
+ * @param {{ vehicle: string, stops: string[], arrivals: number[], breaks?: number[], shift?: number }} route
  * @param {{ stops: Map<string, object>, types: Map<string, object> }} known the request, by `knownFleet`
  */
-export function visitTimes({ vehicle, stops, arrivals, shift = 0 }, { stops: asked, types }) {
-  const type = types.get(vehicle) ?? { reload: [], shifts: [] };
+export function visitTimes(route, { stops: asked, types }) {
+  const { stops, arrivals, shift = 0 } = route;
+  const type = types.get(route.vehicle) ?? { reload: [], shifts: [] };
   const kinds = stops.map((stop, at) => kindOf(stop, at, stops.length - 1, type));
+  const breaks = breaksAt(route, type.breaks ?? []);
+  const [from, to] = type.shifts[shift] ?? [];
   return stops.map((stop, at) => {
-    const [kind, arrival] = [kinds[at], arrivals[at]];
+    const kind = kinds[at];
     const { service = 0, window, windows = window ? [window] : [], due } = kind === "visit" ? (asked.get(stop) ?? {}) : {};
     const released = kind === "start" || kind === "loading" ? releaseOf(at, stops, kinds, asked) : 0;
-    const begin = kind === "loading" ? Math.max(arrival, released) : opened(windows, arrival);
-    const until = due ?? (kind === "end" ? type.shifts[shift]?.[1] : undefined);
-    return { stop, kind, arrival, begin, end: begin + service, due: until, late: laterBy(begin, until), windows, released };
+    const ready = (time) => (kind === "loading" ? Math.max(time, released) : opened(windows, time));
+    const times = timesAt(arrivals[at], ready, service, breaks[at]);
+    const until = due ?? (kind === "end" ? to : undefined);
+    const opens = windows.find(([opening]) => Math.abs(times.begin - opening) <= NEAR * opening)?.[0];
+    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, released, shift: kind === "start" ? from : undefined };
   });
+}
+
+/** The times at a stop whose visit begins when it is `ready` at a time. A break that begins before a visit is over is taken before it. */
+function timesAt(arrival, ready, service, rests) {
+  let [time, waiting] = [arrival, 0];
+  for (const [from, to] of rests) {
+    if (from >= ready(time) + service) break;
+    waiting += from - time;
+    time = to;
+  }
+  const begin = ready(time);
+  const end = begin + service;
+  waiting += begin - time;
+  return { arrival, begin, end, rests, waiting: waiting > NEAR * begin ? waiting : 0, leaves: Math.max(end, rests.at(-1)?.[1] ?? end) };
 }
 
 function kindOf(stop, at, last, { start, end, reload }) {

@@ -8,7 +8,7 @@ import { visitTimes } from "../fleet/visit_times.js";
 
 const OWN = "added up from stop to stop, in the unit of your numbers";
 const NEAR = 0.01; // the share by which the parts of a route may miss its length
-const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "waiting"]];
+const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "waiting"], ["breaks", "in breaks"]];
 
 /**
  * The note on one objective of a tour or plan; "" if its name says enough.
@@ -41,7 +41,7 @@ function partsOf({ routes }, axis, objective, { movers, asked }) {
   const longest = lengths.indexOf(Math.max(...lengths));
   if (!asked.stops || !routes[longest]?.arrivals) return null;
   const spent = spentOn(visitTimes(routes[longest], knownFleet(asked)));
-  const all = spent.driving + spent.service + spent.waiting;
+  const all = spent.driving + spent.service + spent.waiting + spent.breaks;
   if (Math.abs(all - lengths[longest]) > NEAR * lengths[longest]) return null;
   const parts = PARTS.filter(([part]) => Math.round(spent[part]) > 0).map(([part, said]) => `${amount(spent[part], objective)} ${said}`);
   return `${namesOf(routes, movers, asked)[longest]}: ${parts.join(", ")}`;
@@ -49,11 +49,13 @@ function partsOf({ routes }, axis, objective, { movers, asked }) {
 
 /** What the time of a route is spent on, from the times of its visits. */
 function spentOn(visits) {
-  const spent = { driving: 0, service: 0, waiting: 0 };
-  visits.forEach(({ arrival, begin, end }, at) => {
-    if (at) spent.driving += arrival - visits[at - 1].end;
-    spent.waiting += begin - arrival;
+  const spent = { driving: 0, service: 0, waiting: 0, breaks: 0 };
+  visits.forEach(({ arrival, begin, end, leaves, rests }, at) => {
+    const rested = rests.reduce((sum, [from, to]) => sum + to - from, 0);
+    if (at) spent.driving += arrival - visits[at - 1].leaves;
     spent.service += end - begin;
+    spent.breaks += rested;
+    spent.waiting += leaves - arrival - (end - begin) - rested;
   });
   return spent;
 }
