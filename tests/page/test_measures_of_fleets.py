@@ -1,9 +1,6 @@
 """Measures of plans on the page, from a stored front: lateness, shifts, trips, late stops."""
 
-import base64
-import json
 import re
-import zlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -17,8 +14,8 @@ from tests.helpers.browsing import (
     open_page,
     saved,
     wait_for_next_frame,
-    wait_until_planned,
 )
+from tests.helpers.stored_answers import open_stored_answer
 
 pytestmark = needs_chromium
 
@@ -138,13 +135,7 @@ def open_stored(page: Page, released: str, measure: str, values: list[float]) ->
 
 def open_answer(page: Page, released: str, objectives: list[Any], front: dict[str, Any]) -> None:
     """Open a stored answer by a link that has its request."""
-    asked = {"request": {**REQUEST, "objectives": objectives}, "objectives": objectives}
-    packer = zlib.compressobj(wbits=-15)
-    packed = packer.compress(json.dumps(asked).encode()) + packer.flush()
-    text = base64.urlsafe_b64encode(packed).decode().rstrip("=")
-    page.route(re.compile(f"/front/{ID}$"), lambda each: each.fulfill(json=front))
-    page.goto(f"{released}/#front={ID}&balance=0&asked={text}")
-    wait_until_planned(page)
+    open_stored_answer(page, released, {**REQUEST, "objectives": objectives}, front)
 
 
 @pytest.fixture(scope="module")
