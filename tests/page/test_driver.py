@@ -66,6 +66,7 @@ def test_a_plan_is_a_row_for_each_stop_a_route_of_gpx_and_a_list(window: Page) -
     assert {row["vehicle"] for row in visited if row["stop"] != "A, at the back"} == {"van 2"}
     [late] = [row for row in visited if row["vehicle"] == "van 1"]
     assert (late["latitude"], late["longitude"], late["position"]) == ("60.18", "24.95", "2")
+    assert late["window"] == "9:00 to 10:30"
     assert re.fullmatch(r"\d{1,2}:\d\d", late["arrives"])
     gpx = ElementTree.fromstring(given(window, "Save the selected tour as GPX"))
     routes = gpx.findall(f"{GPX}rte")
@@ -106,7 +107,9 @@ def test_a_tour_over_the_day_has_its_hours(window: Page) -> None:
     rows = list(csv.DictReader(io.StringIO(given(window, "Save the stops of the selected tour"))))
     assert [row["position"] for row in rows] == ["1", "2", "3", "4"]
     assert rows[0]["stop"] == rows[-1]["stop"] == "s0"
-    assert rows[0]["arrives"].startswith("7:30")
+    assert rows[0]["leaves"].startswith("7:30")
+    assert [row["arrives"] != "" for row in rows] == [False, True, True, True]
+    assert [row["leaves"] for row in rows[1:]] == ["", "", ""]
     assert "vehicle" not in rows[0]
     [alone] = json.loads(given(window, "Save the selected tour alone as JSON"))["front"]
     assert [row["stop"] for row in rows] == [*alone["stops"], "s0"]

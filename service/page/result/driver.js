@@ -3,15 +3,18 @@
 import { SECONDS } from "../common/durations.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
-import { clockOf, hoursOf } from "../fleet/times.js";
+import { hoursOf } from "../fleet/times.js";
+import { timetable } from "../fleet/timetable.js";
 import { clockUnit } from "../fleet/units.js";
+import { departureNote, spansIn } from "../fleet/visit_sentence.js";
 import { quoted } from "./exports.js";
 
-const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", "arrives", "load"];
+const TIMES = ["window", "arrives", "waits", "break", "leaves"];
+const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", ...TIMES, "load"];
 
 /**
- * The routes of the selected tour or plan, each with a `name`, "" for that of a tour, and its `visits`: `stop`,
- * and where they are known its `place` (longitude and latitude), when the vehicle `arrives`, and its `load`.
+ * The routes of the selected tour or plan, each with a `name`, "" for that of a tour, a `note` on when it begins, and its
+ * `visits`: `stop`, and where they are known its `place` (longitude and latitude), its times in words, and its `load`.
  *
  * @param {{ item: object, round: string[], movers: object | null }} selected the tour or plan, the stops of a tour in
  *   their order, and what drives the routes of a plan
@@ -20,37 +23,48 @@ const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", "arrive
  */
 export function routesOf({ item, round, movers }, answer, asked) {
   const places = new Map(answer.stops?.map(({ id, location }) => [String(id), location]));
-  const visit = (stop, arrives, load) => ({ stop: typeof stop === "number" ? stop + 1 : stop, place: places.get(String(stop)) ?? null, arrives, load });
-  if (!movers) {
-    const hours = hoursOf(item);
-    return [{ name: "", visits: round.map((stop, at) => visit(stop, hours[at] ?? "", "")) }];
-  }
-  const names = namesOf(item.routes, movers, asked ?? {});
-  const said = timesOf(item.routes.map(({ arrivals }) => arrivals ?? []), clockUnit(asked ?? {}));
-  const { stops } = knownFleet(asked ?? {});
-  return item.routes.map((route, at) => ({
-    name: names[at],
-    visits: route[movers.through].map((stop, place) => visit(stop, said(route.arrivals?.[place]), (stops.get(stop)?.demand ?? []).join(", "))),
-  }));
+  const placed = ({ stop, ...others }) => ({ stop: typeof stop === "number" ? stop + 1 : stop, place: places.get(String(stop)) ?? null, ...others });
+  const routes = movers ? routesOfPlan(item.routes, movers, asked ?? {}) : [routeOfTour(item, round)];
+  return routes.map((route) => ({ ...route, visits: route.visits.map(placed) }));
 }
 
-/** Puts times into words, "" where there is none or their unit is not one of time. */
-function timesOf(rows, unit) {
-  const times = rows.flat();
-  if (!times.length || !SECONDS.has(unit)) return () => "";
-  const clock = clockOf(times, unit);
-  return (time) => (time === undefined ? "" : clock.said(time));
+/** The route of a tour; the first of its hours, if it has a day, is its departure. */
+function routeOfTour(tour, round) {
+  const hours = hoursOf(tour);
+  return { name: "", note: "", visits: round.map((stop, at) => ({ stop, [at ? "arrives" : "leaves"]: hours[at] })) };
+}
+
+/** The routes of a plan; without times if their unit is not one of time, or not known. */
+function routesOfPlan(routes, movers, asked) {
+  const names = namesOf(routes, movers, asked);
+  const { lanes, clock } = SECONDS.has(clockUnit(asked)) ? timetable(routes, names, asked) : { lanes: [] };
+  const { stops } = knownFleet(asked);
+  return routes.map((route, at) => {
+    const times = lanes[at]?.visits;
+    const visit = (stop, place) => ({ stop, ...(times && inWords(times[place], clock)), load: stops.get(stop)?.demand?.join(", ") });
+    return { name: names[at], note: times ? departureNote(times, clock.said) : "", visits: route[movers.through].map(visit) };
+  });
+}
+
+/** The times of a visit in words: where a route starts it is only left, and where it ends only reached. */
+function inWords({ kind, arrival, waiting, rests, leaves, windows, due }, { said, lasting }) {
+  const until = kind === "visit" && due !== undefined ? [`due ${said(due)}`] : [];
+  return {
+    window: [...(windows.length ? [spansIn(windows, said).join(" or ")] : []), ...until].join(", "),
+    arrives: kind === "start" ? "" : said(arrival),
+    waits: waiting ? lasting(waiting) : "",
+    break: spansIn(rests, said).join(", "),
+    leaves: kind === "end" ? "" : said(leaves),
+  };
 }
 
 /** A row for each visit; columns that are empty in all rows are left out. */
 export function csvOfVisits(routes) {
   const rows = routes.flatMap(({ name, visits }) =>
-    visits.map(({ stop, place, arrives, load }, at) => ({
-      vehicle: name, position: at + 1, stop, latitude: place?.[1] ?? "", longitude: place?.[0] ?? "", arrives, load,
-    })),
+    visits.map(({ place, ...visit }, at) => ({ ...visit, vehicle: name, position: at + 1, latitude: place?.[1], longitude: place?.[0] })),
   );
-  const columns = COLUMNS.filter((column) => rows.some((row) => row[column] !== ""));
-  return [columns, ...rows.map((row) => columns.map((column) => row[column]))]
+  const columns = COLUMNS.filter((column) => rows.some((row) => (row[column] ?? "") !== ""));
+  return [columns, ...rows.map((row) => columns.map((column) => row[column] ?? ""))]
     .map((row) => `${row.map((field) => quoted(`${field}`, /[,"\r\n]/)).join(",")}\n`)
     .join("");
 }
@@ -69,32 +83,34 @@ export function gpxOf(routes) {
   };
   gpx.documentElement.setAttribute("version", "1.1");
   gpx.documentElement.setAttribute("creator", "Paretour");
-  for (const { name, visits } of routes) {
+  for (const { name, note, visits } of routes) {
     const route = made(gpx.documentElement, "rte");
     made(route, "name", name || "Tour");
-    for (const { stop, place, arrives } of visits) {
+    if (note) made(route, "desc", note);
+    for (const { stop, place, ...times } of visits) {
       const point = made(route, "rtept");
       point.setAttribute("lat", place[1]);
       point.setAttribute("lon", place[0]);
       made(point, "name", stop);
-      if (arrives) made(point, "desc", `arrives ${arrives}`);
+      const said = TIMES.filter((each) => times[each]).map((each) => `${each} ${times[each]}`);
+      if (said.length) made(point, "desc", said.join(", "));
     }
   }
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(gpx)}\n`;
 }
 
-/** Fills the sheet that is printed: a table for each route. A stop's name opens the map of a phone that reads the sheet. */
+/** Fills the sheet that is printed: a table for each route, below its name and when it begins. A stop's name opens the map of a phone that reads the sheet. */
 export function fillSheet(sheet, routes) {
   sheet.replaceChildren(
-    ...routes.map(({ name, visits }) => {
+    ...routes.map(({ name, note, visits }) => {
       const part = document.createElement("section");
       const heading = Object.assign(document.createElement("h2"), { textContent: name || "Tour" });
       const table = document.createElement("table");
-      const columns = ["arrives", "load"].filter((column) => visits.some((visit) => visit[column]));
+      const columns = [...TIMES, "load"].filter((column) => visits.some((visit) => visit[column]));
       row(table.createTHead(), ["", "stop", ...columns]);
       const body = table.createTBody();
-      for (const [at, visit] of visits.entries()) row(body, [at + 1, linked(visit), ...columns.map((column) => visit[column])]);
-      part.append(heading, table);
+      for (const [at, visit] of visits.entries()) row(body, [at + 1, linked(visit), ...columns.map((column) => visit[column] ?? "")]);
+      part.append(heading, ...(note ? [Object.assign(document.createElement("p"), { textContent: note })] : []), table);
       return part;
     }),
   );

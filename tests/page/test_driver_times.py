@@ -1,0 +1,234 @@
+"""The times that the page gives drivers: of a stored plan, whose every minute is known."""
+
+import csv
+import io
+import json
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_files,
+    open_page,
+    saved,
+    wait_until_planned,
+)
+from tests.helpers.stored_answers import open_stored_answer
+
+pytestmark = needs_chromium
+
+GPX = "{http://www.topografix.com/GPX/1/1}"
+
+
+def at(time: str) -> int:
+    """Return a time of the day in seconds."""
+    hours, minutes = map(int, time.split(":"))
+    return 3600 * hours + 60 * minutes
+
+
+def span(begin: str, end: str) -> list[int]:
+    return [at(begin), at(end)]
+
+
+STOPS: list[dict[str, Any]] = [
+    {"id": "depot"},
+    {"id": "A", "demand": [2], "service": 300, "window": span("8:15", "9:00")},
+    {"id": "B", "service": 600, "windows": [span("9:00", "10:00"), span("14:00", "15:00")]},
+    {"id": "C", "due": at("9:00")},
+    {"id": "D", "service": 300, "window": span("8:40", "9:30")},
+    {"id": "E", "service": 300},
+]
+BASE = {"start": "depot", "end": "depot"}
+VEHICLES: list[dict[str, Any]] = [
+    {
+        **BASE,
+        "id": "van",
+        "count": 2,
+        "shift": span("7:30", "17:00"),
+        "breaks": [{"window": span("9:05", "9:30"), "length": 900}],
+    },
+    {
+        **BASE,
+        "id": "van 1",
+        "shift": span("8:00", "17:00"),
+        "breaks": [
+            {"window": span("7:00", "7:30"), "length": 600},
+            {"window": span("8:00", "8:20"), "length": 1200},
+        ],
+    },
+    {"id": "bike", "shift": span("7:30", "17:00")},
+]
+REQUEST: dict[str, Any] = {
+    "stops": [
+        {**stop, "location": [24.94 + place / 100, 60.17]} for place, stop in enumerate(STOPS)
+    ],
+    "vehicles": VEHICLES,
+    "objectives": [
+        {"name": "driving", "from": "road_time"},
+        {"name": "longest route", "from": "road_time", "over": "max"},
+    ],
+    "clock": {"unit": "s", "matrix": [[600] * 6] * 6},
+}
+
+
+def route(vehicle: str, visits: str, *breaks: str) -> dict[str, Any]:
+    """Return a route by its stops and arrivals, such as "depot 8:05, A 8:15"."""
+    stops, arrivals = zip(*(each.split() for each in visits.split(", ")), strict=True)
+    taken = {"breaks": [at(each) for each in breaks]} if breaks else {}
+    times = [at(each) for each in arrivals]
+    lengths = [600.0 * (len(stops) - 1), float(times[-1] - times[0])]
+    return {
+        "vehicle": vehicle,
+        "stops": list(stops),
+        "lengths": lengths,
+        "arrivals": times,
+        **taken,
+    }
+
+
+ROUTES = [
+    route("van", "depot 8:05, A 8:15, B 8:30, depot 9:35", "9:10"),
+    route("van", "depot 7:30, C 7:40, depot 7:50"),
+    route("van 1", "depot 8:00, D 8:10, depot 8:55", "8:10"),
+    route("bike", "E 10:00"),
+]
+NAMES = ["van 2", "van 3", "van 1", "bike"]
+ANSWER: dict[str, Any] = {
+    **{"id": 32 * "b", "status": "done", "kind": "fleet", "cities": 6, "points": 1},
+    **{"hypervolume": 0.5, "hypervolume_bound": None, "reference_point": [9000, 9000]},
+    **{"scale": [1, 1], "timings_ms": {"total": 200}, "terminated": "time_limit", "actor": None},
+    "stops": [{"id": each["id"], "location": each["location"]} for each in REQUEST["stops"]],
+    "objectives": [
+        {"name": "driving", "unit": "s", "over": "sum"},
+        {"name": "longest route", "unit": "s", "over": "max"},
+    ],
+    "front": [
+        {
+            "balance": 0.0,
+            "lengths": [4200.0, 5400.0],
+            "routes": ROUTES,
+            "unassigned": [],
+        }
+    ],
+}
+TWICE = "9:00 to 10:00 or 14:00 to 15:00"
+WHY = "Shift from 7:30; leaves at 8:05, to be at A when it opens at 8:15."
+
+
+@pytest.fixture(scope="module")
+def stored(browser: Browser, released: str) -> Iterator[Page]:
+    """The page with the stored plan, for tests that only look."""
+    with open_page(browser, "about:blank") as page:
+        open_stored_answer(page, released, REQUEST, ANSWER)
+        yield page
+
+
+def given(page: Page, name: str) -> str:
+    """Return the text of the file that a button saves."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name=name).click()
+    return download.value.path().read_text()
+
+
+def test_each_visit_has_its_window_arrival_waiting_break_and_leaving(stored: Page) -> None:
+    rows = csv.DictReader(io.StringIO(given(stored, "Save the stops of the selected tour")))
+    times = ("window", "arrives", "waits", "break", "leaves", "load")
+    found = [(row["vehicle"], row["stop"], *(row[each] for each in times)) for row in rows]
+    assert found == [
+        ("van 2", "depot", "", "", "", "", "8:05", ""),
+        ("van 2", "A", "8:15 to 9:00", "8:15", "", "", "8:20", "2"),
+        ("van 2", "B", TWICE, "8:30", "30 min", "9:10 to 9:25", "9:25", ""),
+        ("van 2", "depot", "", "9:35", "", "", "", ""),
+        ("van 3", "depot", "", "", "", "", "7:30", ""),
+        ("van 3", "C", "due 9:00", "7:40", "", "", "7:40", ""),
+        ("van 3", "depot", "", "7:50", "", "", "", ""),
+        ("van 1", "depot", "", "", "", "", "8:00", ""),
+        ("van 1", "D", "8:40 to 9:30", "8:10", "10 min", "8:10 to 8:30", "8:45", ""),
+        ("van 1", "depot", "", "8:55", "", "", "", ""),
+        ("bike", "E", "", "10:00", "", "", "10:05", ""),
+    ]
+
+
+def test_vehicles_have_the_same_names_in_files_lanes_and_tables(stored: Page) -> None:
+    gpx = ElementTree.fromstring(given(stored, "Save the selected tour as GPX"))
+    assert [each.findtext(f"{GPX}name") for each in gpx.findall(f"{GPX}rte")] == NAMES
+    front = csv.DictReader(io.StringIO(saved(stored, "CSV").decode()))
+    assert [row["vehicle"] for row in front] == NAMES
+    assert stored.locator("#fleet-legend tbody th").all_inner_texts() == NAMES
+    assert stored.locator("#fleet-stops b").all_text_contents() == NAMES
+    assert stored.locator("#fleet-lanes .name").all_text_contents() == NAMES
+
+
+def test_gpx_says_the_times_of_each_point(stored: Page) -> None:
+    gpx = ElementTree.fromstring(given(stored, "Save the selected tour as GPX"))
+    said = [each.findtext(f"{GPX}desc") for each in gpx.iter(f"{GPX}rtept")]
+    assert said[:2] == ["leaves 8:05", "window 8:15 to 9:00, arrives 8:15, leaves 8:20"]
+    assert said[3] == "arrives 9:35"
+
+
+def test_a_vehicle_that_leaves_after_its_shift_begins_says_why(stored: Page) -> None:
+    stored.evaluate("window.print = () => {}")
+    stored.get_by_role("button", name="Print the stops of the selected tour").click()
+    parts = stored.locator("#sheet section")
+    assert parts.locator("h2").all_text_contents() == NAMES
+    assert parts.locator("p").all_text_contents() == [WHY]
+    assert parts.nth(0).locator("p").count() == 1
+    heads = [part.locator("thead td").all_text_contents() for part in parts.all()]
+    assert heads[0] == ["", "stop", "window", "arrives", "waits", "break", "leaves", "load"]
+    assert heads[3] == ["", "stop", "arrives", "leaves"]
+    assert stored.locator("#fleet-lanes g:has(> .name) > title").all_text_contents() == [WHY]
+    stored.locator("#fleet-lanes .visit").first.click()
+    expect(stored.locator("#fleet-stop")).to_have_text(
+        "depot: van 2 leaves at 8:05, to be at A when it opens at 8:15; its shift is from 7:30."
+    )
+
+
+def test_breaks_are_said_of_a_stop_and_of_the_longest_route(stored: Page) -> None:
+    stored.locator("#fleet-lanes").get_by_role("button", name="D, 8:40").click()
+    expect(stored.locator("#fleet-stop")).to_have_text(
+        "D: open 8:40 to 9:30, begins 8:40; van 1 arrives at 8:10 from depot and waits 10 min"
+        " for it to open; the driver has a break from 8:10 to 8:30."
+    )
+    expect(stored.locator("#comparison tbody:first-of-type th").nth(1)).to_contain_text(
+        "van 2: 30 min driving, 15 min at stops, 30 min waiting, 15 min in breaks"
+    )
+
+
+def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(
+    browser: Browser, released: str
+) -> None:
+    """Each drive takes ten minutes; the breaks are between a stop at eight and one at eleven."""
+    windows = [span("8:00", "8:30"), *[span(f"{8 + k % 3}:00", "12:00") for k in range(5)]]
+    stops: list[dict[str, Any]] = [
+        {"id": f"s{k}", "service": 60 * (k % 4), "window": window}
+        for k, window in enumerate([*windows, span("11:00", "12:00")])
+    ]
+    breaks = [
+        {"window": span("9:00", "9:30"), "length": 900},
+        {"window": span("10:00", "10:10"), "length": 600},
+    ]
+    shift = span("7:00", "17:00")
+    request = {
+        "stops": [{"id": "depot"}, *stops],
+        "vehicles": [{**BASE, "id": "van", "shift": shift, "breaks": breaks}],
+        "objectives": [
+            {"name": "time", "unit": "s", "matrix": [[600] * 8] * 8},
+            {"name": "longest", "unit": "s", "matrix": [[600] * 8] * 8, "over": "max"},
+        ],
+        "clock": "time",
+        "time_limit": 0.3,
+    }
+    with open_page(browser, released) as page:
+        open_files(page, {"fleet.json": json.dumps(request)})
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        rows = list(csv.DictReader(io.StringIO(given(page, "Save the stops of the selected tour"))))
+    assert len(rows) == len(stops) + 2
+    assert sum(row["break"].count(" to ") for row in rows) == len(breaks)
+    for row, following in pairwise(rows):
+        assert at(following["arrives"]) == pytest.approx(at(row["leaves"]) + 600, abs=60), rows
