@@ -36,7 +36,10 @@ _NAMES = {
     " creneau creneauhoraire fenetre fasciaoraria finestra finestraoraria ventana ventanahoraria"
     " franjahoraria janela janelahoraria janeladetempo tijdvenster tijdslot aikaikkuna",
     "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
-    " servicezeit standzeit tempsservice tempsdeservice duree temposervizio tempodiservizio durata"
+    " timeatstop timeonsite visittime visitduration unloadingtime unloadtime loadingtime"
+    " jobduration taskduration minutes mins minutesonsite minutesatstop minutesperstop"
+    " servicezeit standzeit entladezeit tempsservice tempsdeservice duree temposervizio"
+    " tempodiservizio durata"
     " tiemposervicio tiempodeservicio duracion temposervico tempodeservico duracao servicetijd"
     " lostijd duur palveluaika kesto",
     "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
@@ -97,7 +100,12 @@ _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|poi
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(](.*?)[\])]")
 _HOURS_OF = (["working"], ["work"])  # whose hours are times of day
-_SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
+_MINUTES = ("min", "mins", "minute", "minutes")
+SECONDS = {  # by the names of units
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1),
+    **dict.fromkeys(_MINUTES, 60),
+    **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), 3600),
+}
 # Fields that a table may have several times.
 _SEVERAL = ("demand", "capacity", "initial_load", "cost")
 _NAMED_WINDOW = re.compile(r"^(timewindow|deliverywindow|window|tw)(?!s?$)")
@@ -178,8 +186,8 @@ def best_fields(
 def seconds_of(name: str) -> int | None:
     """Return the seconds of the unit in a heading, as in `service [min]`; None without a unit."""
     unit = _UNIT.search(name)
-    plain = unit[1].strip().casefold() if unit else re.split(r"[\s_]", name.casefold())[-1]
-    return _SECONDS.get(plain)
+    words = [unit[1].strip().casefold()] if unit else re.split(r"[\s_]", name.casefold())
+    return SECONDS.get(words[-1], 60 if words[0] in _MINUTES else None)
 
 
 def _rank(plain: str, names: Mapping[str, str]) -> tuple[str | None, int]:
@@ -196,5 +204,5 @@ def plain_name(name: str) -> str:
     decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
     words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
     of_a_day = words[-1:] == ["hours"] and words[:1] in _HOURS_OF
-    kept = words[:-1] if len(words) > 1 and words[-1] in _SECONDS and not of_a_day else words
+    kept = words[:-1] if len(words) > 1 and words[-1] in SECONDS and not of_a_day else words
     return "".join(kept)

@@ -8,15 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from service.files.column_names import WINDOWS, seconds_of
+from service.files.column_names import SECONDS, WINDOWS, seconds_of
 from service.files.columns import Columns
 from service.files.fleets import Stop, spans
+from service.files.reading import quoted
 from service.files.tables import number_in
 
 _TIME = re.compile(
     r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?(?:Z|[-+]\d\d:\d\d)?",
     re.ASCII,
 )
+_LASTING = re.compile(r"(.*\d)\s*([a-z]+)\.?", re.IGNORECASE)  # with its unit, as 5 min
+_BRIEF = 60  # seconds; a service that takes less may be meant in minutes
 _OR = re.compile(r"\s*(?:[;|,&]|\band\b|\bund\b)\s*", re.IGNORECASE)  # between two windows
 _SEPARATOR = re.compile(r"[;|,]")  # between skills or ids
 _AROUND_SPAN = " []()"
@@ -47,9 +50,26 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
         if (at := columns.find(name)) is not None:
             for row in columns.filled(at):
                 stops[row][name] = read(row, at)
+    _note_brief_service(columns, stops)
     for row, stop in enumerate(stops):
         stop |= spans("window", spans_in(columns, row, WINDOWS))
     return _add_demands(columns, demands, stops) if demands else 1
+
+
+def _note_brief_service(columns: Columns, stops: list[Stop]) -> None:
+    """Note that service on the earth is in seconds, if it has no unit and may be in minutes."""
+    at = columns.find("service")
+    if at is None or columns.find("latitude") is None or seconds_of(columns.names[at]):
+        return
+    rows = columns.filled(at)
+    longest = max((stops[row]["service"] for row in rows), default=0)
+    if 0 < longest < _BRIEF and all(number_in(columns.text(row, at)) is not None for row in rows):
+        name = columns.names[at]
+        columns.source.note(
+            "service",
+            f"{quoted(name)} is in seconds, {longest:g} at most. For minutes, write 5 min or name"
+            f" it {quoted(f'{name} (min)')}.",
+        )
 
 
 def is_time(text: str) -> bool:
@@ -144,7 +164,7 @@ def _noun(columns: Columns, at: int) -> str:
 
 
 def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> float:
-    """Return a time in seconds: hours and minutes, or a number in the unit of its heading."""
+    """Return a time in seconds: hours and minutes, or a number with a unit or in its heading's."""
     text = columns.text(row, at) if text is None else text.strip()
     if time := _TIME.fullmatch(text):
         date, *parts = time.groups()
@@ -152,7 +172,9 @@ def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> 
             columns.source.note("dates", f"Dates, as {date}, were not used: only times of day.")
         hours, minutes, seconds = (int(each or 0) for each in parts)
         return 3600 * hours + 60 * minutes + seconds
-    number = number_in(text)
+    lasting = _LASTING.fullmatch(text)
+    own = SECONDS.get(lasting[2].casefold()) if lasting else None
+    number = number_in(lasting[1].strip() if lasting and own else text)
     if number is None or number < 0:
-        raise columns.refusal(row, at, "must be seconds, or a time as 10:30", text)
-    return number * (seconds_of(columns.names[at]) or 1)
+        raise columns.refusal(row, at, "must be seconds, or a time as 10:30 or 5 min", text)
+    return number * (own or seconds_of(columns.names[at]) or 1)

@@ -293,10 +293,8 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
 
 
 def _check_depot(visit: Visit, part: str) -> None:
-    demand = "must not be given for a stop at which vehicles start, end or load again"
-    if visit.windows != (ALWAYS,):
-        raise invalid(f"{part}/window", f"{demand}: say in their shift when they may be on the way")
-    for name, given in (
+    members = (
+        ("window", visit.windows != (ALWAYS,)),
         ("demand", any(visit.demand)),
         ("service", visit.service),
         ("prize", visit.prize is not None),
@@ -304,9 +302,17 @@ def _check_depot(visit: Visit, part: str) -> None:
         ("release", visit.release),
         ("skills", visit.skills),
         ("vehicle", visit.vehicles),
-    ):
-        if given:
-            raise invalid(f"{part}/{name}", demand)
+    )
+    given = [name for name, is_given in members if is_given]
+    if not given:
+        return
+    first, *others = given
+    nor = f", nor {' or '.join(others)}," if others else ""
+    instead = "an order there needs a stop of its own"
+    if first == "window":
+        instead = f"say in their shift when they may be on the way; {instead}"
+    depot = "for a stop at which vehicles start, end or load again"
+    raise invalid(f"{part}/{first}", f"must not be given{nor} {depot}: {instead}")
 
 
 def _check_span(rules: Rules, span: Span, part: str) -> None:

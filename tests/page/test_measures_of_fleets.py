@@ -174,7 +174,7 @@ def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> No
         "Overtime in all": ["0 min", "0 min", "same"],
         "Longest route": ["1 h 5 min", "1 h 5 min", "same"],
         "Shortest route": ["1 h 5 min", "1 h 5 min", "same"],
-        "Longest less shortest": ["0 min", "0 min", "same"],
+        "Longest minus shortest": ["0 min", "0 min", "same"],
         "Prizes left out, m": ["0", "900", f"{MINUS}900"],
     }
 

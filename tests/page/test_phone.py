@@ -2,7 +2,7 @@
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import PHONE, needs_chromium, open_page, wait_until_planned
+from tests.helpers.browsing import PHONE, needs_chromium, open_files, open_page, wait_until_planned
 
 pytestmark = needs_chromium
 
@@ -30,6 +30,22 @@ def test_plan_stays_at_the_bottom_of_a_phone_and_covers_nothing(
         expect(fault).not_to_be_empty()
         shown = page.evaluate("innerHeight") - height(page, ".bar")
         assert bottom(page, "#time_limit-fault") <= shown
+
+
+def test_a_stop_is_added_on_the_map_without_scrolling(browser: Browser, released: str) -> None:
+    with open_page(browser, released, PHONE) as page:
+        wait_until_planned(page)
+        open_files(page, {"stops.csv": "id,lat,lon\na,60.1,24.9\nb,60.2,25.0\nc,60.15,24.9\n"})
+        button, board = page.get_by_role("button", name="Add on the map"), page.locator("#plane-1")
+        button.click()
+        expect(page.locator("#place-help")).to_be_in_viewport(ratio=1)
+        expect(board).to_be_in_viewport()
+        box = board.bounding_box()
+        assert box is not None
+        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.7)
+        expect(page.locator("#count")).to_have_text("4 stops")
+        expect(button).to_be_in_viewport(ratio=1)
+        expect(button).to_have_attribute("aria-pressed", "false")
 
 
 def test_a_desk_has_no_button_that_leads_to_the_stops(planned: Page) -> None:

@@ -148,6 +148,16 @@ def test_what_is_wrong_is_pointed_at(path: str, value: Any, pointer: str | None)
     assert pointer.strip("/") in refused.value.detail
 
 
+def test_all_that_a_depot_cannot_have_is_said_at_once() -> None:
+    request = changed("stops/0/demand", [1])
+    request["stops"][0] |= {"service": 5, "due": 9}
+    with pytest.raises(Refusal) as refused:
+        fleet_of(request)
+    said = "stops/0/demand must not be given, nor service or due, for a stop at which vehicles"
+    assert refused.value.detail.startswith(said)
+    assert refused.value.detail.endswith("an order there needs a stop of its own")
+
+
 def test_a_prize_or_a_fixed_cost_needs_a_first_objective_that_is_a_sum() -> None:
     request = changed("objectives/1/over", "sum")
     request["objectives"][0]["over"] = "max"

@@ -24,7 +24,7 @@ const NUMBERS = {
 const TYPES = {
   text: { write: String, read: (text) => text },
   ...NUMBERS,
-  loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), load), hint: "whole numbers, as 2 or 2, 5" },
+  loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), load), hint: "a whole number such as 2, or one for each kind of load, such as 2, 5" },
   words: { write: listed, read: (text) => pieces(text, /[;,|]/) },
   time: { write: writtenTime, read: time, hint: "a time, as 10:30" },
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },

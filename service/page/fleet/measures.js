@@ -12,7 +12,7 @@ const NAMES = {
   overtime: "Overtime in all",
   longest: "Longest route",
   shortest: "Shortest route",
-  imbalance: "Longest less shortest",
+  imbalance: "Longest minus shortest",
   unassigned: "Prizes left out",
   load_distance: "Load carried",
 };

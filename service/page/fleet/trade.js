@@ -13,7 +13,7 @@ export const AGAINST = {
   unassigned: { title: "Orders left out", name: "orders left out", stops: "prize" },
   overtime: { title: "Overtime", name: "overtime", vehicles: "max_overtime" },
   lateness: { title: "Lateness", name: "lateness", stops: "due" },
-  imbalance: { title: "Longest less shortest route", name: "imbalance" },
+  imbalance: { title: "Longest minus shortest route", name: "imbalance" },
   load_distance: { title: "Load carried", name: "load carried", vehicles: "capacity" },
 };
 const COSTS = ["max", "sum"];

@@ -1,5 +1,7 @@
 /** Place cities by clicks: with two planes, first in one, then in the other. */
 
+import { narrow } from "../result/arrangement.js";
+
 export class Placing {
   #button;
   #help;
@@ -20,7 +22,11 @@ export class Placing {
     this.#once = once;
     this.#help = help;
     this.#onCity = onCity;
-    button.addEventListener("click", () => this.#turn(!this.#on));
+    button.addEventListener("click", () => {
+      this.#turn(!this.#on);
+      // A phone shows either the button or the map.
+      if (narrow.matches && this.#on) help.scrollIntoView({ block: "end" });
+    });
   }
 
   /** Takes a click into a plane, or into the only one. */
@@ -41,8 +47,9 @@ export class Placing {
   }
 
   #done(row) {
-    this.#turn(!this.#once);
+    this.#turn(!this.#once && !narrow.matches);
     this.#onCity(row.map(rounded));
+    if (narrow.matches) this.#button.scrollIntoView({ block: "center" });
   }
 
   get #on() {

@@ -30,8 +30,9 @@ export class FileNotes {
     const { name, notes } = read;
     this.#columns.show(files, chosen, read);
     const said = notes.filter(({ code }) => code !== "columns"); // these are lists to choose from
-    const list = made("ul", {}, ...said.map(({ text }) => made("li", {}, text)));
-    this.#status.replaceChildren(made("p", {}, name), ...(said.length ? [list] : []));
+    const texts = [...new Set(said.map(({ text }) => text))]; // several files may have the same
+    const list = made("ul", {}, ...texts.map((text) => made("li", {}, text)));
+    this.#status.replaceChildren(made("p", {}, name), ...(texts.length ? [list] : []));
     this.#button.setAttribute("aria-label", `Dismiss the notes on ${name}`);
     this.#button.hidden = false;
   }
