@@ -11,7 +11,7 @@ pytestmark = needs_chromium
 
 TOUR = "id,x,y,u,v\n" + "".join(f"order-{k},{k},{k % 3},{k % 4},{k % 5}\n" for k in range(9))
 FLEET = "id,lat,lon,demand\ndepot,60.1,24.9,0\n" + "".join(
-    f"order-{k},{60.1 + k / 100},{24.9 + k % 3 / 50},{k}\n" for k in range(1, 9)
+    f"order-{k},{60.1 + k / 100:.2f},{24.9 + k % 3 / 50:.2f},{k}\n" for k in range(1, 9)
 )
 # As many characters as a tab may keep.
 FILL = """

@@ -140,7 +140,11 @@ def test_new_names_are_taken_over_wherever_they_are_used(fleet: Page) -> None:
             "tomorrow",
             "Window of order-17 cannot be “tomorrow”: write two times",
         ),
-        ("Demand of order-18", "two", "Demand of order-18 cannot be “two”: write whole numbers"),
+        (
+            "Demand of order-18",
+            "two",
+            "Demand of order-18 cannot be “two”: write a whole number such as 2",
+        ),
         ("Capacity of bike", "big", "Capacity of bike cannot be “big”"),
         (
             "Window of order-17",

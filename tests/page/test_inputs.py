@@ -203,3 +203,16 @@ def commit(page: Page, label: str, text: str) -> None:
     field = page.get_by_label(label, exact=True)
     field.fill(text)
     field.press("Tab")
+
+
+def test_a_cell_shows_a_tenth_of_a_metre_and_is_sent_in_full(
+    browser: Browser, released: str
+) -> None:
+    longitude = 24.919999999999998
+    text = f"id,lat,lon,demand\ndepot,60.1,24.9,0\na,60.2,{longitude},3\nb,60.3,25,3\n"
+    for table, path in ((text, "fleet"), (text.replace(",demand", ",risk"), "front")):
+        with open_page(browser, released) as page:
+            wait_until_planned(page)
+            open_files(page, {"orders.csv": table})
+            expect(page.get_by_label("Longitude of a", exact=True)).to_have_value("24.92")
+            assert curl_body(page, path)["stops"][1]["location"][0] == longitude

@@ -10,6 +10,9 @@ export function length(value) {
 /** A value to three significant digits. */
 export const rounded = (value) => Number(value.toPrecision(3));
 
+/** A number in a cell of a table: degrees to a tenth of a metre, not the last bits of what was calculated. */
+export const cellNumber = (value) => Number(Math.abs(value) < 1 ? value.toPrecision(6) : value.toFixed(6));
+
 /** A value on an axis, to as many digits as tell it from those a step away. */
 export function tick(value, step) {
   const decimals = Math.max(0, 1 - Math.floor(Math.log10(step)));

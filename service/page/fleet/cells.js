@@ -1,6 +1,7 @@
 /** The cells of the tables of a fleet: members of stops and vehicles as text, and text as their values. */
 
 import { SECONDS, timeOfDay, timeText } from "../common/durations.js";
+import { cellNumber } from "../common/numbers.js";
 import { clockUnit } from "./units.js";
 
 const [MINUTE, HOUR] = [60, 3600]; // seconds
@@ -91,7 +92,7 @@ function listed(value) {
 }
 
 function numbers(accepts, hint) {
-  return { write: String, read: (text) => only(accepts, number(text)), hint };
+  return { write: (value) => String(cellNumber(value)), read: (text) => only(accepts, number(text)), hint };
 }
 
 const only = (accepts, value) => (accepts(value) ? value : undefined);

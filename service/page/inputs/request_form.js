@@ -15,7 +15,7 @@ import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
 import { EditableTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
-import { counted } from "../common/numbers.js";
+import { cellNumber, counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 import { firstFault, problemOf, readAgain } from "../planning/faults.js";
@@ -307,9 +307,10 @@ export class RequestForm {
   }
 
   #tableRows(form) {
-    if (form === "coordinates") return this.#rows.map((cells, city) => ({ name: nameOf(this.ids, city), cells }));
+    const shown = (value) => (typeof value === "number" ? cellNumber(value) : value);
+    if (form === "coordinates") return this.#rows.map((cells, city) => ({ name: nameOf(this.ids, city), cells: cells.map(shown) }));
     if (form !== "stops") return [];
-    return this.#brought.stops.map(({ id, location }) => ({ name: id, cells: location ?? [] }));
+    return this.#brought.stops.map(({ id, location }) => ({ name: id, cells: [location ?? []].flat().map(shown) }));
   }
 
   #rename(row, text) {
