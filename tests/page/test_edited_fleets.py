@@ -152,7 +152,7 @@ def test_new_names_are_taken_over_wherever_they_are_used(fleet: Page) -> None:
             "Window of order-17 cannot be “10:00-9:00”: write two times in order",
         ),
         ("Count of van", "0", "Count of van cannot be “0”: write a whole number, 1 or more."),
-        ("Start of bike", "deopt", "Start of bike must be the name of a stop"),
+        ("Start of bike", "deopt", "the name of a stop, got “deopt”; did you mean depot?"),
     ],
 )
 def test_a_cell_that_cannot_be_planned_with_is_marked(

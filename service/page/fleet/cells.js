@@ -53,8 +53,11 @@ export function cellText(item, column, second) {
 export const isNumber = (type) => type in NUMBERS;
 
 /** Whether a cell holds what is not understood or refused, or the name of a stop or vehicle that there is not. */
-export const isUnread = (item, column) =>
-  listOf(valueOf(item, column)).some((each) => typeof each === "string" && !(column.names?.includes(each) ?? ["text", "words"].includes(column.type)));
+export const isUnread = (item, column) => unknownIn(item, column) !== undefined;
+
+/** The first text in a cell that is not understood, or not such a name; undefined if there is none. */
+export const unknownIn = (item, column) =>
+  listOf(valueOf(item, column)).find((each) => typeof each === "string" && !(column.names?.includes(each) ?? ["text", "words"].includes(column.type)));
 
 /** What to write into a cell of a column. */
 export const hintOf = ({ type }, second) => (!second && ["time", "spans", "lasting"].includes(type) ? COUNTED : TYPES[type].hint);

@@ -4,7 +4,8 @@ import { tellFault } from "../planning/faults.js";
 import { counted } from "../common/numbers.js";
 import { EditableTable } from "../inputs/table.js";
 import { ObjectiveFields, isSpeedRead } from "../inputs/objective_fields.js";
-import { cellText, hintOf, isNumber, isUnread, secondsIn, withText } from "./cells.js";
+import { nearest } from "../common/nearest.js";
+import { cellText, hintOf, isNumber, isUnread, secondsIn, unknownIn, withText } from "./cells.js";
 import { columnsOf, isShown } from "./columns.js";
 import { vehiclesIn } from "./fleet_request.js";
 import { byIds, vehicleRenamed, withVehicle } from "./references.js";
@@ -176,6 +177,9 @@ function choose(id, options, value) {
 
 function unread(item, column, second) {
   const [cell, text] = [`${column.title} of ${item.id}`, `“${cellText(item, column, second)}”`];
-  if (column.list) return `${cell} must be the name of a ${column.list.replace("-names", "")}, got ${text}`;
+  if (column.list) {
+    const meant = nearest(unknownIn(item, column), column.names);
+    return `${cell} must be the name of a ${column.list.replace("-names", "")}, got ${text}${meant ? `; did you mean ${meant}?` : ""}`;
+  }
   return `${cell} cannot be ${text}: write ${hintOf(column, second)}`;
 }
