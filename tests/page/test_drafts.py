@@ -108,6 +108,20 @@ def test_leaving_asks_first_where_a_browser_cannot_keep_so_much(
         expect(page.locator("#count")).to_have_text("9 stops")
 
 
+def test_a_browser_that_keeps_nothing_shows_the_page_all_the_same(
+    browser: Browser, released: str
+) -> None:
+    page = browser.new_page()
+    page.add_init_script(
+        "Object.defineProperty(window, 'sessionStorage', { get() { throw new Error('none'); } })"
+    )
+    page.goto(released)
+    wait_until_planned(page)
+    page.reload()
+    wait_until_planned(page)
+    page.close()
+
+
 def test_a_plan_is_there_again_once_a_change_is_taken_back(page: Page) -> None:
     chosen, said = choice(page), page.locator("#status").inner_text()
     before = write(page, "25.5")

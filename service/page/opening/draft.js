@@ -2,19 +2,23 @@
 
 const NAME = "paretour-draft";
 
-/** Keeps a link of this address, or null for nothing to keep. Returns false if it is too long for the browser's storage. */
+/** Keeps a link of this address, or null for nothing to keep. Returns false if the browser keeps nothing, or not so much. */
 export function keepDraft(link) {
-  sessionStorage.removeItem(NAME);
   try {
+    sessionStorage.removeItem(NAME);
     if (link) sessionStorage.setItem(NAME, JSON.stringify({ ...link, hash: location.hash }));
     return true;
   } catch {
-    return false;
+    return !link;
   }
 }
 
 /** The link that this tab kept at this address; null without one. */
 export function keptDraft() {
-  const link = JSON.parse(sessionStorage.getItem(NAME));
-  return link?.hash === location.hash ? link : null;
+  try {
+    const link = JSON.parse(sessionStorage.getItem(NAME));
+    return link?.hash === location.hash ? link : null;
+  } catch {
+    return null; // browsers can be told to keep nothing
+  }
 }
