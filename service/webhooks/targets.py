@@ -16,11 +16,12 @@ from ipaddress import (
     ip_address,
     ip_network,
 )
-from typing import Self
-
-import httpx
+from typing import TYPE_CHECKING, Self
 
 from service.errors import Fault, Refusal
+
+if TYPE_CHECKING:
+    import httpx  # imported late below: a process without webhooks needs no client of HTTP
 
 MOST_LETTERS = 2000  # of a webhook's URL
 _PORTS = {"http": 80, "https": 443}
@@ -61,7 +62,7 @@ class Target:
             raise ValueError(f"must be like {_EXAMPLES}")
         return cls(url.scheme, url.host, _port_of(url), network)
 
-    def has(self, url: httpx.URL) -> bool:
+    def has(self, url: "httpx.URL") -> bool:
         """Return whether a URL has this scheme, host and port."""
         return (url.scheme, url.host, _port_of(url)) == (self.scheme, self.host, self.port)
 
@@ -80,7 +81,7 @@ class Destination:
     An origin may have several targets, each with another network.
     """
 
-    url: httpx.URL
+    url: "httpx.URL"
     targets: tuple[Target, ...]
 
     @property
@@ -124,10 +125,10 @@ class Targets:
             )
             raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)]) from None
         if found is None:
-            raise Refusal("webhook-not-allowed", came=_origin_of(httpx.URL(text)))
+            raise Refusal("webhook-not-allowed", came=_origin_of(_parsed(text)))
 
 
-def _parsed(text: str) -> httpx.URL:
+def _parsed(text: str) -> "httpx.URL":
     """Return the http or https URL of a text.
 
     Raises:
@@ -135,6 +136,8 @@ def _parsed(text: str) -> httpx.URL:
     """
     if len(text) > MOST_LETTERS or not text.isascii() or not text.isprintable() or " " in text:
         raise ValueError
+    import httpx
+
     try:
         url = httpx.URL(text)
     except httpx.InvalidURL:
@@ -144,11 +147,11 @@ def _parsed(text: str) -> httpx.URL:
     return url
 
 
-def _port_of(url: httpx.URL) -> int:
+def _port_of(url: "httpx.URL") -> int:
     return url.port or _PORTS[url.scheme]
 
 
-def _origin_of(url: httpx.URL) -> str:
+def _origin_of(url: "httpx.URL") -> str:
     return f"{url.scheme}://{url.netloc.decode()}"
 
 

@@ -24,7 +24,7 @@ def record(name, *arguments):
         imported.add(name.partition(".")[0])
     return real(name, *arguments)
 builtins.__import__ = record
-import paretour
+from paretour import *
 print(*sorted(imported - sys.stdlib_module_names))
 """
 

@@ -211,6 +211,16 @@ def test_the_import_loads_nothing_that_plans() -> None:
     assert python(code).returncode == 0
 
 
+def test_planning_here_loads_no_client_of_http() -> None:
+    code = (
+        "import sys, paretour; paretour.plan([[0, 0, 1, 1], [1, 0, 0, 1], [1, 1, 0, 0]]);"
+        "assert not {'httpx', 'rich', 'starlette', 'fastapi'} & set(sys.modules);"
+        "assert {'Client', '__version__'} <= set(dir(paretour)) and paretour.__version__;"
+        "from paretour import *; assert Client and AsyncClient and Job and AsyncJob"
+    )
+    assert python(code).returncode == 0
+
+
 @pytest.mark.parametrize(
     ("hidden", "call", "sentence"),
     [

@@ -16,10 +16,10 @@ AsyncClient is the same as Client for asynchronous programs. Both send the reque
 read the events of `events`. They only need the address of a service.
 """
 
-from importlib.metadata import PackageNotFoundError, version
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from paretour.actors import Actor
-from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
@@ -34,7 +34,6 @@ from paretour.library import (
     plan_robots,
     replan,
 )
-from paretour.listing import ListedFront
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -49,7 +48,6 @@ from paretour.plans import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotP
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.ros.maps import read_ros_map
 from paretour.ros.paths import Path
-from paretour.sync import Client, Job
 from paretour.values import (
     Front,
     Progress,
@@ -58,10 +56,10 @@ from paretour.values import (
     UncoveredRegion,
 )
 
-try:
-    __version__ = version("paretour-client")
-except PackageNotFoundError:  # it came with the whole of Paretour
-    __version__ = version("paretour")
+if TYPE_CHECKING:
+    from paretour.asynchronous import AsyncClient, AsyncJob
+    from paretour.listing import ListedFront
+    from paretour.sync import Client, Job
 
 __all__ = [
     "Actor",
@@ -109,3 +107,36 @@ __all__ = [
     "replan",
     "replan_plan",
 ]
+
+# What needs httpx is imported once it is named: programs that only call `plan` start sooner.
+_OF_CLIENTS = {
+    "AsyncClient": "asynchronous",
+    "AsyncJob": "asynchronous",
+    "Client": "sync",
+    "Job": "sync",
+    "ListedFront": "listing",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        found: Any = _version()
+    elif name in _OF_CLIENTS:
+        found = getattr(import_module(f"paretour.{_OF_CLIENTS[name]}"), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, "__version__"})
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("paretour-client")
+    except PackageNotFoundError:  # it came with the whole of Paretour
+        return version("paretour")

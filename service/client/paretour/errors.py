@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
-from email.utils import parsedate_to_datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import httpx
 from paretour.expect import UnexpectedAnswer, count, each, members, number, parse_json, text
+
+if TYPE_CHECKING:
+    import httpx
 
 RETRY_STATUSES = (429, 503)
 _LEAST_SECONDS = 0.1  # between two tries, even if Retry-After is 0
@@ -47,7 +48,7 @@ class Refused(Exception):
         return f"{self.detail} ({self.code})"
 
 
-def refused(response: httpx.Response) -> Refused:
+def refused(response: "httpx.Response") -> Refused:
     """Return the exception for a response that is an error and has been read."""
     content_type = response.headers.get("content-type", "").partition(";")[0]
     if content_type == "application/problem+json":
@@ -59,12 +60,14 @@ def refused(response: httpx.Response) -> Refused:
     return Refused({"status": response.status_code, "code": "unknown", "detail": detail})
 
 
-def retry_after(response: httpx.Response) -> float:
+def retry_after(response: "httpx.Response") -> float:
     """Return the seconds that Retry-After asks for, as a number or as a date, at most a day."""
     header = response.headers.get("retry-after", str(int(_DEFAULT_SECONDS)))
     if header.strip().isdecimal():
         seconds = float(header)
     else:
+        from email.utils import parsedate_to_datetime  # rarely needed, and slow to import
+
         try:
             date = parsedate_to_datetime(header)
         except (ValueError, TypeError, IndexError, OverflowError):
