@@ -64,29 +64,36 @@ def warm_up(
     with _compilers(missing, processes) as done:
         before_compiling()
         for part in _compiled_elsewhere(missing, done, progress):
-            WORK[part].whole()
+            _load(part)
             tell(part)
             missing.remove(part)
     with install_listener("numba:compile", compilers.Count(progress.count)):
         for part in missing:
-            WORK[part].whole()
+            _load(part)
             tell(part)
 
 
 def load_from_cache(part: Part) -> bool:
-    """Load a part from the cache; stop and return False if something would have to be compiled.
-
-    Where numba's compilation is switched off, nothing has to be.
-    """
-    if config.DISABLE_JIT or part in _loaded:  # type: ignore[attr-defined]  # set from outside
+    """Load a part from the cache; stop and return False if something would have to be compiled."""
+    if is_loaded(part):
         return True
     try:
         with uncollected(), install_listener("numba:compile", _RefuseCompilation()):
-            WORK[part].whole()
+            _load(part)
     except _NotCached:
         return False
-    _loaded.add(part)
     return True
+
+
+def is_loaded(part: Part) -> bool:
+    """Return whether this process has loaded a part, or needs none as numba is switched off."""
+    return config.DISABLE_JIT or part in _loaded  # type: ignore[attr-defined]  # set from outside
+
+
+def _load(part: Part) -> None:
+    """Load a part from the cache, or compile it."""
+    WORK[part].whole()
+    _loaded.add(part)
 
 
 class _NotCached(Exception):

@@ -1,9 +1,9 @@
 """Plan a request in this process, and answer as the service does."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
@@ -12,7 +12,7 @@ from paretour.bars import Display
 from paretour.kinds import parse_any
 
 from service.errors import Cancelled, Refusal
-from service.jobs.compiled_code import warm_up
+from service.jobs.compiled_code import is_loaded, warm_up
 from service.jobs.parts import Compiling, Part, parts_of
 from service.kinds.front_document import FrontDocument
 from service.library.interrupts import interrupt_flag, until_done
@@ -47,15 +47,9 @@ class Planned:
 
 @dataclass(frozen=True)
 class LocalPlanner:
-    """Plans in this process, one task after another, with the actors and limits of the settings.
-
-    Args:
-        runner: Runs the tasks.
-        loaded: The parts of the compiled code that are loaded.
-    """
+    """Plans in this process, one task after another, with the actors and limits of the settings."""
 
     runner: "TaskRunner"
-    loaded: set[Part] = field(default_factory=set)
 
     def plan(self, plan: Plan, display: Display) -> Planned:
         """Plan what a request asks for. Ctrl-C ends the search with the best front so far.
@@ -100,7 +94,7 @@ class LocalPlanner:
         Its network is opened meanwhile, which holds no lock of Python.
         """
         actor = self.runner.actors.get(task.actor or "")
-        if missing := parts_of(task) - self.loaded:
+        if missing := [part for part in parts_of(task) if not is_loaded(part)]:
             with ThreadPoolExecutor(1) as threads:
                 if actor is not None:
                     threads.submit(actor.load)
@@ -108,14 +102,12 @@ class LocalPlanner:
         if actor is not None:
             actor.load()
 
-    def _load(self, missing: frozenset[Part], display: Display) -> None:
+    def _load(self, missing: Collection[Part], display: Display) -> None:
         """Compile parts of the code, or load them, and show how far that is."""
         with display.loading() as say:
 
             def tell(told: Part | Compiling) -> None:
-                if isinstance(told, Part):
-                    self.loaded.add(told)
-                else:
+                if isinstance(told, Compiling):
                     say(str(told))
 
             warm_up(missing, tell)

@@ -25,6 +25,7 @@ from service.api.keys import KeyHash, new_key
 from service.cli.backends import LocalBackend, RemoteBackend
 from service.cli.errors import UsageError
 from service.cli.progress import LOADING
+from service.jobs import compiled_code
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
@@ -184,6 +185,7 @@ COMPILES = [
 def test_the_compilation_is_announced_where_compiled_code_is_run(
     options: dict[str, float], compiles: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(compiled_code, "_loaded", set())  # as in a process that planned nothing
     announced: list[str] = []
     console = Console(file=io.StringIO())
     status = console.status
