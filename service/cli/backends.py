@@ -13,7 +13,6 @@ from rich.console import Console
 from service.cli.errors import UsageError
 from service.cli.options import Service
 from service.cli.progress import ConsoleDisplay, progress_bar
-from service.jobs.uncollected import uncollected
 
 if TYPE_CHECKING:
     from service.actor_info import ActorInfo
@@ -83,11 +82,10 @@ class LocalBackend:
             Refused: A routing engine is needed, and fails.
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
-        with uncollected():
-            from service.cli.configuration import load_settings, load_with
-            from service.library.local_planner import load_planner
+        from service.cli.configuration import load_settings, load_with
+        from service.library.local_planner import load_planner
 
-            planner = load_with(load_planner, load_settings())
+        planner = load_with(load_planner, load_settings())
         try:
             return planner.plan(plan, ConsoleDisplay(console)).front()
         except Refused as error:

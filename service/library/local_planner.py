@@ -1,30 +1,34 @@
-"""Plan a request in this process, and answer as the service does."""
+"""Plan a request in this process, and answer as the service does.
+
+The garbage collector waits while this module imports what plans.
+"""
 
 import json
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from paretour import FrontOfAnyKind, Plan, Progress, Refused
 from paretour.bars import Display
 from paretour.kinds import parse_any
 
-from service.errors import Cancelled, Refusal
-from service.jobs.compiled_code import is_loaded, warm_up
-from service.jobs.parts import Compiling, Part, parts_of
-from service.kinds.front_document import FrontDocument
-from service.library.interrupts import interrupt_flag, until_done
-from service.requests.parser import parse_task
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import StoredFront
-from service.requests.task import Task, TaskKind, TaskSource
-from service.requests.task_codec import encode_task
-from service.settings import Settings
+from service.jobs.uncollected import uncollected
 
-if TYPE_CHECKING:
-    from service.jobs.task_runner import TaskRunner
+with uncollected():
+    from service.errors import Cancelled, Refusal
+    from service.jobs.compiled_code import is_loaded, warm_up
+    from service.jobs.parts import Compiling, Part, parts_of
+    from service.jobs.task_runner import TaskRunner, load_runner
+    from service.kinds.front_document import FrontDocument
+    from service.library.interrupts import interrupt_flag, until_done
+    from service.requests.parser import parse_task
+    from service.requests.replan.parser import ReplanSource, parse_replan
+    from service.requests.replan.way import StoredFront
+    from service.requests.task import Task, TaskKind, TaskSource
+    from service.requests.task_codec import encode_task
+    from service.settings import Settings
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class Planned:
 class LocalPlanner:
     """Plans in this process, one task after another, with the actors and limits of the settings."""
 
-    runner: "TaskRunner"
+    runner: TaskRunner
 
     def plan(self, plan: Plan, display: Display) -> Planned:
         """Plan what a request asks for. Ctrl-C ends the search with the best front so far.
@@ -129,8 +133,6 @@ def load_planner(settings: Settings) -> LocalPlanner:
     Raises:
         ValueError: As of load_runner.
     """
-    from service.jobs.task_runner import load_runner  # it loads all that plans
-
     runner = load_runner(
         settings.actors,
         settings.threads,

@@ -20,7 +20,7 @@ from service.cli.commands import app
 from service.errors import Cancelled
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, UnreadableFile
-from service.jobs import compiled_code, task_runner
+from service.library import local_planner
 from tests.cli.test_terminal_text import REQUEST
 from tests.client.test_robots import REQUEST as ROBOTS
 from tests.client.test_unexpected_answers import answers_of
@@ -120,8 +120,8 @@ def planless(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have the command plan nothing, and read its settings once."""
     settings = configuration.load_settings()
     monkeypatch.setattr(configuration, "load_settings", lambda: settings)
-    monkeypatch.setattr(task_runner, "load_runner", lambda *_: Planless())
-    monkeypatch.setattr(compiled_code, "warm_up", lambda *_: None)
+    monkeypatch.setattr(local_planner, "load_runner", lambda *_: Planless())
+    monkeypatch.setattr(local_planner, "warm_up", lambda *_: None)
 
 
 @pytest.mark.usefixtures("planless")

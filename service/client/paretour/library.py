@@ -179,8 +179,7 @@ def _run(plan: Plan, progress: bool, earlier: Any = None) -> FrontOfAnyKind:
 
 @cache
 def _planner() -> Any:
-    with whole_package("service.jobs.uncollected").uncollected():
-        return whole_package("service.library.local_planner").load_default_planner()
+    return whole_package("service.library.local_planner").load_default_planner()
 
 
 def whole_package(module: str) -> Any:
