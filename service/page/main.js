@@ -311,7 +311,7 @@ function openRead({ members, objectives }, anew) {
 
 async function brings(files, columns, signal) {
   try {
-    return await read(service, files, columns, (await equipment)?.roads ?? true, signal);
+    return await read(service, files, columns, (await serviceSettings)?.roads ?? true, signal);
   } catch (error) {
     await started; // and the list says which example is shown instead
     throw error;
@@ -427,15 +427,15 @@ for (const leaving of ["beforeunload", "pagehide"]) {
   addEventListener(leaving, (event) => keepDraft(draft()) || event.preventDefault());
 }
 
-const equipment = service.get("page/map.json").catch(() => null);
+const serviceSettings = service.get("page/settings.json").catch(() => null);
 const started = start();
 offer(); // only now: before, the browser itself would send the form
 openChosen(); // while the page was being loaded
-equipment.then((map) => {
-  if (!map) return;
-  mostSeconds = map.seconds;
-  result.equip(map, service);
-  if (!map.roads) offerNoRoads();
+serviceSettings.then((settings) => {
+  if (!settings) return;
+  mostSeconds = settings.seconds;
+  result.equip(settings, service);
+  if (!settings.roads) offerNoRoads();
 });
 
 /** Opens what the address names, or else the first example, unless the user opened or typed something meanwhile. */

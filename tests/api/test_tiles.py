@@ -21,7 +21,7 @@ def answer_of(tiles: Tiles) -> tuple[object, str]:
 
     async def answer() -> httpx.Response:
         async with httpx.AsyncClient(transport=httpx.ASGITransport(app=app)) as client:
-            return await client.get("http://service/page/map.json")
+            return await client.get("http://service/page/settings.json")
 
     response = asyncio.run(answer())
     return response.json(), response.headers["content-security-policy"]

@@ -190,7 +190,7 @@ def test_places_alone_are_measured_by_road_where_the_service_has_roads(
 ) -> None:
     with open_page(browser, f"{released}/page/icon.svg") as page:
         known = {"tiles": None, "credit": "", "roads": True, "seconds": 60}
-        page.route("**/page/map.json", lambda route: route.fulfill(json=known))
+        page.route("**/page/settings.json", lambda route: route.fulfill(json=known))
         page.goto(released)
         wait_until_planned(page)
         open_files(page, {"stops.csv": "lon,lat\n0,0\n1,0\n0,1"})

@@ -45,7 +45,7 @@ def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) 
     tiles = f"{released}/page/icon.svg?z={{z}}&x={{x}}&y={{y}}"
     told = {"tiles": tiles, "credit": "© somebody", "roads": False, "seconds": 60}
     with open_page(browser, "about:blank") as page:
-        page.route("**/page/map.json", lambda route: route.fulfill(body=json.dumps(told)))
+        page.route("**/page/settings.json", lambda route: route.fulfill(body=json.dumps(told)))
         page.goto(released)
         wait_until_planned(page)
         expect(page.locator("#credit")).to_have_text("© somebody")
@@ -108,7 +108,7 @@ def test_tours_of_the_example_follow_its_streets_and_those_of_a_routing_engine(
 
     with open_page(browser, "about:blank") as page:
         told = {"tiles": None, "credit": "", "roads": True, "seconds": 60}
-        page.route("**/page/map.json", lambda route: route.fulfill(json=told))
+        page.route("**/page/settings.json", lambda route: route.fulfill(json=told))
         page.route("**/tour?*", lead)
         page.goto(released)
         wait_until_planned(page)

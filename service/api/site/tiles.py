@@ -30,7 +30,7 @@ class Tiles:
         return f"{scheme}://{server.replace('{s}', '*')}"
 
     def route(self, roads: bool, seconds: float) -> Route:
-        """Return the route that tells the page what it may draw on its map, and may ask for.
+        """Return the route of the settings that the page needs: of its map, and of requests.
 
         Args:
             roads: Whether tours can be drawn along streets, which a routing engine knows.
@@ -41,4 +41,4 @@ class Tiles:
         async def tell(_: Request) -> Response:
             return JSONResponse(answer, headers={"Cache-Control": "no-cache"})
 
-        return Route("/page/map.json", tell)
+        return Route("/page/settings.json", tell)
