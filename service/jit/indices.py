@@ -18,7 +18,10 @@ _trusting = ContextVar("trusting", default=False)  # whether a kernel is being c
 
 
 def trust_indices(kernel: Any) -> None:
-    """Let the dispatcher of a function that creates no array compile it so."""
+    """Let the dispatcher of a function that creates no array compile it so.
+
+    Not that of one that does: functions of numba that it calls may create none.
+    """
     compile_core = kernel._compiler._compile_core  # noqa: SLF001  # numba has no option for it
 
     def compile_trusting(*given: Any) -> Any:

@@ -69,6 +69,7 @@ def _kernel(
     if not config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
         use_cache(kernel)
         set_up(kernel, options)
+        kernel.get_call_template = partial(_call_template, kernel.get_call_template)
     return cast("Callable[P, R]", kernel)
 
 
@@ -86,12 +87,9 @@ def _dispatcher(function: Callable[P, R], options: Mapping[str, bool]) -> Any:
 def _compile_as_part(kernel: Any, options: Mapping[str, bool]) -> None:
     """Compile a kernel as a part of other kernels; for Python, native code is made of the part."""
     part = cache(partial(_part_of, kernel, options))
-    kernel.get_call_template = partial(
-        _call_template, lambda *given: part().get_call_template(*given)
-    )
+    kernel.get_call_template = lambda *given: part().get_call_template(*given)
     kernel.get_overload = lambda signature: part().get_overload(signature)
-    nrt = options["_nrt"]
-    kernel._compiler.compile = lambda arguments, _: _entry(part(), nrt, arguments)  # noqa: SLF001
+    kernel._compiler.compile = lambda arguments, _: _entry(part(), arguments)  # noqa: SLF001
 
 
 def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
@@ -102,9 +100,9 @@ def _part_of(kernel: Any, options: Mapping[str, bool]) -> Any:
     return part
 
 
-def _entry(part: Any, nrt: bool, arguments: tuple[Any, ...]) -> Any:
+def _entry(part: Any, arguments: tuple[Any, ...]) -> Any:
     """Return the native code with which Python calls a kernel, made of the kernel as a part."""
-    context = part.targetctx.subtarget(enable_nrt=nrt)
+    context = part.targetctx.subtarget(enable_nrt=part.targetoptions["_nrt"])
     context.refresh()  # the part may come from the cache, by a process that compiles nothing else
     part.compile(arguments)
     compiled = part.overloads[arguments]
@@ -125,14 +123,12 @@ def _compile_for_kernels(kernel: Any, _: Mapping[str, bool]) -> None:
     def refuse(*_: object) -> NoReturn:
         raise TypeError(f"{kernel.__name__} can be called by compiled code alone")
 
-    kernel.get_call_template = partial(_call_template, kernel.get_call_template)
     kernel._insert = lambda *_, **__: None  # noqa: SLF001  # no compiled code is found for a call
     kernel._compile_for_args = refuse  # noqa: SLF001
 
 
 def _compile_once(kernel: Any, _: Mapping[str, bool]) -> None:
     """Let other kernels call what Python calls."""
-    kernel.get_call_template = partial(_call_template, kernel.get_call_template)
     kernel.add_overload = partial(_add_standalone, kernel.add_overload)
     name_by_place(kernel.py_func)
 
