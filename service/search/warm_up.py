@@ -46,7 +46,8 @@ def few_cities() -> None:
 def two_opt() -> None:
     """Compile the local search by two-opt, and that from points of the front."""
     search = _search(_instance(coordinates=True))
-    search.local_search.descend(search.descents.scalarization(0), 0)  # iterates as well
+    # This compiles iteration too: by two-opt, descent and iteration are one compiled function.
+    search.local_search.descend(search.descents.scalarization(0), 0)
     fill_gaps(search.state, 0)
 
 

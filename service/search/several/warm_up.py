@@ -17,7 +17,7 @@ _N = 12  # cities: too many to enumerate
 
 
 def warm_up() -> None:
-    """Compile it all; what two objectives need as well is there."""
+    """Compile what two objectives do not need; what they need too is compiled before."""
     local_search()
     beside_local_search()
 
