@@ -6,6 +6,7 @@ the compiled code, and later sessions are opened from there in a quarter of the 
 same tours.
 """
 
+import logging
 from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
@@ -15,6 +16,7 @@ from service import jit
 from service.actor_info import RELEASED
 from service.onnx_runtime import onnxruntime
 
+_LOG = logging.getLogger("paretour")
 _DIGEST_SIZE = 32  # bytes, of SHA-256
 
 
@@ -35,7 +37,7 @@ def open_session(content: bytes, path: Path, threads: int) -> onnxruntime.Infere
             return _session(content, _options(threads))
         return _released(content, folder, path, threads)
     except Exception as error:  # ONNX Runtime has a class for each of its codes, and no common one
-        reason = str(error).strip().partition("\n")[0]
+        reason = _first_line(error)
         raise ValueError(f"{path} must be an ONNX file that can be read: {reason}") from error
 
 
@@ -51,8 +53,10 @@ def _released(
             with jit.locked(path):  # of processes that open it together, one optimises it
                 if (optimised := _read(kept)) is None:
                     return _session_to_keep(content, kept, threads)
-        except Exception:  # nothing can be written: ONNX Runtime's own error, or the system's
-            return _session(content, _options(threads))
+        except Exception as error:  # ONNX Runtime has no class of its own for a failure to write
+            session = _session(content, _options(threads))  # fails again if the file is at fault
+            _LOG.warning("the optimised %s cannot be kept: %s", path.name, _first_line(error))
+            return session
     return _session(optimised, _options(threads))
 
 
@@ -84,6 +88,10 @@ def _read(kept: Path) -> bytes | None:
 
 def _session(content: bytes, options: onnxruntime.SessionOptions) -> onnxruntime.InferenceSession:
     return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0]
 
 
 def _options(threads: int) -> onnxruntime.SessionOptions:

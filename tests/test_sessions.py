@@ -57,12 +57,14 @@ def test_a_graph_that_was_not_wholly_written_is_kept_anew(folder: Path, left: in
 
 
 def test_a_network_opens_where_nothing_can_be_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "file").touch()
     monkeypatch.setattr(jit, "folder", lambda: tmp_path / "file/folder")
     assert [each.shape for each in tours("pa-at")] == [(9, 3), (9, 20), (9, 70)]
     assert os.listdir(tmp_path) == ["file"]
+    [line] = caplog.messages
+    assert line.startswith("the optimised pa-at.onnx cannot be kept: ")
 
 
 def test_networks_of_the_user_are_not_kept(folder: Path, tmp_path: Path) -> None:
