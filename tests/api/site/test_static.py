@@ -79,6 +79,6 @@ def test_a_path_without_a_file_is_404(client: httpx.Client, path: str) -> None:
 def test_a_range_that_a_file_does_not_have_is_a_problem(
     client: httpx.Client, asked: str, status: int, code: str
 ) -> None:
-    answer = client.get("/page/main.js", headers={"Range": asked})
+    answer = client.get("/page/icon.svg", headers={"Range": asked})
     problem(answer, status, code)
     assert ("content-range" in answer.headers) == (status == 416)
