@@ -11,6 +11,7 @@ import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
+import { keyOf } from "./inputs/instance.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
 import { holdStill } from "./inputs/pressing.js";
@@ -51,7 +52,7 @@ const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen, fail);
 const replanForm = new ReplanForm(replan, result.wait);
 const reading = new Reading(offer, () => planning || say(""));
-const undo = new Undo(element("undo"), ({ unset, objectives: names }) => change({ ...unset, ...input.settings }, names));
+const undo = new Undo(element("undo"), takeBack);
 
 let way = null; // the way on which the front shown can be replanned
 let objectives = UNNAMED; // the names in the front shown
@@ -59,7 +60,8 @@ let mostSeconds = Infinity; // of a plan
 let planning = null; // the planning that is running
 let answer = null; // the best front so far
 let answered = null; // its request
-let last = null; // the state in which the last plan was done, and its request
+let last = null; // the state in which the last plan was done, its request, and what was chosen in it
+let opened = 0; // how many requests were opened
 let shown = false; // whether anything was opened or typed
 let awaited = null; // the file of an example that will be shown, unless files are opened instead
 let vehiclesRead; // as JSON
@@ -67,8 +69,18 @@ let refusal = null; // the refusal of such files, while that example is fetched 
 
 /** Opens a request in the form, and shows its stops under their objectives. */
 function open(wanted, names) {
-  undo.forget();
+  opened += 1;
   change(wanted, names);
+}
+
+/** Shows what was shown before a change, or before something else was opened. */
+function takeBack({ asked, names, example, number }) {
+  const isOther = number !== opened || example !== examples.chosen?.file;
+  opened = number;
+  if (isOther) forgetExample();
+  if (isOther && examples.choose(example)) surroundings.begin(examples.chosen);
+  change({ ...asked, ...input.planning }, names);
+  if (isOther && examples.chosen) surroundings.fetch();
 }
 
 function change(wanted, names) {
@@ -88,21 +100,30 @@ function edited(instance, fit) {
   clear();
   if (!reading.isRunning) say("");
   if (!instance) return;
-  undo.note(JSON.stringify(input.unset), { unset: input.unset, objectives: input.objectives });
+  const asked = without(input.asked, Object.keys(input.planning));
+  undo.note(keyOf(asked), { asked, names: input.objectives, example: examples.chosen?.file, number: opened });
   const again = last && isAsked(last.asked);
   if (answer && isAsked(answered)) {
     if (again) tell(last.state);
     return;
   }
+  if (answer && answer === last?.state.answer) last.chosen = result.taken;
   result.name((objectives = input.objectives), input.ids);
   result.clear(instance, { fit });
   way = null;
   take(null);
-  if (again) show(last.state);
+  if (again) showAgain(last);
 }
 
+function showAgain({ state, chosen: { balance, limits, selected } }) {
+  result.want(balance, selected.item, limits);
+  show(state);
+}
+
+const without = (members, names) => Object.fromEntries(Object.entries(members).filter(([name]) => !names.includes(name)));
+
 /** Whether the form asks for this request. */
-const isAsked = (request) => JSON.stringify(input.asked) === JSON.stringify(request);
+const isAsked = (request) => keyOf(input.asked) === keyOf(request);
 
 const tell = (state) => say(sentence(state, kindOf(input.asked).onGrid));
 

@@ -5,9 +5,18 @@ from xml.etree import ElementTree
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.helpers.browsing import SVG, needs_chromium, saved, shown_front, wait_for_next_frame
+from tests.helpers.browsing import (
+    SVG,
+    copied,
+    needs_chromium,
+    open_page,
+    saved,
+    shown_front,
+    wait_for_next_frame,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
@@ -62,3 +71,30 @@ def test_keys_move_a_budget_from_tour_to_tour(planned: Page) -> None:
         assert float(line.get_attribute("aria-valuenow") or "") == tightest[objective]
         line.press("Escape")
         expect(line).to_have_attribute("aria-valuetext", "no limit")
+
+
+def test_a_limit_is_there_after_undo_after_a_reload_and_in_a_link(
+    page: Page, browser: Browser
+) -> None:
+    def limit(shown: Page) -> Locator:
+        return shown.get_by_role("slider", name="At most this much distance")
+
+    for _ in range(3):
+        limit(page).press("ArrowLeft")
+    wait_for_next_frame(page)
+    chosen = page.locator("#choice").inner_text()
+    most = limit(page).get_attribute("aria-valuetext") or ""
+    assert most.startswith("at most")
+    page.get_by_role("button", name="Delete ").first.click()
+    expect(page.locator("#status")).to_be_empty()
+    page.get_by_role("button", name="Undo").click()
+    expect(limit(page)).to_have_attribute("aria-valuetext", most)
+    expect(page.locator("#choice")).to_have_text(chosen)
+    page.reload()
+    wait_until_planned(page)
+    expect(limit(page)).to_have_attribute("aria-valuetext", most)
+    expect(page.locator("#choice")).to_have_text(chosen)
+    with open_page(browser, copied(page, "link")) as other:
+        wait_until_planned(other)
+        expect(limit(other)).to_have_attribute("aria-valuetext", most)
+        expect(other.locator("#choice")).to_have_text(chosen)

@@ -177,6 +177,16 @@ def test_escape_gives_up_a_drag_and_a_placing(opened: Page) -> None:
     assert curl_body(opened, "coverage") == before
 
 
+def test_a_moved_start_is_taken_back(opened: Page) -> None:
+    open_office(opened)
+    before = curl_body(opened, "coverage")
+    drag(opened, (0, 0), (3, 3))
+    assert shown_cell(opened, "start") == (3, 3)
+    opened.get_by_role("button", name="Undo").click()
+    assert shown_cell(opened, "start") == (0, 0)
+    assert curl_body(opened, "coverage") == before
+
+
 def test_an_end_is_placed_by_a_click_moved_by_keys_and_taken_away(opened: Page) -> None:
     open_office(opened, spacing=1.5, places=None)
     opened.get_by_label("Start or end to place").select_option("End")

@@ -42,6 +42,12 @@ export class Budget {
     this.place();
   }
 
+  /** Sets the budget of the next front, given the most of each objective, null where there is none. */
+  want(limits) {
+    const axis = limits.findIndex(Number.isFinite);
+    if (axis >= 0) this.#limit = { axis, most: limits[axis] };
+  }
+
   /** The best tour within the budget, null if there is no budget. */
   get index() {
     if (!this.#limit) return null;

@@ -71,6 +71,11 @@ export class FrontChart {
     return { index: this.#budget.index, said: this.#budget.said, limits: this.#budget.limits };
   }
 
+  /** Sets the limits of the next front. */
+  want(limits) {
+    this.#budget.want(limits);
+  }
+
   /** Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked. */
   show(alone, improved, noun) {
     this.#front = improved.length ? improved : alone;

@@ -51,6 +51,12 @@ export class Fields {
     return { ...Object.fromEntries(given), ...bound, ...detours, ...this.#ends(filled.map(([name]) => name)) };
   }
 
+  /** The filled-in values but for the ends of tours. */
+  get planning() {
+    const names = FIELDS.filter(({ stop }) => !stop).map(({ name }) => name);
+    return Object.fromEntries(Object.entries(this.members).filter(([name]) => names.includes(name)));
+  }
+
   /** The first that is not a number, or an end that is not a stop, as an error of a request; undefined if there is none. */
   get fault() {
     const found = Object.entries(this.members).find(([, value]) => typeof value === "string" && !this.#ids?.includes(value));

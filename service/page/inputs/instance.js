@@ -35,6 +35,9 @@ export function askedFor(opened, settings, { rows, whole }) {
   return formOf(opened) === "coordinates" ? { ...asked, coordinates: rows, rounded: whole } : asked;
 }
 
+/** A text that two requests have in common if they are the same, whatever the order of their members. */
+export const keyOf = (asked) => JSON.stringify(Object.entries(asked).sort(([one], [other]) => (one < other ? -1 : 1)));
+
 /** The request to send to the service. */
 export function requestFor({ rounded: whole, ids, names, unknownCells: _, shaded: __, ...body }) {
   const { path, onGrid } = kindOf(body);

@@ -100,20 +100,13 @@ export class RequestForm {
   }
 
   get asked() {
-    return this.#askedWith(this.settings);
+    const typed = { rows: this.#rows, whole: element("rounded").checked };
+    return askedFor(this.#brought, this.#fields.members, typed);
   }
 
-  /** What is asked for without its settings. */
-  get unset() {
-    return this.#askedWith({});
-  }
-
-  get settings() {
-    return this.#fields.members;
-  }
-
-  #askedWith(settings) {
-    return askedFor(this.#brought, settings, { rows: this.#rows, whole: element("rounded").checked });
+  /** The settings of how to plan, and not what. */
+  get planning() {
+    return this.#fields.planning;
   }
 
   get request() {

@@ -34,13 +34,6 @@ export class Undo {
     });
   }
 
-  /** Forgets all changes: what is noted next was opened. */
-  forget() {
-    this.#past = [];
-    this.#undone = [];
-    this.#key = null;
-  }
-
   /** Notes what is shown after a change; `key` differs where it does. */
   note(key, shown) {
     const isOther = key !== this.#key && !this.#going;

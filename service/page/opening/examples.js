@@ -1,10 +1,12 @@
 /** The list of examples, and the chosen one. */
 
+import { keyOf } from "../inputs/instance.js";
+
 export class Examples {
   #choice;
   #about;
   #all = [];
-  #asked = null; // the request of the chosen example, as JSON
+  #asked = null; // the request of the chosen example, as of keyOf
 
   /** @param {HTMLSelectElement} choice @param {HTMLElement} about where the story of an example stands */
   constructor(choice, about) {
@@ -39,11 +41,11 @@ export class Examples {
 
   /** Stores the request of the chosen example, before anything is changed. */
   opened(asked) {
-    this.#asked = JSON.stringify(asked);
+    this.#asked = keyOf(asked);
   }
 
   /** The file of the chosen example, if this is still its request; null otherwise. */
   unchanged(asked) {
-    return asked && this.chosen && JSON.stringify(asked) === this.#asked ? this.chosen.file : null;
+    return asked && this.chosen && keyOf(asked) === this.#asked ? this.chosen.file : null;
   }
 }

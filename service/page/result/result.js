@@ -189,11 +189,12 @@ export class Result {
   /** Rings a clicked place that is not a stop yet; null removes the rings. */
   wait = (plane, place) => this.#maps.wait(plane, place);
 
-  /** The tour or plan to select in the next front, or if it is not there, the balance; and the limits of several objectives. */
+  /** The tour or plan to select in the next front, or if it is not there, the balance; and the limits on the objectives. */
   want(balance, linked = null, limits = null) {
     this.#balance = balance ?? MIDDLE;
     this.#linked = linked;
-    if (limits) this.#several.want(limits);
+    if (limits?.length > 2) this.#several.want(limits);
+    else if (Array.isArray(limits)) this.#chart.want(limits);
   }
 
   /** What is exported: a picture, the selected tour or plan with its balance, and whether its lines can follow the streets. */
@@ -201,7 +202,8 @@ export class Result {
     const driven = Boolean(this.#routed) && this.#maps.driven;
     const movers = this.#kind.movers ?? null;
     const selected = this.#selected && { item: this.#selected, round: movers ? [] : this.#names(), movers };
-    const limits = this.#objectives.length > 2 ? this.#several.limits : undefined;
+    const all = this.#objectives.length > 2 ? this.#several.limits : this.#chart.budget.limits;
+    const limits = all.some(Number.isFinite) ? all : undefined;
     return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, limits, driven, selected };
   }
 
