@@ -53,14 +53,16 @@ def lines_of(drawn: Mapping[str, Any], kind: str) -> list[Array]:
 
 
 def _edges(router_url: str) -> Iterator[tuple[str | None, NDArray[np.int64]]]:
-    """Return the kind and the line, in steps, of every edge of the road network."""
+    """Return the kind and the line, in steps, of every edge of the road network, each once."""
     grid = _grid()
+    found: set[tuple[str | None, str]] = set()
     while places := list(islice(grid, _AT_ONCE)):
         body = {"costing": "pedestrian", "verbose": True, "locations": places}
         answer = httpx.post(f"{router_url}/locate", json=body, timeout=120)
         for located in answer.raise_for_status().json():
             for edge in located["edges"] or []:
-                yield _kind(edge["edge"]["classification"]), _line(edge["edge_info"]["shape"])
+                found.add((_kind(edge["edge"]["classification"]), edge["edge_info"]["shape"]))
+    return ((kind, _line(shape)) for kind, shape in found)
 
 
 def _grid() -> Iterator[dict[str, float]]:
