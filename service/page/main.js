@@ -292,7 +292,7 @@ async function settled() {
 
 function fail(error) {
   if (!(error instanceof Problem)) throw error;
-  say("");
+  say(answer ? "Not planned: what is shown is the plan before." : "");
   showFaults(error);
   input.mark();
   return (element("waiting").textContent = revealFault()); // a phone shows the form below

@@ -187,6 +187,7 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
             "stops",
             "Served by of shop must be the name of a vehicle, got “bike”",
         ),
+        (SERVED, "Served by of shop", "van 2", "stops", "“van 2”: give that vehicle a row of its"),
         (FLEET, "Window of school", "8:00-10:00; 9:00-12:00", "stops", "neither overlap nor touch"),
         (FLEET, "Shift of van", "8:00-12:00; 12:00-16:00", "vehicles", "neither overlap nor touch"),
         (NAMED, "Seconds of planning", "100000", "time_limit", "must be at most 60"),
@@ -221,6 +222,7 @@ def test_a_value_that_is_refused_keeps_the_last_plan(
     expect(field).to_be_focused()
     expect(field).to_have_attribute("aria-invalid", "true")
     expect(window.locator("#choice")).to_have_text(chosen)
+    expect(window.locator("#status")).to_contain_text("Not planned: what is shown is the plan")
     field.fill(before)
     field.press("Tab")
     plan(window)

@@ -178,6 +178,8 @@ function choose(id, options, value) {
 function unread(item, column, second) {
   const [cell, text] = [`${column.title} of ${item.id}`, `“${cellText(item, column, second)}”`];
   if (column.list) {
+    const [, row] = /^(.*\S) \d+$/.exec(unknownIn(item, column)) ?? [];
+    if (column.list === "vehicle-names" && column.names.includes(row)) return `${cell} cannot be ${text}: give that vehicle a row of its own, as those of one row are alike`;
     const meant = nearest(unknownIn(item, column), column.names);
     return `${cell} must be the name of a ${column.list.replace("-names", "")}, got ${text}${meant ? `; did you mean ${meant}?` : ""}`;
   }
