@@ -14,7 +14,7 @@ from service.fleet.evaluation import route_violations
 from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
-from service.fleet.vehicles import VehicleType
+from service.fleet.vehicles import ALWAYS, VehicleType
 
 NAMES = CityNames("stop")
 
@@ -101,7 +101,8 @@ def _check_totals(rules: Rules) -> None:
         total = sum(demand[dimension] for demand in demands if demand)
         most = sum(_holds(vehicle, dimension) for vehicle in rules.vehicles)
         if total > most:
-            sums = f"the demands sum to {total} in dimension {dimension}"
+            which = f" in number {dimension + 1} of each" if rules.dimensions > 1 else ""
+            sums = f"the demands sum to {total}{which}"
             raise Refusal("no-plan", reason=f"{sums}, and all vehicles together hold {int(most)}")
     limits = [(each.count, each.max_stops) for each in rules.vehicles]
     stops = sum(inf if each is None else count * each for count, each in limits)
@@ -146,10 +147,22 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
         served = any(ended() or not any(route_violations(fleet, route)) for route in routes)
         if not served and triangle():
             sentence = (
-                "{cities} cannot be reached within its window, the shift and the longest route of"
-                " any vehicle that may visit it, even on a route of its own"
+                f"{{cities}} cannot be reached within {_bounds_of(rules, stop)} by any vehicle that"
+                " may visit it, even on a route of its own"
             )
             yield Obstacle(sentence, (stop,))
+
+
+def _bounds_of(rules: Rules, stop: int) -> str:
+    """Return what bounds the visit of a stop, in words."""
+    vehicles = [rules.vehicles[each] for each in rules.servers(stop)]
+    bounds = {
+        "its window": rules.visits[stop].windows != (ALWAYS,),
+        "the shift": any(each.shift != ALWAYS for each in vehicles),
+        "the longest route": any(each.longest < inf for each in vehicles),
+    }
+    *first, last = [name for name, given in bounds.items() if given] or ["the route"]
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:

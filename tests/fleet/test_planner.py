@@ -169,8 +169,11 @@ def test_a_fleet_of_depots_alone_has_the_plan_in_which_nobody_leaves() -> None:
 NEAR = Visit(demand=(2,))
 IMPOSSIBLE = [
     ({"visits": (Visit(), Visit(demand=(9,)), NEAR)}, "the demand of stop 1"),
-    ({"visits": (Visit(), *(Visit(demand=(3,)),) * 3)}, "the demands sum to 9 in dimension 0"),
-    ({"visits": (Visit(), Visit(windows=((0, 1),)), NEAR), "clock": 0}, "stop 1 cannot be reached"),
+    ({"visits": (Visit(), *(Visit(demand=(3,)),) * 3)}, "the demands sum to 9, and all"),
+    (
+        {"visits": (Visit(), Visit(windows=((0, 1),)), NEAR), "clock": 0},
+        "stop 1 cannot be reached within its window by any vehicle",
+    ),
 ]
 
 
