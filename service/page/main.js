@@ -24,6 +24,7 @@ import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
 import { Reading, read, takeDropped, takePasted } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
+import { withEdited, withFleet } from "./opening/own_fleet.js";
 import { Problem, Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
@@ -64,7 +65,7 @@ let last = null; // the state in which the last plan was done, its request, and 
 let opened = 0; // how many requests were opened
 let shown = false; // whether anything was opened or typed
 let awaited = null; // the file of an example that will be shown, unless files are opened instead
-let vehiclesRead; // as JSON
+let vehiclesRead; // as JSON, before they were edited
 let refusal = null; // the refusal of such files, while that example is fetched nevertheless
 
 /** Opens a request in the form, and shows its stops under their objectives. */
@@ -311,9 +312,11 @@ async function openFiles(files, columns = []) {
     await whileReading(words, async ({ signal }) => {
       const brought = await brings(files, columns, signal);
       signal.throwIfAborted();
+      const before = examples.chosen ? undefined : input.asked.vehicles;
       forgetExample();
-      openRead(brought, columns.length);
-      fileNotes.show(files, columns, brought);
+      const kept = (columns.length ? withEdited : withFleet)(brought, before, vehiclesRead);
+      openRead(kept);
+      fileNotes.show(files, columns, kept);
     });
   } catch (error) {
     fileNotes.refused(files, columns, error);
@@ -321,13 +324,10 @@ async function openFiles(files, columns = []) {
   }
 }
 
-/** Opens what was read; where that was for other columns, with the vehicles that were edited. */
-function openRead({ members, objectives }, anew) {
-  const { vehicles } = input.asked;
-  const stay = anew && members.vehicles && JSON.stringify(vehicles) !== vehiclesRead;
-  if (stay) members.vehicles = vehicles.map((each, at) => ({ ...members.vehicles[at], ...each }));
-  open(members, objectives);
-  if (!stay) vehiclesRead = JSON.stringify(input.asked.vehicles);
+/** Opens what was read, and notes which of its vehicles nobody has edited. */
+function openRead({ members, objectives, vehicles }) {
+  open({ ...members, ...(vehicles && { vehicles }) }, objectives);
+  if (!vehicles) vehiclesRead = JSON.stringify(input.asked.vehicles);
 }
 
 async function brings(files, columns, signal) {

@@ -1,0 +1,56 @@
+"""The next file of stops: the vehicles that somebody has typed serve it as well."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+
+@pytest.fixture(scope="module")
+def window(browser: Browser, released: str) -> Iterator[Page]:
+    """A page that has planned its first example."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+ORDERS = (
+    "id,lat,lon,demand,window\ndepot,60.1,24.9,,\n"
+    "{0}-1,60.2,24.9,3,8:00-12:00\n{0}-2,60.2,25.0,2,\n"
+)
+
+
+def test_a_next_file_of_stops_keeps_the_vehicles_that_were_typed(window: Page) -> None:
+    open_files(window, {"monday.csv": ORDERS.format("monday")})
+    expect(window.locator("#file-notes")).to_contain_text("one was added")
+    for label, text in {"Count": "3", "Capacity": "4", "Shift": "7:30-16:00"}.items():
+        field = window.get_by_label(f"{label} of vehicle", exact=True)
+        field.fill(text)
+        field.press("Tab")
+    open_files(window, {"tuesday.csv": ORDERS.format("tuesday")})
+    expect(window.locator("#file-notes")).to_contain_text("they are those from before")
+    expect(window.get_by_label("Name of stop 2")).to_have_value("tuesday-1")
+    body = curl_body(window, "fleet")
+    assert (body["vehicles"][0]["count"], body["vehicles"][0]["capacity"]) == (3, [4])
+    other = ORDERS.replace("depot", "yard").format("wednesday")
+    open_files(window, {"wednesday.csv": other})
+    expect(window.locator("#file-notes")).to_contain_text("one was added")
+    assert "count" not in curl_body(window, "fleet")["vehicles"][0]
+
+
+def test_vehicles_of_an_example_do_not_serve_a_file(window: Page) -> None:
+    window.get_by_label("Example", exact=True).select_option("Helsinki, six vans")
+    expect(window.locator("#vehicle-count")).to_have_text("6 vehicles")
+    start = window.get_by_label("Start of", exact=False).first.input_value()
+    open_files(window, {"orders.csv": ORDERS.replace("depot", start).format("order")})
+    expect(window.locator("#vehicle-count")).to_have_text("1 vehicle")
