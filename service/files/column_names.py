@@ -190,6 +190,13 @@ def seconds_of(name: str) -> int | None:
     return SECONDS.get(words[-1], 60 if words[0] in _MINUTES else None)
 
 
+def unit_of_times(name: str, field: str | None) -> int | None:
+    """Return the seconds of the unit of times of day; None for `working hours` or without one."""
+    is_of_day = not _UNIT.search(name) and str(field).startswith(("window", "shift"))
+    unit = seconds_of(name)
+    return None if is_of_day and unit == SECONDS["h"] else unit
+
+
 def _rank(plain: str, names: Mapping[str, str]) -> tuple[str | None, int]:
     for field, words in names.items():
         known = words.split()

@@ -1,7 +1,7 @@
 """The columns of a table, and the fields of stops or vehicles that they are taken for."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from service.files.chosen import IGNORED, chosen_fields, without_ignored
 from service.files.column_names import (
@@ -25,12 +25,17 @@ _INDEX = ("", "index", "unnamed: 0")
 
 @dataclass
 class Columns:
-    """The columns of a table, with the field that each is taken for."""
+    """The columns of a table, with the field that each is taken for.
+
+    `hours` are the columns of times whose numbers are hours of the day, as 8 or 8.30; each with
+    whether decimals are parts of an hour, as in 8.5, and not minutes.
+    """
 
     source: Source
     table: Table
     names: list[str]
     fields: list[str | None]
+    hours: dict[int, bool] = field(default_factory=dict)
 
     def find(self, field: str) -> int | None:
         """Return the column that is taken for a field, or None."""

@@ -21,7 +21,14 @@ from service.files.stop_tables import visits_of
 from service.files.tables import Table
 from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
 from service.files.vehicle_loads import add_loads
-from service.files.visits import add_visits, is_time, seconds_in, spans_in, texts_in
+from service.files.visits import (
+    add_visits,
+    is_time,
+    recognise_hours,
+    seconds_in,
+    spans_in,
+    texts_in,
+)
 
 _ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # members by column
 _KILOMETRE = 1000.0
@@ -44,6 +51,8 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     stops, plane = visits_of(visits)
     units = add_visits(visits, stops)
     columns = _columns_of_vehicles(other, of_vehicles[1], stops)
+    if plane is None:
+        recognise_hours(columns)
     vehicles = _Vehicles(columns, stops, located=plane is None).read()
     add_loads(columns, vehicles, visits, stops, units)
     add_skills(columns, vehicles)

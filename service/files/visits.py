@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from service.files.column_names import SECONDS, WINDOWS, seconds_of
+from service.files.column_names import SECONDS, WINDOWS, seconds_of, unit_of_times
 from service.files.columns import Columns
 from service.files.fleets import Stop, spans
 from service.files.reading import quoted
@@ -18,6 +18,20 @@ _TIME = re.compile(
     r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?(?:Z|[-+]\d\d:\d\d)?",
     re.ASCII,
 )
+_SPOKEN = re.compile(  # 8h30, 8 Uhr, 8.30 Uhr, 8 am, 1:30 p.m., 8:30h
+    r"(\d{1,2})(?:\s?h\s?([0-5]\d)(?:\s?min)?|:([0-5]\d)\s?h(?:rs?)?"
+    r"|(?:[.:h]([0-5]\d))?\s?(?:uhr|o'clock|([ap])\.?m\.?))",
+    re.ASCII | re.IGNORECASE,
+)
+_HOURS = re.compile(  # 8, 8.30, 0800, 8 h
+    r"(\d{1,4})(?:[.,](\d+))?(?:\s*(?:h|hrs?|hours?)\.?)?", re.ASCII | re.IGNORECASE
+)
+_HALF_OF_DAY = re.compile(r"\s?([ap])\.?m\.?", re.IGNORECASE)
+_UNIT_BEHIND = re.compile(r"(?<=\d)\s*[a-z][a-z.']*", re.IGNORECASE)
+_OF_TWELVE = re.compile(r"(?:0?\d|1[0-2])(?:[.:h][0-5]\d)?", re.ASCII | re.IGNORECASE)
+_DECIMALS = re.compile(r"\d[.,]\d")
+_MINUTE, _HOUR, _DAY = 60, 3600, 86400  # seconds
+_PARTS, _ALSO_PARTS = {"25", "5", "75"}, {"50"}  # decimals of parts of an hour
 _LASTING = re.compile(r"(.*\d)\s*([a-z]+)\.?", re.IGNORECASE)  # with its unit, as 5 min
 _BRIEF = 60  # seconds; a service that takes less may be meant in minutes
 _OR = re.compile(r"\s*(?:[;|,&]|\band\b|\bund\b)\s*", re.IGNORECASE)  # between two windows
@@ -37,6 +51,8 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
     Returns:
         By how much the demands of the table were multiplied.
     """
+    if any("location" in stop for stop in stops):
+        recognise_hours(columns)
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
     readers: Mapping[str, Callable[[int, int], Any]] = {
         "service": partial(seconds_in, columns),
@@ -73,8 +89,138 @@ def _note_brief_service(columns: Columns, stops: list[Stop]) -> None:
 
 
 def is_time(text: str) -> bool:
-    """Return whether a text is hours and minutes."""
-    return _TIME.fullmatch(text) is not None
+    """Return whether a text is a time of day, as 10:30 or 8 am."""
+    return _TIME.fullmatch(text) is not None or _spoken(text) is not None
+
+
+def recognise_hours(columns: Columns) -> None:
+    """Decide in which columns numbers are hours of the day, such as 8 or 0800, and note it.
+
+    For files whose places are on the earth: in a plane, numbers are in the unit of distances.
+    Numbers are hours if all in a column can be, or if others in the column are times, as 8:00.
+    """
+    for group in _columns_of_times(columns):
+        cells = [(row, at) for at in group for row in columns.filled(at)]
+        texts = [text for row, at in cells for text in _times_in(columns, row, at)]
+        numbers = [text for text in texts if number_in(text) is not None]
+        in_parts = _are_in_parts(texts)
+        hours = [_hours(text, in_parts) is not None for text in numbers]
+        if all(hours) or any(is_time(text) or _has_unit_of_hours(text) for text in texts):
+            columns.hours |= dict.fromkeys(group, in_parts)
+            _note_hours(columns, group, cells)
+        else:
+            _note_brief_times(columns, group, numbers)
+
+
+def _columns_of_times(columns: Columns) -> list[list[int]]:
+    """Return the columns of times of day whose numbers have no unit; begin and end together."""
+    fields = [
+        *([window] for window in (*WINDOWS, "shift")),
+        *([f"{window}_from", f"{window}_to"] for window in (*WINDOWS, "shift")),
+        *(["due"], ["release"]),
+    ]
+    found = [[at for name in each if (at := columns.find(name)) is not None] for each in fields]
+    return [
+        group
+        for group in found
+        if group and not any(unit_of_times(columns.names[at], columns.fields[at]) for at in group)
+    ]
+
+
+def _times_in(columns: Columns, row: int, at: int) -> list[str]:
+    """Return the texts of the times in a field."""
+    if columns.fields[at] in (*WINDOWS, "shift"):
+        return [text for bounds in _bounds_in(columns, row, at) for text in bounds]
+    return [columns.text(row, at)]
+
+
+def _are_in_parts(texts: Iterable[str]) -> bool:
+    """Return whether the decimals of hours are parts of an hour, as in 8.5, and not minutes."""
+    found = [_HOURS.fullmatch(text) for text in texts]
+    decimals = {each[2] for each in found if each and int(each[2] or 0)}
+    return bool(decimals & _PARTS) and decimals <= _PARTS | _ALSO_PARTS
+
+
+def _has_unit_of_hours(text: str) -> bool:
+    return number_in(text) is None and _HOURS.fullmatch(text) is not None
+
+
+def _hours(text: str, in_parts: bool) -> float | None:
+    """Return the seconds at an hour of the day, as 8, 8.30 or 0800; None for any other text."""
+    found = _HOURS.fullmatch(text)
+    if not found:
+        return None
+    whole, decimals = found[1], found[2] if int(found[2] or 0) else ""
+    if len(whole) > 2:
+        whole, minutes = whole[:-2], float(whole[-2:]) if not decimals else _MINUTE
+    elif in_parts and decimals:
+        minutes = _MINUTE * float(f"0.{decimals}")
+    else:
+        minutes = float(decimals.ljust(2, "0")) if decimals else 0.0
+    seconds = _HOUR * int(whole) + _MINUTE * minutes
+    return seconds if minutes < _MINUTE and seconds <= _DAY else None
+
+
+def _note_hours(columns: Columns, group: list[int], cells: Iterable[tuple[int, int]]) -> None:
+    """Note how numbers are read as hours, by the first one; best by one with decimals."""
+    found = [
+        cell
+        for cell in cells
+        if any(_is_guess(columns, cell[1], each) for each in _times_in(columns, *cell))
+    ]
+    if not found:
+        return
+    decimal = (cell for cell in found if _DECIMALS.search(columns.text(*cell)))
+    row, at = next(decimal, found[0])
+    times = [_clock(seconds_in(columns, row, at, each)) for each in _times_in(columns, row, at)]
+    read = "; ".join("-".join(times[at : at + _ENDS]) for at in range(0, len(times), _ENDS))
+    columns.source.note(
+        "times",
+        f"{_named(columns, group, 'has', 'have')} hours, such as {columns.text(row, at)[:80]},"
+        f" read as {read}.",
+    )
+
+
+def _is_guess(columns: Columns, at: int, text: str) -> bool:
+    """Return whether a text is an hour but 0, without a unit or with decimals."""
+    is_plain = number_in(text) is not None or _DECIMALS.search(text) is not None
+    return is_plain and bool(_hours(text, columns.hours[at]))
+
+
+def _note_brief_times(columns: Columns, group: list[int], numbers: list[str]) -> None:
+    """Note that times are in seconds, if one of them or all may be meant otherwise."""
+    times = [time for each in numbers if (time := number_in(each) or 0) > 0]
+    if times and (min(times) <= _DAY / _HOUR or max(times) < _HOUR):
+        columns.source.note(
+            "times",
+            f"{_named(columns, group, 'is', 'are')} in seconds, such as {min(times):g}. Write"
+            " times of day as 8:00.",
+        )
+
+
+def _named(columns: Columns, group: list[int], one: str, several: str) -> str:
+    """Return the subject and verb of a sentence about columns."""
+    names = " and ".join(quoted(columns.names[at]) for at in group)
+    return f"{names} {one if len(group) == 1 else several}"
+
+
+def _clock(seconds: float) -> str:
+    """Return a time of day, as 8:00 or 8:00:30."""
+    minutes, rest = divmod(round(seconds), _MINUTE)
+    return f"{minutes // 60}:{minutes % 60:02}" + (f":{rest:02}" if rest else "")
+
+
+def _spoken(text: str) -> float | None:
+    """Return the seconds at a time of day with a word, as 8h30, 8 Uhr or 8 am; else None."""
+    found = _SPOKEN.fullmatch(text)
+    if not found:
+        return None
+    hour, minute = int(found[1]), int(found[2] or found[3] or found[4] or 0)
+    if half := found[5]:
+        if hour > 12:
+            return None
+        hour = hour % 12 + (12 if half in "pP" else 0)
+    return float(_HOUR * hour + _MINUTE * minute)
 
 
 def texts_in(columns: Columns, row: int, at: int) -> list[str]:
@@ -114,9 +260,14 @@ def spans_in(columns: Columns, row: int, fields: Iterable[str]) -> list[list[flo
     """Return the windows or shifts of a row in seconds, in order; none if its fields are empty.
 
     Raises:
-        UnreadableFile: A window begins before the one before has ended.
+        UnreadableFile: A window ends before it begins, or begins before the one before has ended.
     """
     found = [(span, at) for field in fields for span, at in _spans_in(columns, row, field)]
+    for span, at in found:
+        if span[1] < span[0]:
+            demand = f"must have a {_noun(columns, at)} that ends after it begins"
+            hint = " (after midnight, 2:00 is 26:00)" if at in columns.hours else ""
+            raise columns.refusal(row, at, demand + hint, columns.text(row, at))
     found.sort(key=lambda each: each[0])
     for (before, _), (span, at) in pairwise(found):
         if span[0] <= before[1]:
@@ -149,18 +300,38 @@ def _bounds_in(columns: Columns, row: int, at: int) -> list[list[str]]:
     """Return the texts of both bounds of each window in a field."""
     text = columns.text(row, at).strip(_AROUND_SPAN)
     several = [_BETWEEN.split(each.strip(_AROUND_SPAN)) for each in _OR.split(text) if each]
-    if all(len(bounds) == _ENDS for bounds in several):
-        return several
     one = _BETWEEN.split(text)  # whose numbers may have decimal commas
-    if len(one) == _ENDS:
-        return [one]
+    for found in (several, [one]):
+        if all(len(bounds) == _ENDS for bounds in found):
+            return [[_with_unit(begin, end), end] for begin, end in found]
     demand = "must be two times, as 8:00-12:30, or several as 8:00-10:00; 14:00-16:00"
     raise columns.refusal(row, at, demand, columns.text(row, at))
+
+
+def _with_unit(begin: str, end: str) -> str:
+    """Return the begin of a window with the unit of its end if it has none, as in 8-12 Uhr."""
+    unit = _UNIT_BEHIND.search(end)
+    if not unit or unit.end() < len(end):
+        return begin
+    if half := _HALF_OF_DAY.fullmatch(unit[0]):
+        same, latest = _spoken(f"{begin}{unit[0]}"), _spoken(end)
+        if not _OF_TWELVE.fullmatch(begin) or same is None or latest is None:
+            return begin
+        return f"{begin}{unit[0]}" if same <= latest or half[1] in "aA" else f"{begin} am"
+    known = unit[0].strip().strip(".").casefold() in (*SECONDS, "uhr", "o'clock")
+    return f"{begin}{unit[0]}" if known and number_in(begin) is not None else begin
 
 
 def _noun(columns: Columns, at: int) -> str:
     """Return `window` or `shift`, by the field of a column."""
     return str(columns.fields[at]).partition("_")[0]
+
+
+def _time_of_day(columns: Columns, at: int, text: str) -> float | None:
+    """Return the seconds at a time with a word, or at an hour in a column of hours; else None."""
+    if (spoken := _spoken(text)) is not None:
+        return spoken
+    return _hours(text, columns.hours[at]) if at in columns.hours else None
 
 
 def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> float:
@@ -171,7 +342,9 @@ def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> 
         if date and not any(note.code == "dates" for note in columns.source.notes):
             columns.source.note("dates", f"Dates, as {date}, were not used: only times of day.")
         hours, minutes, seconds = (int(each or 0) for each in parts)
-        return 3600 * hours + 60 * minutes + seconds
+        return _HOUR * hours + _MINUTE * minutes + seconds
+    if (spoken := _time_of_day(columns, at, text)) is not None:
+        return spoken
     lasting = _LASTING.fullmatch(text)
     own = SECONDS.get(lasting[2].casefold()) if lasting else None
     number = number_in(lasting[1].strip() if lasting and own else text)
