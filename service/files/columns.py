@@ -1,7 +1,8 @@
 """The columns of a table, and the fields of stops or vehicles that they are taken for."""
 
 import re
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 from service.files.chosen import IGNORED, chosen_fields, without_ignored
 from service.files.column_names import (
@@ -11,7 +12,7 @@ from service.files.column_names import (
     fields_of,
 )
 from service.files.reading import LONGEST_NAME, Column, Source, UnreadableFile, quoted
-from service.files.tables import Table, number_in, plain_numbers
+from service.files.tables import Row, Table, number_in, plain_numbers
 
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
@@ -20,6 +21,14 @@ _POINT = re.compile(
 )
 # As web maps show a place: latitude first.
 _PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
+_PLACES = ("longitude", "latitude", "place", "x", "y")
+_TOTAL = re.compile(
+    r"(?:(?:grand|sub)[ -]?)?totals?|sums?|(?:gesamt|zwischen)?summe|gesamt|insgesamt|somme|totale"
+    r"|suma|soma|totaal|yhteensä",
+    re.IGNORECASE,
+)
+_MOST_OF_TOTAL = 2  # fields, if its name does not say what it is
+_ROUNDING = 1e-6
 _INDEX = ("", "index", "unnamed: 0")
 
 
@@ -140,6 +149,7 @@ def columns_of(source: Source, table: Table) -> Columns:
     fields: list[str | None] = [None] * table.width
     if table.heading:
         fields = fields_of(names, chosen)
+        table = _without_totals(source, table, lambda rows: _is_total(rows, fields))
     columns = Columns(source, table, names, fields)
     source.supposed.extend(columns.listed())
     for at in range(table.width):
@@ -154,6 +164,47 @@ def columns_of(source: Source, table: Table) -> Columns:
         if (named and number_in(first) is None) or _is_index(table):
             fields[0] = "id"
     return columns
+
+
+def _without_totals(
+    source: Source, table: Table, is_total: Callable[[Sequence[Row]], bool]
+) -> Table:
+    """Return a table without rows of totals at its end, with a note on each."""
+    rows = list(table.rows)
+    while len(rows) > 1 and is_total(rows):
+        number, texts = rows.pop()
+        came = quoted(" ".join(filter(None, texts)))
+        source.note("total", f"Row {number}, {came}, was taken for a total and left out.")
+    return replace(table, rows=rows)
+
+
+def _is_total(rows: Sequence[Row], fields: Sequence[str | None]) -> bool:
+    """Return whether the last row has no place, and is named as a total, unnamed, or has a sum."""
+    texts = rows[-1][1]
+    places = [text for text, each in zip(texts, fields, strict=True) if each in _PLACES]
+    if not places or any(places):
+        return False
+    filled = [at for at, text in enumerate(texts) if text]
+    if _is_named_total(texts):
+        return True
+    is_unnamed = all(fields[at] != "id" for at in filled)
+    return len(filled) <= _MOST_OF_TOTAL and (is_unnamed or any(_is_sum(rows, at) for at in filled))
+
+
+def _is_total_of_vehicles(rows: Sequence[Row]) -> bool:
+    """Return whether the last row is named as a total, and has only numbers beside its name."""
+    texts = [text for text in rows[-1][1] if text]
+    return _is_named_total(texts) and sum(number_in(text) is None for text in texts) == 1
+
+
+def _is_named_total(texts: Sequence[str]) -> bool:
+    return any(_TOTAL.fullmatch(text.rstrip(" :")) for text in texts)
+
+
+def _is_sum(rows: Sequence[Row], at: int) -> bool:
+    """Return whether the last number of a column is the sum of those above it."""
+    total, *above = (number_in(texts[at]) or 0.0 for _, texts in reversed(rows))
+    return total > 0 and len(above) > 1 and abs(total - sum(above)) < _ROUNDING * total
 
 
 def _place_column(columns: Columns, at: int) -> str | None:
@@ -222,6 +273,7 @@ def columns_of_vehicles(source: Source, table: Table) -> Columns:
         UnreadableFile: The columns cannot be taken for what was chosen.
     """
     table = without_ignored(source, table, NAMES_OF_VEHICLES)
+    table = _without_totals(source, table, _is_total_of_vehicles)
     names = table.heading or []
     fields = best_fields(names, NAMES_OF_VEHICLES, chosen_fields(source.file, names))
     columns = Columns(source, table, names, fields)

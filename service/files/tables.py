@@ -107,7 +107,7 @@ def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) ->
         else:
             empty += bool(stripped)
     if empty:
-        source.note("empty-rows", f"{_counted(empty, 'row')} without text left out.")
+        source.note("empty-rows", f"{_counted(empty)} left out.")
     if not rows:
         raise source.refusal("must have a row for each stop, got none")
     _take_titles(source, rows)
@@ -117,8 +117,8 @@ def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) ->
     return Table(heading, _squared(source, heading, rows))
 
 
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun} was" if count == 1 else f"{count} {noun}s were"
+def _counted(count: int) -> str:
+    return "1 row without text was" if count == 1 else f"{count} rows without text were"
 
 
 def _separator(text: str) -> str | None:
