@@ -13,6 +13,10 @@ Array = NDArray[np.float64]
 _FAR = 1_000_000.0  # metres: farther than a van drives
 _NEAR = 300_000.0
 _MOST_NAMED = 3
+_APART = 100_000.0  # metres from the nearest other stop, at least, of a stop that may be mistaken
+_TIMES_APART = 20  # more than the median distance from the middle
+_LEAST_STOPS, _SHARE = 6, 20  # stops; one in 20 may be mistaken, or one in all
+_MOST_COMPARED = 50
 
 
 def weighted(places: Array, weights: Array) -> list[list[float]]:
@@ -61,6 +65,37 @@ def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
     if far.any():
         text = f"{_named(ids, far)} more than 1000 km from the middle of all: are latitude and"
         source.note("far", f"{text} longitude in the right order?")
+    _note_outliers(source, ids, places, ~nowhere & ~far)
+
+
+def _note_outliers(
+    source: Source, ids: list[str], places: Array, located: NDArray[np.bool_]
+) -> None:
+    """Note stops so far from every other one that a digit of their place may be mistaken.
+
+    A stop is so far if its nearest other stop is more than 100 km away, and more than 20 times
+    the median distance from the middle. Files with many stops that far from the middle have none.
+    """
+    at = np.flatnonzero(located)
+    if len(at) < _LEAST_STOPS:
+        return
+    kept = places[at]
+    off = great_circle_distances(kept, np.median(kept, axis=0))
+    median = float(np.median(off))
+    least = max(_APART, _TIMES_APART * median)
+    candidates = np.flatnonzero(off > least - median)
+    if len(candidates) > min(max(1, len(at) // _SHARE), _MOST_COMPARED):
+        return
+    nearest = {each: _nearest(kept, each) for each in candidates.tolist()}
+    alone = [(each, metres) for each, metres in nearest.items() if metres > least]
+    for each, metres in alone[:_MOST_NAMED]:
+        text = f"{quoted(ids[at[each]])} is {metres / 1000:.0f} km from the nearest other stop"
+        source.note("outlier", f"{text}: check its place.")
+
+
+def _nearest(places: Array, at: int) -> float:
+    """Return the metres from one place to the nearest other one."""
+    return float(np.delete(great_circle_distances(places, places[at]), at).min())
 
 
 def _named(ids: Sequence[str], which: NDArray[np.bool_]) -> str:
