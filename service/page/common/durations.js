@@ -1,9 +1,10 @@
 /** Times by their unit, how long something takes in words, and times of the day, such as 10:30, or 10:30:15 where there are seconds. */
 
 export const SECONDS = new Map(Object.entries({ s: 1, second: 1, seconds: 1, min: 60, minute: 60, minutes: 60, h: 3600, hour: 3600, hours: 3600 }));
-const [MINUTE, HOUR, EXACT] = [60, 3600, 600]; // seconds; below the last one, seconds are said too
+const [MINUTE, HOUR, DAY, EXACT] = [60, 3600, 86400, 600]; // seconds; below the last one, seconds are said too
 const MOST_HOURS = 1000;
 const TIME = /^(\d{1,3}):([0-5]\d)(?::([0-5]\d))?$/;
+const HOURS = /^(\d\d?)(?: ?[.,:h]? ?([0-5]\d))? ?(?:h|uhr|([ap])\.?m\.?)?$/i; // 8, 8.30, 0830, 8h30, 8:30 Uhr, 8 am
 
 /** How long this is, such as "45 s", "2 min 30 s", "12 min" or "1 h 5 min"; with `exact` also "12 min 5 s". */
 export function duration(seconds, { exact = false } = {}) {
@@ -28,10 +29,16 @@ export function durationOnAxis(seconds, step) {
 const two = (value) => String(value).padStart(2, "0");
 const parts = (large, unit, small, smaller) => `${large} ${unit}${small ? ` ${small} ${smaller}` : ""}`;
 
-/** The seconds of a time; undefined if a text is none. */
+/** The seconds of a time, as 8:30, 8.30, 0830, 8 or 8 am; undefined if a text is none. */
 export function timeOfDay(text) {
   const [whole, hours, minutes, seconds = 0] = TIME.exec(text.trim()) ?? [];
-  return whole && HOUR * hours + MINUTE * minutes + Number(seconds);
+  return whole ? HOUR * hours + MINUTE * minutes + Number(seconds) : hoursOfDay(text.trim());
+}
+
+function hoursOfDay(text) {
+  const [whole, hours, minutes = 0, half] = HOURS.exec(text) ?? [];
+  const seconds = HOUR * (half ? (hours % 12) + (/p/i.test(half) ? 12 : 0) : hours) + MINUTE * minutes;
+  return whole && seconds <= DAY && !(half && hours > 12) ? seconds : undefined;
 }
 
 /** Seconds as a time; undefined if they are not whole, negative, or very many. */

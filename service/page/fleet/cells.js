@@ -7,6 +7,9 @@ import { clockUnit } from "./units.js";
 const [MINUTE, HOUR] = [60, 3600]; // seconds
 const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+) ?s)?$/;
 const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
+const MINUTES = /^\d{3}$/; // in a unit of minutes: 540 is 9:00
+const DOUBTFUL = /^\d\d?[.,]\d$/; // 8.5 may be 8:30 or 8:50
+const HALF_OF_DAY = /[ap]\.?m\.?$/i;
 const COUNTED = "a number in the unit of the times";
 
 // The types of columns of numbers.
@@ -106,9 +109,12 @@ function number(text) {
   return text.trim() && Number.isFinite(value) ? value : undefined;
 }
 
+/** A time: hours of the day as 8 or 8.30, where the unit is one of time, or a larger number in that unit. */
 function time(text, second) {
-  const seconds = timeOfDay(text);
-  return seconds === undefined ? NUMBERS.amount.read(text) : second && seconds / second;
+  const isCounted = !text.includes(":") && (!second || (second === MINUTE && MINUTES.test(text)));
+  const seconds = isCounted ? undefined : timeOfDay(text);
+  if (seconds !== undefined) return second && seconds / second;
+  return second < HOUR && DOUBTFUL.test(text) ? undefined : NUMBERS.amount.read(text);
 }
 
 function writtenTime(value, second) {
@@ -117,7 +123,7 @@ function writtenTime(value, second) {
 
 function lasting(text, second) {
   const [whole, hours = 0, minutes = 0, seconds = 0] = LASTING.exec(text) ?? [];
-  return whole ? second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second : time(text, second);
+  return whole ? second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second : text.includes(":") ? time(text, second) : NUMBERS.amount.read(text);
 }
 
 function lastingText(value, second) {
@@ -127,7 +133,10 @@ function lastingText(value, second) {
 }
 
 function span(text, second) {
-  const ends = all(text.split(/\s*(?:[-–—]|\bto\b)\s*/), (each) => time(each, second));
+  const texts = text.split(/\s*(?:[-–—]|\b(?:to|bis)\b)\s*/);
+  const [half] = HALF_OF_DAY.exec(texts[1]) ?? [];
+  if (half) texts[0] = [half, "am"].map((each) => texts[0] + each).find((each) => timeOfDay(each) <= timeOfDay(texts[1])) ?? texts[0];
+  const ends = all(texts, (each) => time(each, second));
   return ends?.length === 2 && ends[0] <= ends[1] ? ends : undefined;
 }
 
