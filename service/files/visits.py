@@ -24,13 +24,14 @@ _SPOKEN = re.compile(  # 8h30, 8 Uhr, 8.30 Uhr, 8 am, 1:30 p.m., 8:30h
     re.ASCII | re.IGNORECASE,
 )
 _HOURS = re.compile(  # 8, 8.30, 0800, 8 h
-    r"(\d{1,4})(?:[.,](\d+))?(?:\s*(?:h|hrs?|hours?)\.?)?", re.ASCII | re.IGNORECASE
+    r"(\d{1,4})(?:[.,](\d\d?|0+))?(?:\s*(?:h|hrs?|hours?)\.?)?", re.ASCII | re.IGNORECASE
 )
 _HALF_OF_DAY = re.compile(r"\s?([ap])\.?m\.?", re.IGNORECASE)
 _UNIT_BEHIND = re.compile(r"(?<=\d)\s*[a-z][a-z.']*", re.IGNORECASE)
 _OF_TWELVE = re.compile(r"(?:0?\d|1[0-2])(?:[.:h][0-5]\d)?", re.ASCII | re.IGNORECASE)
 _DECIMALS = re.compile(r"\d[.,]\d")
 _MINUTE, _HOUR, _DAY = 60, 3600, 86400  # seconds
+_LEAST_SECONDS = 100  # beside hours of the day
 _PARTS, _ALSO_PARTS = {"25", "5", "75"}, {"50"}  # decimals of parts of an hour
 _LASTING = re.compile(r"(.*\d)\s*([a-z]+)\.?", re.IGNORECASE)  # with its unit, as 5 min
 _BRIEF = 60  # seconds; a service that takes less may be meant in minutes
@@ -348,6 +349,8 @@ def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> 
     lasting = _LASTING.fullmatch(text)
     own = SECONDS.get(lasting[2].casefold()) if lasting else None
     number = number_in(lasting[1].strip() if lasting and own else text)
-    if number is None or number < 0:
+    unit = own or seconds_of(columns.names[at])
+    is_doubtful = at in columns.hours and not unit and 0 < (number or 0) < _LEAST_SECONDS
+    if number is None or number < 0 or is_doubtful:
         raise columns.refusal(row, at, "must be seconds, or a time as 10:30 or 5 min", text)
-    return number * (own or seconds_of(columns.names[at]) or 1)
+    return number * (unit or 1)

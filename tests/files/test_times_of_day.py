@@ -142,6 +142,13 @@ def test_a_window_that_ends_before_it_begins_is_refused(
     assert f"{where} (after midnight, 2:00 is 26:00), got" in str(refused.value)
 
 
+@pytest.mark.parametrize("cell", ["25-30", "8.75-9.30"])
+def test_numbers_that_are_not_hours_beside_times_are_refused(cell: str) -> None:
+    demand = "row 4, column 'window' must be seconds, or a time as 10:30 or 5 min, got"
+    with pytest.raises(UnreadableFile, match=demand):
+        read("window", "8:00-12:00", cell)
+
+
 @pytest.mark.parametrize(
     ("heading", "cell", "shift"),
     [
