@@ -174,9 +174,9 @@ def test_what_no_path_leads_to_is_told_and_outlined(opened: Page, kind: dict[str
     wait_until_planned(opened)
     expect(said).to_have_text(
         "2.25 m² (9 cells) in 2 regions cannot be reached:"
-        " 1.5 m² in rows 1 to 3, columns 6 to 7; 0.75 m² in rows 1 to 3, column 9."
+        " A, 1.5 m² in rows 1 to 3, columns 6 to 7; B, 0.75 m² in rows 1 to 3, column 9."
     )
-    expect(opened.locator("#grid .number")).to_have_text(["1", "2"])
+    expect(opened.locator("#grid .unreached-name")).to_have_text(["A", "B"])
     expect(opened.locator("#grid-legend .unreached")).to_be_visible()
     expect(boxes).to_have_count(2)
     open_request(opened, {**office, "grid": [[0] * 9] * 3})
@@ -196,12 +196,13 @@ def test_each_of_many_regions_that_cannot_be_reached_is_listed(opened: Page) -> 
     wait_until_planned(opened)
     expect(opened.locator("#uncovered")).to_have_text(
         "20 m² (5 cells) in 5 regions cannot be reached, the largest:"
-        " 4 m² in row 3, column 1; 4 m² in row 3, column 3."
+        " A, 4 m² in row 3, column 1; B, 4 m² in row 3, column 3."
     )
     opened.get_by_text("Where that is").click()
     listed = [f"4 m² in row 3, column {column}" for column in (1, 3, 5, 7, 9)]
     expect(opened.locator("#unreached-list li")).to_have_text(listed)
-    expect(opened.locator("#grid .number")).to_have_text(["1", "2", "3", "4", "5"])
+    expect(opened.locator("#grid .unreached-name")).to_have_text(["A", "B", "C", "D", "E"])
+    expect(opened.locator("#unreached-list")).to_have_attribute("type", "A")
 
 
 def test_a_robots_map_names_its_places_and_marks_both_ends(opened: Page) -> None:

@@ -2,6 +2,7 @@
 
 import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "../common/colours.js";
+import { made } from "../common/elements.js";
 import { fitting, flatMap, ring } from "./flatmap.js";
 import { GridEnds } from "./grid_ends.js";
 import { turnOf } from "./planes.js";
@@ -80,7 +81,7 @@ export class GridMap {
     this.#places.setStyle({ fillColor: colour("ink") });
     this.#unreached.clearLayers();
     const outlined = { renderer: this.#outlines, className: "unreached", interactive: false };
-    regions.forEach(({ box }, at) => this.#unreached.addLayer(L.rectangle(corners(box), outlined)).addLayer(numberAt(box, at + 1)));
+    regions.forEach(({ box }, at) => this.#unreached.addLayer(L.rectangle(corners(box), outlined)).addLayer(nameAt(box, letterOf(at))));
     document.querySelector("#grid-legend .unreached").hidden = !regions.length;
   }
 
@@ -155,9 +156,13 @@ const middle = ([row, column]) => [-row - 0.5, column + 0.5];
 /** Two corners of a box, given the first and the last cell in it. */
 const corners = ([[top, left], [bottom, right]]) => [[-top, left], [-bottom - 1, right + 1]];
 
-/** The number of a box, in its middle. */
-function numberAt(box, number) {
-  const icon = L.divIcon({ className: "number", iconSize: [0, 0], html: String(number) });
+/** The name of a region that cannot be reached: numbers would be taken for the order of places. */
+export const letterOf = (at) => String.fromCharCode("A".charCodeAt(0) + at);
+
+/** The name of a box, in its middle. */
+function nameAt(box, name) {
+  const html = made("span", {}, name);
+  const icon = L.divIcon({ className: "unreached-name", iconSize: [0, 0], html });
   return L.marker(L.latLngBounds(corners(box)).getCenter(), { icon, interactive: false, keyboard: false });
 }
 

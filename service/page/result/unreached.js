@@ -1,6 +1,7 @@
-/** Say how much of a robot's map no path leads to, and where; the boxes on the map have the same numbers. */
+/** Say how much of a robot's map no path leads to, and where; the boxes on the map have the same letters. */
 
 import { counted, length } from "../common/numbers.js";
+import { letterOf } from "../map/gridmap.js";
 
 const element = (id) => document.getElementById(id);
 const SAID = 2; // regions in the sentence
@@ -17,8 +18,8 @@ function sentence({ cells, square_metres, regions }, side) {
   const known = regions.reduce((sum, region) => sum + region.cells, 0);
   const where = `${known < cells ? "more than " : ""}${counted(regions.length, "region", "regions")}`;
   const all = `${length(square_metres)} m² (${counted(cells, "cell", "cells")}) in ${where} cannot be reached`;
-  if (regions.length === 1 && known === cells) return `${all}: ${place(regions[0])}.`;
-  const largest = regions.slice(0, SAID).map((region) => described(region, side)).join("; ");
+  if (regions.length === 1 && known === cells) return `${all}: ${letterOf(0)}, ${place(regions[0])}.`;
+  const largest = regions.slice(0, SAID).map((region, at) => `${letterOf(at)}, ${described(region, side)}`).join("; ");
   return `${all}${regions.length > SAID ? ", the largest" : ""}: ${largest}.`;
 }
 
