@@ -143,6 +143,18 @@ def test_a_stop_that_is_pointed_at_is_named_on_both_maps(planned: Page) -> None:
     expect(planned.locator(".leaflet-tooltip")).to_have_count(0)
 
 
+def test_a_button_shows_all_stops_again(page: Page) -> None:
+    start = page.locator("#plane-2 .ring.start")
+    before = start.bounding_box()
+    for _ in range(3):
+        page.get_by_role("button", name="Zoom in").last.click()
+    assert start.bounding_box() != before
+    page.get_by_role("button", name="Zoom out").last.press("Tab")
+    expect(page.get_by_role("button", name="Show all stops").last).to_be_focused()
+    page.keyboard.press("Enter")
+    assert start.bounding_box() == before
+
+
 def test_an_open_route_has_a_start_and_an_end_on_each_map(page: Page) -> None:
     expect(page.locator("#plane-2 .ring.start")).to_be_visible()
     expect(page.locator("#plane-2 .ring.end")).to_have_count(0)

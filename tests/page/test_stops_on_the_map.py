@@ -1,5 +1,7 @@
 """Stops on the maps of the page: dragged by mouse and by finger, moved and deleted by keys."""
 
+import json
+import math
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -96,6 +98,42 @@ def test_the_page_says_why_no_stop_can_be_added(opened: Page) -> None:
     button = opened.get_by_role("button", name="Add on the map")
     expect(button).to_be_enabled()
     expect(button).to_have_accessible_description("")
+
+
+@pytest.mark.parametrize("kind", ["tour", "fleet"])
+def test_the_map_follows_a_place_that_is_corrected_in_the_table(opened: Page, kind: str) -> None:
+    # The school is in the desert: its longitude and latitude are swapped.
+    rows = {"depot": (24.94, 60.17), "shop": (24.95, 60.18), "school": (60.16, 24.93)}
+    if kind == "tour":
+        lines = [f"{name},{lon},{lat}" for name, (lon, lat) in rows.items()]
+        open_files(opened, {"stops.csv": "\n".join(["id,lon,lat", *lines])})
+    else:
+        asked = {
+            "stops": [{"id": name, "location": place} for name, place in rows.items()],
+            "vehicles": [{"id": "van", "count": 2, "start": "depot", "end": "depot"}],
+            "objectives": [
+                {"name": "distance", "from": "great_circle"},
+                {"name": "longest", "from": "great_circle", "over": "max"},
+            ],
+        }
+        open_files(opened, {"fleet.json": json.dumps(asked)})
+    expect(opened.get_by_label("Name of stop 3")).to_have_value("school")
+    assert math.dist(*[place_of_stop(opened, stop) for stop in (1, 2)]) < 5
+    for column, value in (("Longitude", "24.93"), ("Latitude", "60.16")):
+        opened.get_by_label(f"{column} of school").fill(value)
+        opened.get_by_label(f"{column} of school").press("Tab")
+    before = place_of_stop(opened, 1)
+    assert math.dist(before, place_of_stop(opened, 2)) > 50
+    # It stays for a small change, and for a stop that is dragged.
+    opened.get_by_label("Latitude of school").fill("60.161")
+    opened.get_by_label("Latitude of school").press("Tab")
+    assert place_of_stop(opened, 1) == pytest.approx(before, abs=1)
+    x, y = place_of_stop(opened, 2)
+    opened.mouse.move(x, y)
+    opened.mouse.down()
+    opened.mouse.move((x + 3 * before[0]) / 4, (y + 3 * before[1]) / 4, steps=3)
+    opened.mouse.up()
+    assert place_of_stop(opened, 1) == pytest.approx(before, abs=1)
 
 
 def test_keys_choose_move_and_delete_a_stop(opened: Page) -> None:

@@ -15,6 +15,9 @@ export const textOf = (rows) => rows.map((row) => row.join(", ")).join("\n");
 /** Whether the row can be drawn. */
 export const isCity = (row) => row.length === 4 && row.every(Number.isFinite);
 
+/** Has a map move only if stops that were typed have left its view, or have become a small part of it. */
+export const IF_LOST = "if lost";
+
 /** Marks a map of the earth, in place of the number of an objective's plane. */
 export const EARTH = "earth";
 

@@ -9,7 +9,7 @@ import { byIds, servedBy, stopRenamed } from "../fleet/references.js";
 import { RequestText } from "../fleet/fleet_request.js";
 import { placedAt, withRobotEnd } from "./map_ends.js";
 import { isProposed, withoutLayer } from "./map_proposal.js";
-import { isCity, nameOf, textOf } from "./places.js";
+import { IF_LOST, isCity, nameOf, textOf } from "./places.js";
 import { PlanLine } from "./plan_line.js";
 import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
@@ -51,7 +51,7 @@ export class RequestForm {
 
   /**
    * @param {Service} service reads what is typed
-   * @param {{ onEdited: (instance: object | null, fit: boolean) => void, onEnds: (instance: object) => void,
+   * @param {{ onEdited: (instance: object | null, fit: boolean | string) => void, onEnds: (instance: object) => void,
    *   onShaded: (instance: object) => void, settled: () => Promise<boolean> }} told called with other stops or costs, null where one cannot be read;
    *   with what was typed that moves or limits the ends on a map; with the layer that shades the map; and to read what was typed, or show why that
    *   is not possible
@@ -68,7 +68,7 @@ export class RequestForm {
     this.#table = new EditableTable(element("stops"), {
       onName: (row, text) => this.#onceRead(() => this.#rename(row, text)),
       onCell: (row, column, text) => this.#onceRead(() => this.#move(row, column, text)),
-      onDelete: (row) => this.#onceRead(() => this.#delete(row)),
+      onDelete: (row) => this.#onceRead(() => this.#delete(row, IF_LOST)),
     });
     this.#fleet = new FleetForm(this.#table, (...changed) => this.#change(...changed));
     element("cities").addEventListener("input", () => this.#typed());
@@ -210,7 +210,7 @@ export class RequestForm {
   #change(changed, isRead = true) {
     this.#brought = changed;
     this.#objectives = namesIn(changed);
-    this.#edited(false, isRead);
+    this.#edited(IF_LOST, isRead);
   }
 
   /** Deletes a stop that is drawn. */
@@ -318,17 +318,22 @@ export class RequestForm {
     const value = numberOr(text.replace(",", "."));
     if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
     else this.#show(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)));
-    this.#edited(true, this.#isPlaced(value, column));
+    this.#edited(IF_LOST, this.#isPlaced(value, column));
   }
 
-  #delete(row) {
+  #delete(row, fit = false) {
     if (this.#brought.stops) {
       this.#brought = without(this.#isFleet ? byIds(this.#brought) : this.#brought, row);
       if (!this.#isFleet) this.#showObjectives();
-      return this.#edited(false);
+      return this.#edited(fit);
     }
     this.#brought.ids = this.#brought.ids?.toSpliced(row, 1);
-    this.#write(this.#rows.toSpliced(row, 1), false);
+    this.#write(this.#rows.toSpliced(row, 1), fit);
+  }
+
+  /** How many stops have a row in the table. */
+  get #count() {
+    return (this.#brought.stops ?? this.#rows).length;
   }
 
   /** Adds a stop in the middle of the others, to be moved from there. */

@@ -33,7 +33,7 @@ export class GridMap {
   /** @param {object} told callbacks for ends that are moved: see GridEnds */
   constructor(element, told) {
     this.#element = element;
-    this.#map = flatMap(element, { minZoom: -5, maxZoom: 8 });
+    this.#map = flatMap(element, { name: "Show the whole map", fit: () => this.#fit() }, { minZoom: -5, maxZoom: 8 });
     this.#map.setView([0, 0], 0);
     for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
     for (const group of [this.#places, this.#unreached]) group.addTo(this.#map);

@@ -112,7 +112,7 @@ export class Maps {
   }
 
   /**
-   * Shows an instance without tours; `fit` says whether the view moves to hold all of it, `editable`
+   * Shows an instance without tours; `fit` says whether the view moves to hold all of it (see Plane), `editable`
    * whether its stops may be moved and deleted, where the page can.
    */
   show(instance, fit, editable) {
@@ -132,7 +132,7 @@ export class Maps {
     const fleet = Boolean(this.#kind.movers && !this.#kind.onGrid);
     // In planes both objectives of a fleet may have the same places.
     const movable = editable && (EDITED.includes(this.#form) || (fleet && onEarth && drawn.length === 1));
-    this.#planes.edit(movable, !fit, movable || fleet);
+    this.#planes.edit(movable, fit !== true, movable || fleet);
     this.#onEarth = onEarth && rows.length > 0;
     this.#ways.lead(this.#onEarth ? rows.map((row) => row.slice(0, 2)) : []);
     this.#sayLines(null);

@@ -2,6 +2,7 @@
 
 import "../vendor/leaflet/leaflet.js";
 import { Dots } from "./dots.js";
+import { IF_LOST } from "../inputs/places.js";
 import { fitting, flatMap, ring } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { Handling } from "./handling.js";
@@ -11,8 +12,10 @@ import { Streets } from "./streets.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
+
 const NARROW = 240; // pixels, as a map on a phone
 const CROWD = 300; // stops
+const ROOM = 20; // pixels beside the cities
 const MOVED = 3; // pixels from the centre of a map to where it was, of a map that somebody moved
 const STEP = 10; // pixels that an arrow key moves a stop, with Shift one
 const POINTED = 6; // pixels from a stop within which it is pointed at
@@ -21,7 +24,7 @@ const [MOVING, STILL] = [1500, 150]; // stops drawn of a way that changes, and m
 export class Plane {
   #map;
   #frame = Frame.around([]);
-  #view; // to which the map was fitted
+  #view; // to which the map was fitted: its box, zoom and centre
   #stops = new Dots();
   #pointed = null; // the city under the pointer
   #rests = {}; // timers until the whole way is drawn, by its name
@@ -44,7 +47,7 @@ export class Plane {
    * @param {ChosenStop} chosen the stop that is chosen on this map and on the other
    */
   constructor(element, { onHover, onClick, onMove }, chosen) {
-    this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
+    this.#map = flatMap(element, { name: "Show all stops", fit: () => this.#fit(this.#boxOf(this.#places)) }, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
     const layers = [this.#streets, ...Object.values(this.#lines), this.#routes, this.#stops, this.#names];
     for (const layer of layers) layer.addTo(this.#map);
     this.#map.on("mousemove", (event) => this.#point(this.#near(event.containerPoint, POINTED), onHover));
@@ -55,13 +58,14 @@ export class Plane {
     element.setAttribute("aria-describedby", "stop-help");
     new Handling(this.#map, this.#handled(onMove), chosen);
     new ResizeObserver(() => this.#resize()).observe(element);
-    this.#fit();
+    this.#fit(this.#frame.bounds);
   }
 
-  /** Draws cities at these places; `fit` says whether the view moves to hold them all. */
+  /** Draws cities at these places; `fit` says whether the view moves to hold them all: true, false, or IF_LOST, when it has lost them. */
   show(places, fit = true, onEarth = false) {
+    const isFitted = fit === IF_LOST ? onEarth !== this.#onEarth || this.#hasLost(places) : fit;
     this.#places = places;
-    if (fit || onEarth !== this.#onEarth) this.#frame = onEarth ? Mercator.around([...places, ...this.#surroundings.extent]) : Frame.around(places);
+    if (isFitted || onEarth !== this.#onEarth) this.#frame = frameOf(places, onEarth, this.#surroundings);
     this.#onEarth = onEarth;
     this.#showTiles();
     this.#showSurroundings();
@@ -73,7 +77,7 @@ export class Plane {
     this.draw("pinned", []);
     this.drawRoutes([]);
     this.highlight(null);
-    if (fit) this.#fit();
+    if (isFitted) this.#fit(this.#frame.bounds);
   }
 
   get places() {
@@ -217,11 +221,28 @@ export class Plane {
     if (whole) this.#fit();
   }
 
-  #fit() {
-    this.#map.fitBounds(this.#frame.bounds, fitting(20));
-    this.#view = { zoom: this.#map.getZoom(), center: this.#map.getCenter() };
+  #fit(box = this.#view.box) {
+    this.#map.fitBounds(box, fitting(ROOM));
+    this.#view = { box, zoom: this.#map.getZoom(), center: this.#map.getCenter() };
+  }
+
+  /** Whether other places lie out of view, where all of those before were in view, or fill less than half of it. */
+  #hasLost(places) {
+    const [before, box] = [this.#places, places].map((each) => this.#boxOf(each));
+    if (box.equals(before)) return false;
+    const view = this.#map.getBounds();
+    const zoom = this.#map.getBoundsZoom(box, false, L.point(2 * ROOM, 2 * ROOM));
+    return zoom > this.#map.getZoom() + 1 || !view.intersects(box) || (view.contains(before) && !view.contains(box));
+  }
+
+  /** The box of places on the map as it is drawn now. */
+  #boxOf(places) {
+    const frame = frameOf(places, this.#onEarth, this.#surroundings);
+    return L.latLngBounds(frame.bounds.map(([lat, lng]) => this.#frame.latlng(frame.place({ lat, lng }))));
   }
 }
+
+const frameOf = (places, onEarth, { extent }) => (onEarth ? Mercator.around([...places, ...extent]) : Frame.around(places));
 
 function nameAt(name, latlng) {
   const html = Object.assign(document.createElement("span"), { textContent: name });
