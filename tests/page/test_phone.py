@@ -32,10 +32,13 @@ def test_plan_stays_at_the_bottom_of_a_phone_and_covers_nothing(
         assert bottom(page, "#time_limit-fault") <= shown
 
 
-def test_a_stop_is_added_on_the_map_without_scrolling(browser: Browser, released: str) -> None:
+def test_a_stop_is_added_on_the_map_without_scrolling_and_is_seen_in_the_table(
+    browser: Browser, released: str
+) -> None:
     with open_page(browser, released, PHONE) as page:
         wait_until_planned(page)
-        open_files(page, {"stops.csv": "id,lat,lon\na,60.1,24.9\nb,60.2,25.0\nc,60.15,24.9\n"})
+        rows = [f"order-{at},{60.1 + at / 100},{24.9 + at % 3 / 100}" for at in range(1, 27)]
+        open_files(page, {"stops.csv": "\n".join(["id,lat,lon", *rows])})
         button, board = page.get_by_role("button", name="Add on the map"), page.locator("#plane-1")
         button.click()
         expect(page.locator("#place-help")).to_be_in_viewport(ratio=1)
@@ -43,7 +46,9 @@ def test_a_stop_is_added_on_the_map_without_scrolling(browser: Browser, released
         box = board.bounding_box()
         assert box is not None
         page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.7)
-        expect(page.locator("#count")).to_have_text("4 stops")
+        expect(page.locator("#count")).to_have_text("27 stops")
+        expect(page.locator("#status")).to_have_text("Stop 27 was added.")
+        expect(page.get_by_label("Name of stop 27")).to_be_in_viewport(ratio=1)
         expect(button).to_be_in_viewport(ratio=1)
         expect(button).to_have_attribute("aria-pressed", "false")
 

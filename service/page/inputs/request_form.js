@@ -19,6 +19,7 @@ import { cellNumber, counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 import { firstFault, problemOf, readAgain } from "../planning/faults.js";
+import { say } from "../planning/status.js";
 
 const element = (id) => document.getElementById(id);
 const titled = (titles, members) => titles.map((title) => ({ title, members }));
@@ -171,7 +172,12 @@ export class RequestForm {
 
   /** Adds a stop where it was clicked: a row of four numbers, or longitude and latitude. */
   addCity(row) {
-    this.#onceRead(() => this.#insert(row));
+    this.#onceRead(() => {
+      this.#insert(row);
+      const added = this.#count - 1;
+      this.#table.reveal(added);
+      say(`Stop ${nameOf(this.ids, added)} was added.`);
+    });
   }
 
   /** Puts a stop where it was dragged on the first or second map. */
@@ -341,7 +347,7 @@ export class RequestForm {
     const { stops } = this.#brought;
     const rows = stops ? stops.map(({ location }) => location ?? []) : this.#rows.filter(isCity);
     this.#insert(middleOf(rows, stops ? 2 : 4));
-    this.#table.focus((this.#brought.stops ?? this.#rows).length - 1);
+    this.#table.focus(this.#count - 1);
   }
 
   #insert(row) {

@@ -4,6 +4,7 @@ import { made } from "../common/elements.js";
 import { isOwnName } from "../planning/faults.js";
 
 const PAGE = 50; // rows that are shown at once, since thousands of inputs are slow
+const MOST_REVEALED = 500; // rows
 
 export class EditableTable {
   #element;
@@ -50,6 +51,15 @@ export class EditableTable {
     this.#shown = Math.max(this.#shown, row + 1);
     this.#draw();
     this.#element.querySelector(`[data-row="${row}"][data-column="${column}"]`)?.focus();
+  }
+
+  /** Scrolls the table to this row, unless it has very many. */
+  reveal(row) {
+    if (row >= MOST_REVEALED) return;
+    this.#shown = Math.max(this.#shown, row + 1);
+    this.#draw();
+    const line = this.#element.querySelector(`[data-row="${row}"]`).closest("tr");
+    this.#element.scrollTop = line.offsetTop + line.offsetHeight - this.#element.clientHeight;
   }
 
   /** Marks the cells that are not understood. */
