@@ -11,6 +11,7 @@ import { showLegend } from "./legend.js";
 import { namesOf } from "./routes_of_plan.js";
 import { ServeBy } from "./serve_by.js";
 import { timetable } from "./timetable.js";
+import { arrivalIn } from "./visit_sentence.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -75,9 +76,9 @@ export class PlanView {
     this.#lanes.show(lanes, clock);
     this.#chosen.show(plan, lanes, clock);
     showSigns(lanes);
-    const visit = (stop, time) => visitItem(nameOfStop(stop), clock?.said(time));
-    const visits = (route) => route[this.#movers.through].map((stop, at) => visit(stop, route.arrivals?.[at]));
-    element("fleet-stops").replaceChildren(...routes.map((route, at) => listed(names[at], visits(route))));
+    const visit = (stop, time) => visitItem(nameOfStop(stop), time && arrivalIn(time, clock.said));
+    const visits = (route, lane) => route[this.#movers.through].map((stop, at) => visit(stop, lanes[lane]?.visits[at]));
+    element("fleet-stops").replaceChildren(...routes.map((route, at) => listed(names[at], visits(route, at))));
   }
 }
 

@@ -46,6 +46,13 @@ function asked({ windows, due }, said) {
   return `${windows.length ? `open ${spansIn(windows, said).join(" or ")}, ` : ""}${due === undefined ? "" : `due ${said(due)}, `}`;
 }
 
+/** When a vehicle arrives, and when the visit begins if that is later, such as "12:13, waits until 13:00". */
+export function arrivalIn({ arrival, begin, rests }, said) {
+  const [arrives, begins] = [said(arrival), said(begin)];
+  if (arrives === begins) return arrives;
+  return `${arrives}, ${rests.length ? "begins" : "waits until"} ${begins}`;
+}
+
 /** Windows or breaks in words, such as "8:00 to 10:00". */
 export const spansIn = (spans, said) => spans.map(([from, to]) => `${said(from)} to ${said(to)}`);
 
