@@ -170,6 +170,8 @@ def test_what_no_path_leads_to_is_told_and_outlined(opened: Page, kind: dict[str
     open_request(opened, office)
     said, boxes = opened.locator("#uncovered"), opened.locator("#grid path.unreached")
     expect(said).to_be_empty()
+    chart = opened.locator("#front-chart")
+    expect(chart).to_have_accessible_name("Nothing planned yet. Press Plan.")
     opened.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(opened)
     expect(said).to_have_text(

@@ -76,8 +76,8 @@ export class FrontChart {
     this.#budget.want(limits);
   }
 
-  /** Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked. */
-  show(alone, improved, noun) {
+  /** Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked; or that there is none, maybe as there is nothing `toPlan`. */
+  show(alone, improved, noun, toPlan = true) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
     this.#ranges = rangesOf(this.#front, alone);
@@ -85,7 +85,7 @@ export class FrontChart {
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#budget.show(this.#front);
     this.#element.classList.toggle("empty", !this.#front.length);
-    this.#element.setAttribute("aria-label", described(this.#front, this.#objectives, noun));
+    this.#element.setAttribute("aria-label", this.#front.length ? described(this.#front, this.#objectives, noun) : toPlan ? NONE : NO_STOPS);
     this.#place();
   }
 
@@ -151,7 +151,7 @@ export class FrontChart {
   }
 }
 
-const NONE = "Nothing planned yet. Press Plan once there are stops.";
+const [NONE, NO_STOPS] = ["Nothing planned yet. Press Plan.", "Nothing planned yet. Press Plan once there are stops."];
 
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
 
@@ -230,7 +230,6 @@ function roomy(range, share) {
 }
 
 function described(front, objectives, { one, many }) {
-  if (!front.length) return NONE;
   const end = (axis, pick) => figure(pick(front[0].lengths[axis], front.at(-1).lengths[axis]), objectives[axis]);
   const ranges = objectives.map(({ name }, axis) => `${name} from ${end(axis, Math.min)} to ${end(axis, Math.max)}`);
   return `A choice of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;

@@ -97,7 +97,7 @@ export class Result {
     this.#linked = null;
     this.#keep({ kept: false });
     this.#selected = this.#pinned = this.#previewed = this.#before = null;
-    this.#chart.show([], [], this.#kind.noun);
+    this.#chart.show([], [], this.#kind.noun, isPlannable(instance));
     this.#legend("alone", false);
     this.#legend("improved", false);
     this.#growth.show([]);
@@ -332,6 +332,9 @@ export class Result {
     element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visitItem(name, hours[at])));
   }
 }
+
+/** Whether there is anything to plan: a robot's map, or stops. */
+const isPlannable = ({ grid, coordinates, stops, matrices }) => Boolean(grid ?? (coordinates ?? stops ?? matrices)?.length);
 
 /** The names of the stops of a tour, in its order. */
 function named(tour, ids) {
