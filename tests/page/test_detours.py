@@ -44,6 +44,6 @@ def test_a_map_without_costs_of_cells_has_no_such_choice(browser: Browser, relea
         )
         open_files(page, {"map.json": map_of_places})
         wait_until_read(page)
-        expect(page.get_by_text("A grid of 1 by 3 cells")).to_be_visible()
+        expect(page.get_by_text("A grid 3 cells wide and 1 high")).to_be_visible()
         expect(page.get_by_label(LABEL)).to_be_hidden()
         assert "detours" not in curl_body(page, "coverage")

@@ -47,7 +47,7 @@ def test_a_picture_of_a_map_is_covered(opened: Page) -> None:
     Image.fromarray(walls).save(picture, "PNG")
     given = {"name": "map.png", "mimeType": "image/png", "buffer": picture.getvalue()}
     opened.get_by_label("Open files").set_input_files([given])
-    expect(opened.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
+    expect(opened.get_by_text("A grid 30 cells wide and 20 high")).to_be_visible()
     expect(opened.get_by_label("Metres a cell")).to_have_value("0.05")
     opened.get_by_label("Seconds of planning").fill("0.1")
     opened.get_by_role("button", name="Plan", exact=True).click()

@@ -50,7 +50,7 @@ def open_map(page: Page, files: dict[str, bytes]) -> None:
     ]
     page.get_by_label("Open files").set_input_files(payloads)  # type: ignore[arg-type]
     wait_until_read(page)
-    expect(page.get_by_text("A grid of 18 by 16 cells")).to_be_visible()
+    expect(page.get_by_text("A grid 16 cells wide and 18 high")).to_be_visible()
 
 
 def grid_of(picture: bytes | None, **fields: Any) -> Any:

@@ -67,7 +67,9 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
     with open_page(browser, released) as page:
         plan_by_network_alone(page, "coverage")
         page.get_by_label("Example").select_option("Warehouse, three robots")
-        expect(page.locator("#brought")).to_contain_text("3 robots on a grid of 40 by 64 cells")
+        expect(page.locator("#brought")).to_contain_text(
+            "3 robots on a grid 64 cells wide and 40 high"
+        )
         wait_until_planned(page)
         expect(
             page.get_by_label(re.compile(r"A choice of \d+ plans: total distance"))
@@ -103,7 +105,9 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
 def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
         open_files(page, {"robots.json": json.dumps(CORRIDOR)})
-        expect(page.locator("#brought")).to_contain_text("2 robots on a grid of 1 by 7 cells")
+        expect(page.locator("#brought")).to_contain_text(
+            "2 robots on a grid 7 cells wide and 1 high"
+        )
         page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)
         plan = select_last(page)
@@ -169,7 +173,9 @@ def test_a_picture_of_one_robot_has_its_map_and_path(browser: Browser, released:
     alone = {name: value for name, value in CORRIDOR.items() if name != "robots"}
     with open_page(browser, released) as page:
         open_files(page, {"robot.json": json.dumps({**alone, "cost_layer": [[1] * 7]})})
-        expect(page.locator("#brought")).to_contain_text("A grid of 1 by 7 cells; 3 places.")
+        expect(page.locator("#brought")).to_contain_text(
+            "A grid 7 cells wide and 1 high; 3 places."
+        )
         page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)
         drawing = ElementTree.fromstring(saved(page, "SVG"))

@@ -21,7 +21,7 @@ export function described(asked) {
   if (!onGrid && matrices) return `${COUNTS[matrices.length] ?? matrices.length} matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
   if (!onGrid) return formOf(asked) ? "" : "The link only names a result: the places of its stops are not known.";
   const where = places ? `${places.length} places` : "places laid out by the spacing";
-  const map = `grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
+  const map = `grid ${grid[0]?.length ?? 0} cells wide and ${grid.length} high; ${where}.`;
   return movers ? describedRobots(asked, `a ${map}`) : `A ${map}`;
 }
 
