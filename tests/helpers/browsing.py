@@ -61,6 +61,17 @@ DRAWN = """canvas => {
   return [...found];
 }"""
 
+# The texts in the tables of the result that reach out of their place, or of their card.
+CUT_OFF = """() => {
+  const within = ".numbers, .numbers *, .fleet .routes, .fleet :is(table, tr, th, td)";
+  return [...document.querySelectorAll(within)].filter(each => {
+    if (!each.checkVisibility() || each.closest("svg, .growth")) return false;
+    const card = each.closest(".card").getBoundingClientRect();
+    const isWider = each.clientWidth > 0 && each.scrollWidth > each.clientWidth;
+    return isWider || each.getBoundingClientRect().right > card.right + 0.5;
+  }).map(each => each.textContent.trim());
+}"""
+
 # What the clipboard holds, as soon as it holds anything.
 CLIPBOARD_TEXT = f"""async () => {{
   const end = Date.now() + {30 * SECOND};

@@ -9,6 +9,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.accessibility import load_axe, violations
 from tests.helpers.browsing import (
+    CUT_OFF,
     needs_chromium,
     open_page,
     wait_for_next_frame,
@@ -25,6 +26,7 @@ EXAMPLES = [
     "Warehouse, three robots",
 ]
 DESK, TABLET = (1440, 900), (1024, 768)  # windows: width and height in pixels
+WIDTHS = [320, 375, 768, 861, 1024, 1200, 1440, 1920]
 FILLED = 0.85  # of the place of front, numbers and map: the share that cards cover
 DRAWN = (0.8, 0.4)  # of a map's sides: how far a tour reaches, along the longer and the shorter one
 # What is seen without scrolling.
@@ -155,6 +157,14 @@ def test_nothing_sticks_out_of_its_card(example: Page) -> None:
     for width, height in (DESK, TABLET, (375, 812)):
         resize(example, width, height)
         assert example.locator(".card").evaluate_all(wider) == 0
+
+
+def test_no_number_is_cut_off_at_any_width(example: Page) -> None:
+    for name in ("Keep to compare", "Stop comparing"):
+        for width in WIDTHS:
+            resize(example, width, 900)
+            assert example.evaluate(CUT_OFF) == [], width
+        example.get_by_role("button", name=name).click()
 
 
 def test_axe_finds_nothing_on_any_example(example: Page) -> None:

@@ -13,6 +13,7 @@ from service.roads.router import RouterSettings
 from service.settings import Settings
 from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
+    CUT_OFF,
     DRAWN,
     SVG,
     needs_chromium,
@@ -21,6 +22,7 @@ from tests.helpers.browsing import (
     plan_by_network_alone,
     saved,
     select_last,
+    wait_for_next_frame,
     wait_until_planned,
 )
 from tests.helpers.fake_router import fake_osrm
@@ -141,6 +143,55 @@ def test_the_search_plans_what_the_network_cannot(browser: Browser, released: st
         wait_until_planned(page)
         expect(page.locator("#fleet")).to_be_hidden()
         expect(page.get_by_label("End elsewhere")).to_be_visible()
+
+
+def test_long_numbers_are_never_cut_off(browser: Browser, released: str) -> None:
+    far = [[0, 0], [123_456, 0], [123_456, 654_321], [90, 90]]
+    distance, time = SHIPMENT["objectives"]  # type: ignore[misc]
+    slow = [[37 * cell for cell in row] for row in time["matrix"]]  # type: ignore[index]
+    van = {"id": "refrigerated-van", "start": "depot", "end": "depot", "capacity": [1]}
+    stops = [{"id": "depot"}, {"id": "shop", "demand": [1]}, {"id": "home"}, {"id": "far"}]
+    asked = {
+        **SHIPMENT,
+        "stops": stops,
+        "vehicles": [van],
+        "objectives": [{**distance, "coordinates": far}, {**time, "matrix": slow}],  # type: ignore[dict-item]
+    }
+    with open_page(browser, released) as page:
+        open_files(page, {"fleet.json": json.dumps({**asked, "time_limit": 0.1})})
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        for name in ("Keep to compare", "Stop comparing"):
+            for width in (320, 375, 768, 861, 1024, 1440):
+                page.set_viewport_size({"width": width, "height": 900})
+                wait_for_next_frame(page)
+                assert page.evaluate(CUT_OFF) == [], width
+            page.get_by_role("button", name=name).click()
+
+
+def test_the_list_of_stops_says_until_when_a_vehicle_waits(browser: Browser, released: str) -> None:
+    asked = {
+        "stops": [
+            {"id": "depot"},
+            {"id": "early", "window": [0, 10]},
+            {"id": "late", "window": [300, 360]},
+        ],
+        "vehicles": [{"id": "van", "start": "depot", "end": "depot"}],
+        "objectives": [
+            {"name": "distance", "unit": "km", "coordinates": [[0, 0], [1, 0], [1, 1]]},
+            {"name": "time", "unit": "min", "matrix": [[7] * 3] * 3, "over": "max"},
+        ],
+        "clock": "time",
+        "time_limit": 0.1,
+    }
+    with open_page(browser, released) as page:
+        open_files(page, {"fleet.json": json.dumps(asked)})
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        page.get_by_text("Stops of each vehicle").click()
+        second, third = page.locator("#fleet-stops ol li").all_inner_texts()[1:3]
+        assert re.fullmatch(r"early 0:\d\d", second)
+        assert re.fullmatch(r"late 0:1\d, waits until 5:00", third)
 
 
 def test_routes_follow_the_streets_of_a_routing_engine(browser: Browser) -> None:
