@@ -2,6 +2,7 @@
 
 import json
 import re
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -33,7 +34,7 @@ pytestmark = needs_chromium
 # Okabe and Ito (2008), as far as six vans need them.
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00"]
 # The van must bring a parcel from "shop" to "home" and may leave "far" out, whose prize is small.
-SHIPMENT = {
+SHIPMENT: dict[str, Any] = {
     "stops": [
         {"id": "depot"},
         {"id": "shop", "demand": [1], "window": [60, 90]},
@@ -147,15 +148,15 @@ def test_the_search_plans_what_the_network_cannot(browser: Browser, released: st
 
 def test_long_numbers_are_never_cut_off(browser: Browser, released: str) -> None:
     far = [[0, 0], [123_456, 0], [123_456, 654_321], [90, 90]]
-    distance, time = SHIPMENT["objectives"]  # type: ignore[misc]
-    slow = [[37 * cell for cell in row] for row in time["matrix"]]  # type: ignore[index]
+    distance, time = SHIPMENT["objectives"]
+    slow = [[37 * cell for cell in row] for row in time["matrix"]]
     van = {"id": "refrigerated-van", "start": "depot", "end": "depot", "capacity": [1]}
     stops = [{"id": "depot"}, {"id": "shop", "demand": [1]}, {"id": "home"}, {"id": "far"}]
     asked = {
         **SHIPMENT,
         "stops": stops,
         "vehicles": [van],
-        "objectives": [{**distance, "coordinates": far}, {**time, "matrix": slow}],  # type: ignore[dict-item]
+        "objectives": [{**distance, "coordinates": far}, {**time, "matrix": slow}],
     }
     with open_page(browser, released) as page:
         open_files(page, {"fleet.json": json.dumps({**asked, "time_limit": 0.1})})
