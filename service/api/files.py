@@ -55,9 +55,10 @@ def file_router(
         A file is CSV with any separator, XLSX, GeoJSON, JSON, TSPLIB, CVRPLIB, in the format of
         Solomon, of Li and Lim or of VROOM, or a map: a picture, with or without its map.yaml, or in
         the format of MovingAI. Two to four tables or TSPLIB files are one objective each; a table
-        of stops and one of vehicles are a fleet. The answer also lists what was assumed. Nothing is
-        planned: the request in the answer is for `POST /front`, `/fleet` or `/coverage`, as its
-        `kind` says.
+        of stops and one of vehicles are a fleet. The answer also lists what was assumed, and what
+        the unused columns of a table of stops tell drivers: `details`, which are stored nowhere.
+        Nothing is planned: the request in the answer is for `POST /front`, `/fleet` or `/coverage`,
+        as its `kind` says.
         """
         client = client_of(request)
         with budget.open(client) as allowance:

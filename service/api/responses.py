@@ -286,7 +286,17 @@ class ColumnItem(BaseModel):
 
     file: str
     name: str
-    taken_for: str = Field(description="a field of stops or vehicles, or `ignored`")
+    taken_for: str = Field(description="a field of stops or vehicles, or `detail`, or `ignored`")
+
+
+class DetailItem(BaseModel):
+    """A column that is not used for planning, but tells drivers something, as a phone number."""
+
+    column: str = Field(description="its name in the file")
+    texts: list[str] = Field(
+        description='of each stop of the request, in its order; "" where there is none. At most'
+        " 200 characters each"
+    )
 
 
 class FileAnswer(BaseModel):
@@ -301,6 +311,11 @@ class FileAnswer(BaseModel):
     choices: dict[str, list[str]] | SkipJsonSchema[None] = Field(
         default=None,
         description="by file, what its columns can be taken for instead: see the part `columns`",
+    )
+    details: list[DetailItem] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="the columns that are taken for `detail`: by default, the first ten of a table"
+        " of stops that are not used otherwise and have texts. They are in no request",
     )
     planes: list[list[float]] | SkipJsonSchema[None] = Field(
         default=None,

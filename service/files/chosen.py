@@ -9,15 +9,16 @@ from pydantic import Field, TypeAdapter, ValidationError
 from service.errors import Refusal
 from service.errors.printable import printable
 from service.files.reading import LONGEST_NAME, NamedFile, Source, quoted
-from service.files.tables import Table
+from service.files.tables import LeftOut, Table
 from service.requests.fields import StrictModel, Text
 
 IGNORED = "ignored"
+DETAIL = "detail"  # not used for planning, but shown to drivers
 _MOST = 1000  # columns
 
 
 class ChosenColumn(StrictModel):
-    """A column of a file, and the field that it is taken for, or `ignored`."""
+    """A column of a file, and the field that it is taken for, or `detail`, or `ignored`."""
 
     file: Text
     name: Annotated[str, Field(max_length=LONGEST_NAME)]
@@ -50,13 +51,13 @@ def with_chosen(files: Sequence[NamedFile], part: bytes) -> list[NamedFile]:
     ]
 
 
-def without_ignored(source: Source, table: Table, fields: Collection[str]) -> Table:
-    """Return a table without the columns that are chosen to be ignored.
+def without_unused(source: Source, table: Table, fields: Collection[str]) -> Table:
+    """Return a table without the columns that are chosen to be details or ignored.
 
     Args:
         source: Its file, which is told the fields that its columns may be taken for.
         table: The table.
-        fields: These fields.
+        fields: These fields; DETAIL is among them for stops.
 
     Raises:
         UnreadableFile: A chosen column does not exist, is chosen for no field, or none is left.
@@ -72,16 +73,20 @@ def without_ignored(source: Source, table: Table, fields: Collection[str]) -> Ta
             demand = f"column {quoted(name)} must be taken for {', '.join(fields)} or {IGNORED}"
             raise source.refusal(demand, field)
     chosen = chosen_fields(source.file, heading)
-    ignored = {at: heading[at] for at, each in enumerate(chosen) if each == IGNORED}
-    if not ignored:
+    left_out = {
+        at: LeftOut(heading[at], each, [row[at] for _, row in table.rows])
+        for at, each in enumerate(chosen)
+        if each in (DETAIL, IGNORED)
+    }
+    if not left_out:
         return table
-    kept = [at for at, each in enumerate(chosen) if each != IGNORED]
+    kept = [at for at in range(len(heading)) if at not in left_out]
     if not kept:
         raise source.refusal("must have a column that is not ignored")
     return Table(
         [heading[at] for at in kept],
         [(number, [row[at] for at in kept]) for number, row in table.rows],
-        ignored,
+        left_out,
     )
 
 

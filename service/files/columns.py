@@ -4,7 +4,8 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from service.files.chosen import IGNORED, chosen_fields, without_ignored
+from service.errors.printable import printable
+from service.files.chosen import DETAIL, IGNORED, chosen_fields, without_unused
 from service.files.column_names import (
     NAMES_OF_STOPS,
     NAMES_OF_VEHICLES,
@@ -12,7 +13,7 @@ from service.files.column_names import (
     fields_of,
 )
 from service.files.reading import LONGEST_NAME, Column, Source, UnreadableFile, quoted
-from service.files.tables import Row, Table, number_in, plain_numbers
+from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
 
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
@@ -29,7 +30,10 @@ _TOTAL = re.compile(
 )
 _MOST_OF_TOTAL = 2  # fields, if its name does not say what it is
 _ROUNDING = 1e-6
+_UNUSED = (DETAIL, IGNORED)
 _INDEX = ("", "index", "unnamed: 0")
+_MOST_DETAILS = 10  # columns
+_LONGEST_DETAIL = 200  # characters of a text
 
 
 @dataclass
@@ -45,6 +49,7 @@ class Columns:
     names: list[str]
     fields: list[str | None]
     hours: dict[int, bool] = field(default_factory=dict)
+    of_stops: bool = True
 
     def find(self, field: str) -> int | None:
         """Return the column that is taken for a field, or None."""
@@ -119,22 +124,52 @@ class Columns:
         """Return what each column in the file is taken for; none without a heading."""
         if self.table.heading is None:
             return []
-        pairs = [(n, field or IGNORED) for n, field in zip(self.names, self.fields, strict=True)]
-        for at, name in sorted(self.table.ignored.items()):
-            pairs.insert(at, (name, IGNORED))
-        return [Column(self.source.name, name[:LONGEST_NAME], field) for name, field in pairs]
+        return [Column(self.source.name, n[:LONGEST_NAME], field) for n, field, _ in self._placed()]
+
+    def _placed(self) -> list[LeftOut]:
+        """Return all columns in the order of the file; the texts only of those that are not used.
+
+        Of a table of stops, up to ten unused columns that have a name and texts are details: those
+        that were chosen to be, then the first others.
+        """
+        placed = [
+            LeftOut(name, field or "", [] if field else self._texts(at))
+            for at, (name, field) in enumerate(zip(self.names, self.fields, strict=True))
+        ]
+        for at, column in sorted(self.table.left_out.items()):
+            placed.insert(at, column)
+        unused = [at for at, each in enumerate(placed) if each.taken_for in ("", DETAIL)]
+        told = [at for at in unused if placed[at].name and any(placed[at].texts) and self.of_stops]
+        told.sort(key=lambda at: placed[at].taken_for != DETAIL)
+        for at in unused:
+            field = DETAIL if at in told[:_MOST_DETAILS] else IGNORED
+            placed[at] = placed[at]._replace(taken_for=field)
+        return placed
+
+    def _texts(self, column: int) -> list[str]:
+        return [row[column] for _, row in self.table.rows]
 
     def report(self) -> None:
         """If there is a heading, note what each column is taken for."""
         if self.table.heading is None:
             return
-        listed = self.listed()
-        self.source.columns.extend(listed)
-        pairs = [(each.name, each.taken_for) for each in listed]
-        used = [f"{quoted(name)} ({field})" for name, field in pairs if field != IGNORED]
-        unused = [quoted(name) for name, field in pairs if field == IGNORED]
+        self.source.columns.extend(self.listed())
+        self._report_details()
+        pairs = [(each.name, each.taken_for) for each in self.source.columns]
+        used = [f"{quoted(name)} ({field})" for name, field in pairs if field not in _UNUSED]
+        unused = [quoted(name) for name, field in pairs if field in _UNUSED]
         not_used = f" Not used: {', '.join(unused)}." if unused else ""
         self.source.note("columns", f"Columns were taken for: {', '.join(used)}.{not_used}"[:1000])
+
+    def _report_details(self) -> None:
+        """Add the texts of details to the source, by the ids of their stops or their numbers."""
+        count = len(self.table.rows)
+        ids = ids_of(self) if "id" in self.fields else [f"{row + 1}" for row in range(count)]
+        for name, taken_for, texts in self._placed():
+            if taken_for == DETAIL:
+                short = [printable(" ".join(text.split()))[:_LONGEST_DETAIL] for text in texts]
+                by_id = dict(zip(ids, short, strict=True))
+                self.source.details.append((printable(name)[:LONGEST_NAME], by_id))
 
 
 def columns_of(source: Source, table: Table) -> Columns:
@@ -143,7 +178,7 @@ def columns_of(source: Source, table: Table) -> Columns:
     Raises:
         UnreadableFile: The columns cannot be taken for what was chosen.
     """
-    table = without_ignored(source, table, NAMES_OF_STOPS)
+    table = without_unused(source, table, (*NAMES_OF_STOPS, DETAIL))
     names = table.heading or [f"{number}" for number in range(1, table.width + 1)]
     chosen = chosen_fields(source.file, names)
     fields: list[str | None] = [None] * table.width
@@ -272,10 +307,10 @@ def columns_of_vehicles(source: Source, table: Table) -> Columns:
     Raises:
         UnreadableFile: The columns cannot be taken for what was chosen.
     """
-    table = without_ignored(source, table, NAMES_OF_VEHICLES)
+    table = without_unused(source, table, NAMES_OF_VEHICLES)
     table = _without_totals(source, table, _is_total_of_vehicles)
     names = table.heading or []
     fields = best_fields(names, NAMES_OF_VEHICLES, chosen_fields(source.file, names))
-    columns = Columns(source, table, names, fields)
+    columns = Columns(source, table, names, fields, of_stops=False)
     source.supposed.extend(columns.listed())
     return columns

@@ -68,11 +68,23 @@ class Note:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table, and the field that it was taken for, or `ignored`."""
+    """A column of a table, and the field that it was taken for, or `detail`, or `ignored`."""
 
     file: str
     name: str
     taken_for: str
+
+
+@dataclass(frozen=True)
+class Detail:
+    """A column of a table of stops that is not used for planning, but tells drivers something.
+
+    `texts` are those of the stops of the request, in their order; "" where there is none. There are
+    at most ten such columns, and a text has at most 200 characters.
+    """
+
+    column: str
+    texts: list[str]
 
 
 class UnreadableFile(ValueError):
@@ -106,6 +118,7 @@ class Reading:
     choices: Mapping[str, Sequence[str]] = field(default_factory=dict)
     planes: list[list[float]] | None = None  # rows of x, y, x, y, if distances are to be rounded
     unknown_cells: list[list[int]] | None = None  # of a map: rows of 0, and 1 where it is unknown
+    details: tuple[Detail, ...] = ()
 
     @property
     def document(self) -> Mapping[str, Any]:
@@ -116,7 +129,8 @@ class Reading:
         members = {"kind": self.kind, "request": self.request, "notes": notes}
         planes = {} if self.planes is None else {"planes": self.planes}
         unknown = {} if self.unknown_cells is None else {"unknown_cells": self.unknown_cells}
-        return {**members, **columns, **planes, **unknown, "name": self.name}
+        details = {"details": [asdict(each) for each in self.details]} if self.details else {}
+        return {**members, **columns, **details, **planes, **unknown, "name": self.name}
 
 
 @dataclass(frozen=True)
@@ -129,6 +143,8 @@ class Source:
     columns: list[Column] = field(default_factory=list)
     choices: list[str] = field(default_factory=list)  # fields that its columns may be taken for
     supposed: list[Column] = field(default_factory=list)  # columns, while they are being read
+    # The names of columns that are details, with their texts by the ids of stops.
+    details: list[tuple[str, Mapping[str, str]]] = field(default_factory=list)
 
     @property
     def name(self) -> str:
@@ -165,7 +181,18 @@ def reading_of_several(
     notes = tuple(note for source in sources for note in source.notes)
     columns = tuple(column for source in sources for column in source.columns)
     name = ", ".join(source.name for source in sources)
-    return Reading(kind, request, name, notes, columns, choices_of(sources), planes)
+    found = [detail for source in sources for detail in source.details]
+    ids = _ids_in(request) if found else []
+    details = tuple(Detail(each, [texts.get(i, "") for i in ids]) for each, texts in found)
+    choices = choices_of(sources)
+    return Reading(kind, request, name, notes, columns, choices, planes, details=details)
+
+
+def _ids_in(request: Request) -> list[str]:
+    """Return the ids of the stops of a request, or their numbers from 1."""
+    if "stops" in request:
+        return [str(stop.get("id")) for stop in request["stops"]]
+    return [f"{number}" for number in range(1, len(request.get("coordinates", ())) + 1)]
 
 
 def choices_of(sources: Sequence[Source]) -> dict[str, list[str]]:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
+from typing import NamedTuple
 
 from service.files.plain_text import with_whole_names, without_lines
 from service.files.reading import Source, quoted
@@ -29,16 +30,24 @@ _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNOR
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
 
 
+class LeftOut(NamedTuple):
+    """A column that was taken out of a table: its name, what was chosen for it, and its texts."""
+
+    name: str
+    taken_for: str
+    texts: list[str]
+
+
 @dataclass(frozen=True)
 class Table:
     """The rows of a table, all with the same number of fields, and the heading if there is one.
 
-    `ignored` are the columns that were left out, by their places in the file.
+    `left_out` are the columns that were taken out, by their places in the file.
     """
 
     heading: list[str] | None
     rows: list[Row]
-    ignored: Mapping[int, str] = field(default_factory=dict)
+    left_out: Mapping[int, LeftOut] = field(default_factory=dict)
 
     @property
     def width(self) -> int:

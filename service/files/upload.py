@@ -1,17 +1,17 @@
 """Read files that came over HTTP, within the limits of a service, as JSON."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 from pydantic_core import to_json
 
 from service.actor_info import ActorInfo
 from service.errors import Refusal
-from service.files.chosen import with_chosen
+from service.files.chosen import DETAIL, IGNORED, with_chosen
 from service.files.maps import with_grid
 from service.files.reader import read_files
-from service.files.reading import Bounds, FileTooLarge, NamedFile, UnreadableFile
+from service.files.reading import Bounds, FileTooLarge, NamedFile, Note, Reading, UnreadableFile
 from service.files.spreadsheets import is_spreadsheet
 from service.requests.limits import Limits, check_structure
 
@@ -76,8 +76,30 @@ def read_upload(upload: Upload, limits: Limits, actors: Mapping[str, ActorInfo])
         raise Refusal("file-too-large", detail=str(error)) from None
     except UnreadableFile as error:
         raise _Unreadable(error) from None
+    return _json(reading, limits.body_bytes)
+
+
+def _json(reading: Reading, most_bytes: int) -> bytes:
+    """Return a reading as JSON, without its details if it would be too long with them.
+
+    Raises:
+        Refusal: It is too long.
+    """
     answer = to_json(reading.document, inf_nan_mode="null")
-    if len(answer) > limits.body_bytes:
-        detail = f"{reading.name}: must become a request of at most {limits.body_bytes} bytes"
+    if len(answer) > most_bytes and reading.details:
+        return _json(_without_details(reading), most_bytes)
+    if len(answer) > most_bytes:
+        detail = f"{reading.name}: must become a request of at most {most_bytes} bytes"
         raise Refusal("file-too-large", detail=f"{detail}, got {len(answer)}")
     return answer
+
+
+def _without_details(reading: Reading) -> Reading:
+    """Return a reading whose details are ignored, with a note: they are too long for an answer."""
+    columns = [
+        replace(each, taken_for=IGNORED) if each.taken_for == DETAIL else each
+        for each in reading.columns
+    ]
+    text = "The columns for drivers were left out: they are too long. Ignore some of them."
+    note = Note(reading.name, text, "details")
+    return replace(reading, details=(), columns=tuple(columns), notes=(*reading.notes, note))

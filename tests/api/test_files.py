@@ -75,6 +75,27 @@ def test_columns_are_taken_for_what_is_chosen(address: str) -> None:
     problem(wrong, 422, "invalid-parts")
 
 
+def test_details_for_drivers_are_told_beside_the_request(address: str) -> None:
+    rows = "id,lat,lon,note\na,60.17,24.94,\nb,60.18,24.95,ring twice\n"
+    answer = sent(address, ("orders.csv", rows.encode())).json()
+    assert answer["details"] == [{"column": "note", "texts": ["", "ring twice"]}]
+    assert answer["columns"][-1]["taken_for"] == "detail"
+    assert "ring" not in json.dumps(answer["request"])
+    part = json.dumps([{**answer["columns"][-1], "taken_for": "ignored"}])
+    files = [("file", ("orders.csv", rows.encode())), ("columns", (None, part.encode()))]
+    assert "details" not in httpx.post(f"{address}/files", files=files).json()
+
+
+def test_details_that_are_too_long_for_an_answer_are_left_out() -> None:
+    stops = [f"s{number},60.{number:03},24.9,{'note ' * 30}" for number in range(50)]
+    table = "\n".join(["id,lat,lon,note", *stops]).encode()
+    with serving(app_of(limits=replace(LIMITS, body_bytes=len(table) + 1000))) as address:
+        answer = sent(address, ("orders.csv", table)).json()
+    assert "details" not in answer, answer
+    assert answer["columns"][-1]["taken_for"] == "ignored"
+    assert "details" in {note["code"] for note in answer["notes"]}
+
+
 def test_a_table_with_windows_is_planned_without_a_routing_engine(address: str) -> None:
     rows = "id,lat,lon,from,to\ndepot,60.17,24.94,08:00,18:00\na,60.18,24.95,09:00,09:10\n"
     answer = sent(address, ("windows.csv", rows.encode())).json()

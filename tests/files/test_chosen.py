@@ -53,6 +53,64 @@ def test_a_chosen_column_takes_a_field_from_another() -> None:
     assert [stop["location"] for stop in stops] == [[25.9, 61.1], [25.8, 61.2]]
 
 
+def told(reading: Reading) -> dict[str, list[str]]:
+    return {each.column: each.texts for each in reading.details}
+
+
+NOTED = """id,lat,lon,customer,note,empty,qty
+depot,60.17,24.94,,,,0
+,,,,,,
+A,60.18,24.95,Ann  Lee,ring twice,,3
+B,60.16,24.93,Bo,,,2
+"""
+
+
+def test_unused_columns_of_stops_are_details() -> None:
+    reading = read(NOTED)
+    assert told(reading) == {"customer": ["", "Ann Lee", "Bo"], "note": ["", "ring twice", ""]}
+    fields = taken(reading)
+    assert (fields["customer"], fields["note"]) == ("detail", "detail")
+    assert fields["empty"] == "ignored"
+    assert "detail" in reading.choices["orders.csv"]
+    assert "Ann Lee" not in json.dumps(reading.request)
+
+
+def test_a_detail_is_ignored_if_that_is_chosen_and_a_load_becomes_a_detail() -> None:
+    reading = read(NOTED, customer="ignored", qty="detail")
+    assert told(reading) == {"note": ["", "ring twice", ""], "qty": ["0", "3", "2"]}
+    assert reading.kind == "front"
+    assert list(taken(reading)) == NOTED.splitlines()[0].split(",")
+    assert taken(reading)["customer"] == "ignored"
+
+
+def test_details_are_of_the_stops_of_the_request() -> None:
+    """Also of a stop that only vehicles name, of planes, and of stops without an id."""
+    vans = NamedFile("vans.csv", b"van,max load,start lat,start lon,colour\nv1,9,60.1,24.9,red\n")
+    reading = read_files([NamedFile("o.csv", NOTED.encode()), vans], Bounds(), wanted=None)
+    assert len(reading.request["stops"]) == 4
+    assert told(reading)["customer"] == ["", "Ann Lee", "Bo", ""]
+    assert "colour" not in told(reading)
+    planes = read("x,y,u,v,who\n0,0,1,1,Ann\n1,0,2,1,Bo\n")
+    assert len(planes.request["coordinates"]) == 2
+    assert told(planes) == {"who": ["Ann", "Bo"]}
+    assert told(read("id,x,y,u,v,who\na,0,0,1,1,Ann\nb,1,0,2,1,Bo\n")) == {"who": ["Ann", "Bo"]}
+
+
+def test_tables_of_costs_have_no_details() -> None:
+    files = [NamedFile(f"{name}.csv", b"id,a,b\na,0,1\nb,1,0\n") for name in "ab"]
+    assert not read_files(files, Bounds(), wanted=None).details
+
+
+def test_details_are_bounded() -> None:
+    names = [f"note {number}" for number in range(12)]
+    rows = [["id", "lat", "lon", *names]]
+    rows += [[each, "60.1", f"24.{each}", *["\x1b" + "t" * 300] * 12] for each in "12"]
+    table = "\n".join(",".join(row) for row in rows)
+    assert [*told(read(table))] == names[:10]
+    assert {*told(read(table, **{names[11]: "detail"}))} == {*names[:9], names[11]}
+    assert {text for texts in told(read(table)).values() for text in texts} == {"?" + "t" * 199}
+
+
 def test_places_may_be_exchanged() -> None:
     assert read("id,lat,lon\n1,24.9,60.1\n2,24.8,60.2\n", lat="longitude", lon="latitude").request[
         "stops"

@@ -363,7 +363,7 @@ def test_visits_of_a_table_are_those_of_its_columns() -> None:
 
 def test_a_column_is_ignored_or_a_cost_by_its_heading_alone() -> None:
     ignored = read("phone-is-not-a-cost.csv")
-    assert ignored.columns[-1].taken_for == "ignored"
+    assert ignored.columns[-1].taken_for == "detail"
     assert ignored.request["objectives"][1]["from"] == "road_time"
     risk = read("risk.csv").request["objectives"][1]
     assert (risk["name"], risk["unit"]) == ("risk", "risk \N{MULTIPLICATION SIGN} m")
