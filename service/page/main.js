@@ -7,6 +7,7 @@ import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, revealFault, showFault, showFaults } from "./planning/faults.js";
 import { FileNotes } from "./opening/file_notes.js";
 import { formOf, kindOf } from "./common/kinds.js";
+import { detailsByStop, withoutDetails } from "./inputs/details.js";
 import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
@@ -123,8 +124,8 @@ function showAgain({ state, chosen: { balance, limits, selected } }) {
 
 const without = (members, names) => Object.fromEntries(Object.entries(members).filter(([name]) => !names.includes(name)));
 
-/** Whether the form asks for this request. */
-const isAsked = (request) => keyOf(input.asked) === keyOf(request);
+/** Whether the form asks for this request; details are not planned. */
+const isAsked = (request) => Boolean(request) && keyOf(withoutDetails(input.asked)) === keyOf(withoutDetails(request));
 
 const tell = (state) => say(sentence(state, kindOf(input.asked).onGrid));
 
@@ -145,6 +146,7 @@ async function screen() {
     asked,
     example: examples.unchanged(asked),
     objectives,
+    details: detailsByStop(input.asked),
     ...result.taken,
   };
 }

@@ -48,8 +48,8 @@ def test_a_table_shows_its_columns_and_becomes_a_fleet_by_choosing(window: Page)
         "ref": "name",
         "lat": "latitude",
         "lon": "longitude",
-        "sacks": "not used",
-        "remarks": "not used",
+        "sacks": "shown to the driver",
+        "remarks": "shown to the driver",
     }
     window.get_by_label("sacks", exact=True).focus()
     window.get_by_label("sacks", exact=True).select_option("load")

@@ -28,7 +28,7 @@ export function described(asked) {
 /**
  * The request as the page opens it. Beside coordinates or matrices it may have `rounded`, the `ids` of the
  * stops, and `names`: the user's names of both objectives. Beside a grid it may have `unknownCells`, and the cost layer by which it
- * is `shaded`, to draw them.
+ * is `shaded`, to draw them. Beside stops of any form it may have their `details` for drivers.
  */
 export function askedFor(opened, settings, { rows, whole }) {
   const asked = framed({ ...opened, ...settings });
@@ -39,7 +39,7 @@ export function askedFor(opened, settings, { rows, whole }) {
 export const keyOf = (asked) => JSON.stringify(Object.entries(asked).sort(([one], [other]) => (one < other ? -1 : 1)));
 
 /** The request to send to the service. */
-export function requestFor({ rounded: whole, ids, names, unknownCells: _, shaded: __, ...body }) {
+export function requestFor({ rounded: whole, ids, names, unknownCells: _, shaded: __, details: ___, ...body }) {
   const { path, onGrid } = kindOf(body);
   const form = formOf(body);
   if (onGrid) return { path, body: { ...body, paths: true } };

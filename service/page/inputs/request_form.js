@@ -2,6 +2,7 @@
 
 import { CostLayers } from "./cost_layers.js";
 import { DayForm } from "./day_form.js";
+import { detailsOfTyped, detailsWithAnother, detailsWithout, withSoundDetails, withoutDetails } from "./details.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.js";
 import { FleetForm } from "../fleet/fleet_form.js";
@@ -80,7 +81,7 @@ export class RequestForm {
 
   /** Takes a request into the form, and shows its stops under their objectives. */
   open(opened, names = UNNAMED) {
-    const wanted = inPlanes(opened);
+    const wanted = inPlanes(withSoundDetails(opened));
     const [kind, form] = [kindOf(wanted), formOf(wanted)];
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? ownNames(wanted) ?? names;
@@ -231,6 +232,7 @@ export class RequestForm {
   }
 
   #take({ coordinates, ids }) {
+    Object.assign(this.#brought, detailsOfTyped(this.#brought, this.ids, ids, coordinates.length));
     this.#rows = coordinates;
     if (ids) this.#brought.ids = ids;
     this.#edited();
@@ -270,7 +272,7 @@ export class RequestForm {
     element("add-help").textContent = shown && isFixed ? FIXED : "";
     this.#day.show(this.#brought);
     this.#layers.show(this.#brought, this.#objectives[1].name, isProposed(this.#brought));
-    this.#text.show(kindOf(this.#brought).movers ? this.#brought : null);
+    this.#text.show(kindOf(this.#brought).movers ? withoutDetails(this.#brought) : null);
     element("brought").textContent = described(this.#brought);
     element("brought").hidden = !element("brought").textContent;
     this.#fields.name(this.ids, count);
@@ -333,7 +335,7 @@ export class RequestForm {
       if (!this.#isFleet) this.#showObjectives();
       return this.#edited(fit);
     }
-    this.#brought.ids = this.#brought.ids?.toSpliced(row, 1);
+    Object.assign(this.#brought, { ids: this.#brought.ids?.toSpliced(row, 1), ...detailsWithout(this.#brought, row) });
     this.#write(this.#rows.toSpliced(row, 1), fit);
   }
 
@@ -354,7 +356,10 @@ export class RequestForm {
     const name = this.#freeName();
     const { stops, ids } = this.#brought;
     if (ids) this.#brought.ids = [...ids, name];
-    if (!stops) return this.#write([...this.#rows, row], false);
+    if (!stops) {
+      Object.assign(this.#brought, detailsWithAnother(this.#brought));
+      return this.#write([...this.#rows, row], false);
+    }
     this.#brought = withAnother(this.#brought, name, row);
     this.#edited(false);
   }

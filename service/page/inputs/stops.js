@@ -1,5 +1,6 @@
 /** Change the stops of a request and, with them, its costs: rename, move, add, delete. */
 
+import { detailsWithAnother, detailsWithout } from "./details.js";
 import { EARTH, mapsOf } from "./places.js";
 
 /** Whether all costs and times of a request are known for a stop at any place. */
@@ -51,8 +52,8 @@ export function put(asked, map, row, place) {
 
 export function without(asked, row) {
   const kept = asked.stops.map((_, at) => at).filter((at) => at !== row);
-  return withStops(asked, kept.map((at) => asked.stops[at]), kept);
+  return { ...withStops(asked, kept.map((at) => asked.stops[at]), kept), ...detailsWithout(asked, row) };
 }
 
 /** The request with one more stop; its costs are known to measured objectives only. */
-export const withAnother = (asked, id, location) => ({ ...asked, stops: [...asked.stops, { id, location }] });
+export const withAnother = (asked, id, location) => ({ ...asked, stops: [...asked.stops, { id, location }], ...detailsWithAnother(asked) });

@@ -14,6 +14,7 @@ const LABELS = {
   prize: "prize for serving it",
   fixed: "cost of using it",
   per_km: "cost by the kilometre",
+  detail: "shown to the driver",
   ignored: "not used",
 };
 

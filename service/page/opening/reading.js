@@ -1,6 +1,7 @@
 /** Let the service read files, also dropped ones, and pasted text as if it were a file, one reading at a time. */
 
 import { namesIn } from "../common/objectives.js";
+import { withSoundDetails } from "../inputs/details.js";
 import { inRows } from "../inputs/instance.js";
 import { proposed } from "../inputs/map_proposal.js";
 import { Problem } from "../planning/service.js";
@@ -15,12 +16,12 @@ export async function read(service, files, chosen, roads, signal) {
   const sorted = files.toSorted((one, other) => (one.name < other.name ? -1 : 1)); // as file dialogs have no order
   await Promise.all(sorted.map(checked));
   const answer = await service.read(sorted, signal, chosen);
-  const { request, planes, name, notes, columns, choices, unknown_cells: unknown } = roads ? answer : withoutRoads(answer);
+  const { request, planes, name, notes, columns, choices, details, unknown_cells: unknown } = roads ? answer : withoutRoads(answer);
   const { matrices, ...others } = request;
   // The form rounds distances itself, so that planes stay planes.
   const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
   if (unknown) members.unknownCells = unknown;
-  return { members, objectives: namesIn(members), name, notes, columns, choices };
+  return { members: withSoundDetails({ ...members, details }), objectives: namesIn(members), name, notes, columns, choices };
 }
 
 /** The reading that is running: `onChange` is called when it begins or ends, `onDone` when it is done. */

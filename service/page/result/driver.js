@@ -10,20 +10,26 @@ import { departureNote, spansIn } from "../fleet/visit_sentence.js";
 import { quoted } from "./exports.js";
 
 const TIMES = ["window", "arrives", "waits", "break", "leaves"];
-const COLUMNS = ["vehicle", "position", "stop", "latitude", "longitude", ...TIMES, "load"];
+const COLUMNS = ["vehicle", "position", "stop"];
+const AFTER_DETAILS = ["latitude", "longitude", ...TIMES, "load"];
 
 /**
  * The routes of the selected tour or plan, each with a `name`, "" for that of a tour, a `note` on when it begins, and its
- * `visits`: `stop`, and where they are known its `place` (longitude and latitude), its times in words, and its `load`.
+ * `visits`: `stop`, and where they are known its `place` (longitude and latitude), its times in words, its `load`,
+ * and its `details`: pairs of a column of the file and a text.
  *
  * @param {{ item: object, round: string[], movers: object | null }} selected the tour or plan, the stops of a tour in
  *   their order, and what drives the routes of a plan
  * @param {{ stops?: object[] }} answer the answer that it is of
  * @param {object | null} asked the request, as far as it is known
+ * @param {(name: string) => string[][]} details what drivers are told of a stop
  */
-export function routesOf({ item, round, movers }, answer, asked) {
+export function routesOf({ item, round, movers }, answer, asked, details) {
   const places = new Map(answer.stops?.map(({ id, location }) => [String(id), location]));
-  const placed = ({ stop, ...others }) => ({ stop: typeof stop === "number" ? stop + 1 : stop, place: places.get(String(stop)) ?? null, ...others });
+  const placed = ({ stop, ...others }) => {
+    const name = typeof stop === "number" ? stop + 1 : stop;
+    return { stop: name, details: details(name), place: places.get(String(stop)) ?? null, ...others };
+  };
   const routes = movers ? routesOfPlan(item.routes, movers, asked ?? {}) : [routeOfTour(item, round)];
   return routes.map((route) => ({ ...route, visits: route.visits.map(placed) }));
 }
@@ -63,10 +69,19 @@ export function csvOfVisits(routes) {
   const rows = routes.flatMap(({ name, visits }) =>
     visits.map(({ place, ...visit }, at) => ({ ...visit, vehicle: name, position: at + 1, latitude: place?.[1], longitude: place?.[0] })),
   );
-  const columns = COLUMNS.filter((column) => rows.some((row) => (row[column] ?? "") !== ""));
-  return [columns, ...rows.map((row) => columns.map((column) => row[column] ?? ""))]
+  const [before, after] = [COLUMNS, AFTER_DETAILS].map((columns) => columns.filter((column) => rows.some((row) => (row[column] ?? "") !== "")));
+  const told = detailsIn(rows);
+  const cells = (row, columns) => columns.map((column) => row[column] ?? "");
+  return [[...before, ...told.names, ...after], ...rows.map((row) => [...cells(row, before), ...told.texts(row), ...cells(row, after)])]
     .map((row) => `${row.map((field) => quoted(`${field}`, /[,"\r\n]/)).join(",")}\n`)
     .join("");
+}
+
+/** The names of the details that a visit has a text for, and their texts of a visit. */
+function detailsIn(visits) {
+  const known = visits[0]?.details ?? [];
+  const given = known.flatMap((_, at) => (visits.some(({ details }) => details[at][1]) ? [at] : []));
+  return { names: given.map((at) => known[at][0]), texts: ({ details }) => given.map((at) => details[at][1]) };
 }
 
 /** Whether each stop has a place on the earth. */
@@ -87,13 +102,15 @@ export function gpxOf(routes) {
     const route = made(gpx.documentElement, "rte");
     made(route, "name", name || "Tour");
     if (note) made(route, "desc", note);
-    for (const { stop, place, ...times } of visits) {
+    for (const { stop, place, details, ...times } of visits) {
       const point = made(route, "rtept");
       point.setAttribute("lat", place[1]);
       point.setAttribute("lon", place[0]);
       made(point, "name", stop);
       const said = TIMES.filter((each) => times[each]).map((each) => `${each} ${times[each]}`);
-      if (said.length) made(point, "desc", said.join(", "));
+      const told = details.filter(([, text]) => text).map(([column, text]) => `${column}: ${text}`);
+      const described = [...told, ...(said.length ? [said.join(", ")] : [])];
+      if (described.length) made(point, "desc", described.join("; "));
     }
   }
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(gpx)}\n`;
@@ -107,9 +124,10 @@ export function fillSheet(sheet, routes) {
       const heading = Object.assign(document.createElement("h2"), { textContent: name || "Tour" });
       const table = document.createElement("table");
       const columns = [...TIMES, "load"].filter((column) => visits.some((visit) => visit[column]));
-      row(table.createTHead(), ["", "stop", ...columns]);
+      const told = detailsIn(visits);
+      row(table.createTHead(), ["", "stop", ...told.names, ...columns]);
       const body = table.createTBody();
-      for (const [at, visit] of visits.entries()) row(body, [at + 1, linked(visit), ...columns.map((column) => visit[column] ?? "")]);
+      for (const [at, visit] of visits.entries()) row(body, [at + 1, linked(visit), ...told.texts(visit), ...columns.map((column) => visit[column] ?? "")]);
       part.append(heading, ...(note ? [Object.assign(document.createElement("p"), { textContent: note })] : []), table);
       return part;
     }),

@@ -1,5 +1,6 @@
 /** The buttons that copy what is on the screen, or save it as a file. */
 
+import { withoutDetails } from "../inputs/details.js";
 import { chosenOf, placeIn } from "./chosen.js";
 import { areLocated, csvOfVisits, fillSheet, gpxOf, routesOf } from "./driver.js";
 import { alone, csv, curl, download, withSelected } from "./exports.js";
@@ -25,8 +26,8 @@ export class ExportButtons {
   /**
    * @param {Service} service the service that has the front
    * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, example: string | null, objectives: object[],
-   *   picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
-   *   screen, the file of its example, whether its lines can follow the streets, and the selected tour or
+   *   details: Function, picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
+   *   screen, what drivers are told of its stops as of `detailsByStop`, the file of its example, whether its lines can follow the streets, and the selected tour or
    *   plan, as of `routesOf`; null if the form cannot be read. `refused` is what the request would be refused for
    * @param {(problem: Problem) => string} mend shows what must be mended at its field, and returns it
    */
@@ -79,8 +80,8 @@ export class ExportButtons {
     return placeIn(this.#shown.front, item);
   }
 
-  #routes({ selected, asked }) {
-    return routesOf(selected, this.#shown, asked);
+  #routes({ selected, asked, details }) {
+    return routesOf(selected, this.#shown, asked, details);
   }
 
   #saveGpx(routes) {
@@ -97,7 +98,7 @@ export class ExportButtons {
   async #copyLink(shown, button) {
     const { asked, example, objectives, balance, limits } = shown;
     const chosen = chosenOf(this.#shown, this.#item(shown), Boolean(asked));
-    const carried = { request: example ? undefined : (asked ?? undefined), objectives, limits, chosen };
+    const carried = { request: example || !asked ? undefined : withoutDetails(asked), objectives, limits, chosen };
     const { hash, whole } = await fragment(this.#shown.id, balance, carried, example);
     history.replaceState(null, "", hash);
     say(whole || !carried.request ? "" : ALONE);
