@@ -1,15 +1,19 @@
-"""The route that reads files: `POST /files`."""
+"""The route that reads files, `POST /files`, and the schema of its answer."""
+
+from typing import Any
 
 from fastapi import APIRouter
+from pydantic import BaseModel, Field
+from pydantic.json_schema import SkipJsonSchema
 from starlette.requests import Request
 from starlette.responses import Response
 
 from service.api.auth import client_of
 from service.api.body import receive_files
 from service.api.body_budget import BodyBudget
-from service.api.responses import FileAnswer, compressed, json_bytes, problem_responses
+from service.api.responses import compressed, json_bytes, problem_responses
 from service.api.task_parser import TaskParser
-from service.files.reading import NamedFile
+from service.files.reading import Kind, NamedFile
 from service.files.upload import Upload
 
 _FILE = {"type": "string", "format": "binary", "description": "a file, with its filename"}
@@ -28,6 +32,63 @@ _FORM = {
     "required": ["file"],
 }
 _BODY = {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}
+
+
+class NoteItem(BaseModel):
+    """One assumption about the files."""
+
+    file: str
+    text: str
+    code: str = Field(description="tells notes apart")
+
+
+class ColumnItem(BaseModel):
+    """A column of a table."""
+
+    file: str
+    name: str
+    taken_for: str = Field(description="a field of stops or vehicles, or `detail`, or `ignored`")
+
+
+class DetailItem(BaseModel):
+    """A column that is not used for planning, but tells drivers something, as a phone number."""
+
+    column: str = Field(description="its name in the file")
+    texts: list[str] = Field(
+        description='of each stop of the request, in its order; "" where there is none. At most'
+        " 200 characters each"
+    )
+
+
+class FileAnswer(BaseModel):
+    """The request that the files describe, and the assumptions made."""
+
+    kind: Kind = Field(description="the operation that takes the request")
+    request: dict[str, Any]
+    notes: list[NoteItem]
+    columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
+        default=None, description="of tables with a heading"
+    )
+    choices: dict[str, list[str]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="by file, what its columns can be taken for instead: see the part `columns`",
+    )
+    details: list[DetailItem] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="the columns that are taken for `detail`: by default, the first ten of a table"
+        " of stops that are not used otherwise and have texts. They are in no request",
+    )
+    planes: list[list[float]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="for two EUC_2D files: x and y of each city in both planes. The matrices in the"
+        " request are the rounded distances",
+    )
+    unknown_cells: list[list[int]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of a map with unknown cells, to draw them: rows of 0, and 1 where it is"
+        " unknown. Whether the robot may go there is in the request's grid",
+    )
+    name: str
 
 
 def file_router(

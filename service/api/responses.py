@@ -19,7 +19,6 @@ from starlette.responses import Response
 
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
-from service.files.reading import Kind
 from service.front import Termination
 from service.jobs.record import Record, Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
@@ -271,63 +270,6 @@ class ActorsAnswer(BaseModel):
     """The networks to choose from."""
 
     actors: list[ActorItem]
-
-
-class NoteItem(BaseModel):
-    """One assumption about the files."""
-
-    file: str
-    text: str
-    code: str = Field(description="tells notes apart")
-
-
-class ColumnItem(BaseModel):
-    """A column of a table."""
-
-    file: str
-    name: str
-    taken_for: str = Field(description="a field of stops or vehicles, or `detail`, or `ignored`")
-
-
-class DetailItem(BaseModel):
-    """A column that is not used for planning, but tells drivers something, as a phone number."""
-
-    column: str = Field(description="its name in the file")
-    texts: list[str] = Field(
-        description='of each stop of the request, in its order; "" where there is none. At most'
-        " 200 characters each"
-    )
-
-
-class FileAnswer(BaseModel):
-    """The request that the files describe, and the assumptions made."""
-
-    kind: Kind = Field(description="the operation that takes the request")
-    request: dict[str, Any]
-    notes: list[NoteItem]
-    columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
-        default=None, description="of tables with a heading"
-    )
-    choices: dict[str, list[str]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="by file, what its columns can be taken for instead: see the part `columns`",
-    )
-    details: list[DetailItem] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="the columns that are taken for `detail`: by default, the first ten of a table"
-        " of stops that are not used otherwise and have texts. They are in no request",
-    )
-    planes: list[list[float]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="for two EUC_2D files: x and y of each city in both planes. The matrices in the"
-        " request are the rounded distances",
-    )
-    unknown_cells: list[list[int]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="of a map with unknown cells, to draw them: rows of 0, and 1 where it is"
-        " unknown. Whether the robot may go there is in the request's grid",
-    )
-    name: str
 
 
 class CompilingAnswer(BaseModel):
