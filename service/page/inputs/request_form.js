@@ -225,7 +225,7 @@ export class RequestForm {
     this.#onceRead(() => this.#delete(this.#brought.stops ? city : this.#drawn[city]));
   }
 
-  /** Reports other stops from the first key on; the stops are drawn once they are read. */
+  /** Reports the first key, which ends any planning; other stops are drawn once they are read. */
   #typed() {
     if (!this.unread) this.#onEdited(this.instance, false);
     this.#typedRows.typed(element("cities").value);

@@ -7,6 +7,8 @@ import { proposed } from "../inputs/map_proposal.js";
 import { Problem } from "../planning/service.js";
 import { withoutRoads } from "./roads.js";
 
+const POINT = { code: "robot-radius", text: "The robot is taken for a point, so its path may touch walls: set its radius under Plan." };
+
 /**
  * The request that the form opens, the names of its objectives, and the file's name with the notes on it and its
  * columns. `chosen` are columns that are to be taken for something else than their names say. `roads` says whether
@@ -20,6 +22,7 @@ export async function read(service, files, chosen, roads, signal) {
   const { matrices, ...others } = request;
   // The form rounds distances itself, so that planes stay planes.
   const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
+  if (members.robot_radius === 0 && request.robot_radius === undefined) notes.push(POINT);
   if (unknown) members.unknownCells = unknown;
   return { members: withSoundDetails({ ...members, details }), objectives: namesIn(members), name, notes, columns, choices };
 }
