@@ -210,7 +210,10 @@ def _without_totals(
         number, texts = rows.pop()
         came = quoted(" ".join(filter(None, texts)))
         source.note("total", f"Row {number}, {came}, was taken for a total and left out.")
-    return replace(table, rows=rows)
+    unused = {
+        at: each._replace(texts=each.texts[: len(rows)]) for at, each in table.left_out.items()
+    }
+    return replace(table, rows=rows, left_out=unused)
 
 
 def _is_total(rows: Sequence[Row], fields: Sequence[str | None]) -> bool:

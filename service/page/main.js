@@ -12,7 +12,7 @@ import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
-import { keyOf } from "./inputs/instance.js";
+import { keyOf, without } from "./inputs/instance.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
 import { holdStill } from "./inputs/pressing.js";
@@ -102,7 +102,7 @@ function edited(instance, fit) {
   clear();
   if (!reading.isRunning) say("");
   if (!instance) return;
-  const asked = without(input.asked, Object.keys(input.planning));
+  const asked = without(input.asked, ...Object.keys(input.planning));
   undo.note(keyOf(asked), { asked, names: input.objectives, example: examples.chosen?.file, number: opened });
   const again = last && isAsked(last.asked);
   if (answer && isAsked(answered)) {
@@ -121,8 +121,6 @@ function showAgain({ state, chosen: { balance, limits, selected } }) {
   result.want(balance, selected.item, limits);
   show(state);
 }
-
-const without = (members, names) => Object.fromEntries(Object.entries(members).filter(([name]) => !names.includes(name)));
 
 /** Whether the form asks for this request; details are not planned. */
 const isAsked = (request) => Boolean(request) && keyOf(withoutDetails(input.asked)) === keyOf(withoutDetails(request));
@@ -420,7 +418,7 @@ function draft() {
   const request = input.asked;
   const example = examples.unchanged(request);
   const { balance, limits, selected } = result.taken;
-  const { id } = (!way?.replanned && answer) || {};
+  const { id } = (!way?.replanned && selected && answer) || {};
   if (!id) return example ? null : { asked: { request, objectives } };
   return { id, balance, example, asked: { request, objectives, limits, chosen: chosenOf(answer, selected.item, true) } };
 }

@@ -96,6 +96,13 @@ def test_details_are_of_the_stops_of_the_request() -> None:
     assert told(read("id,x,y,u,v,who\na,0,0,1,1,Ann\nb,1,0,2,1,Bo\n")) == {"who": ["Ann", "Bo"]}
 
 
+def test_a_row_of_totals_has_no_details() -> None:
+    table = "id,lat,lon,boxes,note\nA,60.1,24.9,3,ring twice\nB,60.2,24.8,4,\nTotal,,,7,checked\n"
+    for chosen in ({}, {"note": "detail"}, {"boxes": "detail"}):
+        found = read(table, **chosen)
+        assert told(found)["note"] == ["ring twice", ""]
+
+
 def test_tables_of_costs_have_no_details() -> None:
     files = [NamedFile(f"{name}.csv", b"id,a,b\na,0,1\nb,1,0\n") for name in "ab"]
     assert not read_files(files, Bounds(), wanted=None).details

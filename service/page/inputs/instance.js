@@ -89,7 +89,7 @@ export function inRows(request) {
 }
 
 const isPlane = (rows, count) => Array.isArray(rows) && rows.length === count && rows.every((row) => Array.isArray(row) && row.length === 2);
-const without = (members, name) => Object.fromEntries(Object.entries(members).filter(([each]) => each !== name));
+export const without = (members, ...names) => Object.fromEntries(Object.entries(members).filter(([each]) => !names.includes(each)));
 
 function wholeDistances(rows) {
   if (rows.length > MOST_ROUNDED) {

@@ -1,6 +1,7 @@
 /** Take changes of what is planned back, and make them again. */
 
 const MOST = 200; // changes
+const TEXT = 'textarea, input:not([type="range"], [type="checkbox"], [type="file"])';
 
 export class Undo {
   #past = []; // the last is what is shown
@@ -56,4 +57,4 @@ function wayOf({ key, ctrlKey, metaKey, shiftKey }) {
 }
 
 /** Whether a text is being typed, and not only has the cursor, as a cell of a table that is as it was. */
-const isTyping = (field) => field.matches("input, textarea") && field.value !== field.dataset.shown;
+const isTyping = (field) => field.matches(TEXT) && field.value !== field.dataset.shown;
