@@ -50,7 +50,7 @@ def test_what_an_answer_leads_to_begins_with_the_path_that_the_proxy_took_away(
         problem(client.get("/front/none"), 404, "unknown-front", root_path)
         missing = problem(client.get("/none"), 404, "no-such-path", root_path)
         assert missing["detail"].endswith(f"{root_path}/none; {root_path}/docs says what is")
-        problem(client.get("/page/main.js", headers={"Range": "x"}), 400, "refused", root_path)
+        problem(client.get("/page/icon.svg", headers={"Range": "x"}), 400, "refused", root_path)
 
 
 def test_the_document_names_the_path_as_its_server(url: str) -> None:
