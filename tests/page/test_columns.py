@@ -1,18 +1,9 @@
 """What the columns of an opened table are taken for, and what a person chooses instead."""
 
-from collections.abc import Iterator
-
-import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.accessibility import check_on_a_phone
-from tests.helpers.browsing import (
-    curl_body,
-    needs_chromium,
-    open_files,
-    open_page,
-    wait_until_planned,
-)
+from tests.helpers.browsing import curl_body, needs_chromium, open_files
 
 pytestmark = needs_chromium
 
@@ -21,13 +12,6 @@ depot,60.17,24.94,0,
 A,60.18,24.95,3,ring twice
 B,60.16,24.93,2,
 """
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 def taken(page: Page) -> dict[str, str]:

@@ -4,17 +4,14 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree
 
-import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.browsing import (
     needs_chromium,
     open_files,
-    open_page,
     shown_front,
     wait_until_planned,
 )
@@ -28,13 +25,6 @@ depot,60.17,24.94,0,,,
 B,60.16,24.93,2,,,van 2
 C,60.15,24.92,1,,,van 2
 """
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 def planned(page: Page, files: dict[str, str]) -> dict[str, Any]:

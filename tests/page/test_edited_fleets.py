@@ -1,19 +1,17 @@
 """Fleets edited on the page: tables of stops and vehicles, objectives, and stops on the map."""
 
 import json
-from collections.abc import Iterator
 from copy import deepcopy
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
     shown_front,
     wait_until_planned,
 )
@@ -46,14 +44,6 @@ FLEET: dict[str, Any] = {
     "seed": 7,
     "time_limit": 0.2,
 }
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A page for all of these tests, each of which opens the fleet again."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 @pytest.fixture

@@ -1,27 +1,10 @@
 """The next file of stops: the vehicles that somebody has typed serve it as well."""
 
-from collections.abc import Iterator
+from playwright.sync_api import Page, expect
 
-import pytest
-from playwright.sync_api import Browser, Page, expect
-
-from tests.helpers.browsing import (
-    curl_body,
-    needs_chromium,
-    open_files,
-    open_page,
-    wait_until_planned,
-)
+from tests.helpers.browsing import curl_body, needs_chromium, open_files
 
 pytestmark = needs_chromium
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A page that has planned its first example."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 ORDERS = (
