@@ -14,7 +14,7 @@ from service.front import Progress, SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.improve import improve
+from service.search.improve import LEAST_POINTS, improve
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import BLOCK, Search
 from tests.helpers.instances import (
@@ -207,7 +207,7 @@ def test_a_deadline_is_obeyed_at_the_first_look_after_it(n: int) -> None:
         looks.append(time.monotonic())
         return False
 
-    deadline = time.monotonic() + 0.2
+    deadline = time.monotonic() + 0.4
     found = improve(instance, no_tours(n), deadline=deadline, stop=stop)
     assert found.terminated == "time_limit"
     assert is_front(instance, found)
@@ -222,9 +222,27 @@ def test_the_search_looks_at_the_clock_after_few_iterations(n: int) -> None:
     assert max(islice(search.run(), 500)) <= BLOCK
 
 
-def test_a_deadline_that_has_passed_still_gives_a_tour() -> None:
-    found = improve(uniform(30), no_tours(30), deadline=time.monotonic() - 1)
-    assert len(found.tours) == 1
+@pytest.mark.parametrize("n", [14, 60, 200])
+@pytest.mark.parametrize("objectives", [2, 3])
+def test_a_deadline_that_has_passed_still_gives_a_small_front(n: int, objectives: int) -> None:
+    instance = uniform(n, objectives=objectives)
+    found = improve(instance, no_tours(n), deadline=time.monotonic() - 1)
+    assert found.terminated == "time_limit"
+    assert len(found.tours) >= LEAST_POINTS
+    assert is_front(instance, found)
+
+
+def test_a_deadline_that_has_passed_ends_a_search_from_a_front() -> None:
+    instance = uniform(60)
+    given = improve(instance, no_tours(60), iterations=2_000)
+    looks: list[None] = []
+
+    def stop() -> bool:
+        looks.append(None)
+        return False
+
+    improve(instance, given.tours, deadline=time.monotonic() - 1, stop=stop)
+    assert len(looks) == 1
 
 
 def test_a_stopped_search_keeps_what_it_found() -> None:
@@ -262,9 +280,9 @@ def test_random_tours_are_improved_a_great_deal() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_without_time_for_a_single_step_there_is_a_nearest_neighbour_tour(kind: str) -> None:
+def test_a_search_that_is_stopped_at_once_gives_a_nearest_neighbour_tour(kind: str) -> None:
     instance = small_integers(kind, 60, seed=4)
-    found = improve(instance, no_tours(60), deadline=time.monotonic() - 1)
+    found = improve(instance, no_tours(60), stop=lambda: True)
     search = Search(instance, 0, 60 * instance.scale)
     matrices = np.ldexp(instance.scale, instance.shifts)[:, None, None] * instance.scaled_matrices
     cost = np.tensordot(search.weights[WEIGHTS // 2], matrices, 1)

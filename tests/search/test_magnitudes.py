@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -93,6 +93,7 @@ def is_right(instance: Instance, front: Front) -> None:
     kind=st.sampled_from(["coordinates", "symmetric", "asymmetric"]),
     reference=st.none() | st.tuples(st.integers(-150, 150), st.integers(-150, 150)),
 )
+@example(37560, 12, (0, 0), 100.0, "symmetric", (-11, 0))  # nearly the whole box, in many slices
 def test_costs_of_any_magnitude_are_planned(
     seed: int,
     n: int,

@@ -14,7 +14,7 @@ export function choiceOf(front, tour, objectives, noun) {
 }
 
 function sentence(front, tour, objectives, { one, many }) {
-  if (front.length < 2) return `This ${one} is the best under ${objectives.length > 2 ? "all" : "both"} objectives.`;
+  if (front.length < 2) return `This ${one} is the best found under ${objectives.length > 2 ? "all" : "both"} objectives.`;
   if (objectives.length > 2) return ofSeveral(front, tour, objectives);
   const [first, second] = objectives.map(wordsOf);
   const least = front[0];

@@ -125,4 +125,5 @@ def _crossings(weights: Array, lowest: Array) -> Array:
 def _area_over(corners: Array, floor: Array) -> float:
     """Return the area of the unit square above a floor that is linear between the corners."""
     open_height = 1 - floor.clip(0.0, 1.0)
-    return float((np.diff(corners) * (open_height[1:] + open_height[:-1]) / 2).sum())
+    area = float((np.diff(corners) * (open_height[1:] + open_height[:-1]) / 2).sum())
+    return min(1.0, area)  # 1 at most, for all rounding
