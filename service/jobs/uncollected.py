@@ -17,4 +17,7 @@ def uncollected() -> Iterator[None]:
         yield
     finally:
         if enabled:
+            if not gc.get_freeze_count():  # what the program froze stays frozen
+                gc.freeze()  # all goes to the oldest generation, where it is not looked through now
+                gc.unfreeze()
             gc.enable()

@@ -6,13 +6,14 @@ that are started so, and not by multiprocessing, need no guard in the program th
 """
 
 import fcntl
-import json
+import gc
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from queue import SimpleQueue
@@ -20,8 +21,10 @@ from typing import Any, BinaryIO, Self, TypeVar
 
 from paretour import FrontOfAnyKind, Plan, Refused
 from paretour.kinds import parse_any
+from pydantic_core import from_json
 
 T = TypeVar("T")
+Answer = bytes | Mapping[str, Any]  # a front as JSON, or the document of a refusal
 
 
 class Crew:
@@ -50,11 +53,10 @@ class Crew:
         """Call a function in a thread, as soon as a process has nothing to do."""
         return self._threads.submit(function, *arguments)
 
-    def run(self, plan: Plan) -> FrontOfAnyKind:
+    def run(self, plan: Plan) -> Answer:
         """Plan in a process that has nothing to do; to be called by what was submitted.
 
         Raises:
-            Refused: The request cannot be planned.
             RuntimeError: The process ended.
         """
         worker = self._idle.get()
@@ -87,18 +89,16 @@ class _Worker:
             start_new_session=True,
         )
 
-    def run(self, plan: Plan) -> FrontOfAnyKind:
+    def run(self, plan: Plan) -> Answer:
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         try:
             _send(self._process.stdin, plan)
-            answer = pickle.load(self._process.stdout)
+            answer: Answer = pickle.load(self._process.stdout)
         except (EOFError, BrokenPipeError):
             status = self._process.wait()
             raise RuntimeError(f"its process ended with status {status}") from None
-        if isinstance(answer, dict):
-            raise Refused(answer)
-        return parse_any(json.loads(answer))
+        return answer
 
     def kill(self) -> None:
         self._process.kill()
@@ -106,6 +106,20 @@ class _Worker:
     def close(self) -> None:
         with suppress(BrokenPipeError), self._process:  # it did not read all that was written
             pass
+
+
+def front_of(answer: Answer) -> FrontOfAnyKind:
+    """Return the front of an answer.
+
+    To read it takes milliseconds, in which no thread sends a request: the process that answered
+    shall have its next one by then.
+
+    Raises:
+        Refused: The request cannot be planned.
+    """
+    if isinstance(answer, bytes):
+        return parse_any(from_json(answer))
+    raise Refused(answer)
 
 
 def _send(stream: BinaryIO | Any, message: object) -> None:
@@ -117,6 +131,8 @@ def _work(lock: str) -> None:
     """Plan what comes on standard input, until it ends."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # so that what a library prints is not read as an answer
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that started this one is told of it
+    gc.disable()
     from paretour.bars import Silent
 
     from service.library.local_planner import load_default_planner
@@ -138,10 +154,13 @@ def _work(lock: str) -> None:
         except EOFError:
             return
         try:
-            answer: object = planner.plan(plan, display).answer
+            answer: Answer = planner.plan(plan, display).answer
         except Refused as error:
             answer = error.document
         _send(answers, answer)
+        if not gc.isenabled():  # all is loaded, and stays: no need to look through it ever again
+            gc.freeze()
+            gc.enable()
 
 
 if __name__ == "__main__":

@@ -17,11 +17,15 @@ def until_done(
 ) -> T:
     """Run a function in a thread, and return its result; this thread waits for Ctrl-C meanwhile.
 
+    Where it is not told of Ctrl-C, it runs the function itself.
+
     Args:
         run: The function.
         interrupted: As `interrupt_flag` yields it.
         terminate: Called repeatedly after Ctrl-C: it ends a running call of the network.
     """
+    if not _is_told():
+        return run()
     future: Future[T] = Future()
 
     def compute() -> None:
@@ -42,13 +46,13 @@ def interrupt_flag() -> Iterator[Callable[[], bool]]:
     """Set a flag at the first Ctrl-C instead of raising KeyboardInterrupt.
 
     A second Ctrl-C does what Ctrl-C did before the block. Python tells the main thread alone of
-    Ctrl-C: in another one the flag is never set.
+    Ctrl-C: in another one the flag is never set, nor in a process that ignores it.
 
     Yields:
         A function that returns whether the flag is set.
     """
     pressed = Event()
-    if current_thread() is not main_thread():
+    if not _is_told():
         yield pressed.is_set
         return
 
@@ -61,3 +65,9 @@ def interrupt_flag() -> Iterator[Callable[[], bool]]:
         yield pressed.is_set
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def _is_told() -> bool:
+    """Return whether Python tells this thread of Ctrl-C."""
+    ignored = signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+    return current_thread() is main_thread() and not ignored

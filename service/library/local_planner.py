@@ -3,7 +3,6 @@
 The garbage collector waits while this module imports what plans.
 """
 
-import json
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
@@ -13,12 +12,13 @@ from typing import Any, cast
 from paretour import FrontOfAnyKind, Plan, Progress, Refused
 from paretour.bars import Display
 from paretour.kinds import parse_any
+from pydantic_core import from_json
 
 from service.jobs.uncollected import uncollected
 
 with uncollected():
     from service.errors import Cancelled, Refusal
-    from service.jobs.compiled_code import is_loaded, warm_up
+    from service.jobs.compiled_code import is_loaded, load_from_cache, warm_up
     from service.jobs.parts import Compiling, Part, parts_of
     from service.jobs.task_runner import TaskRunner, load_runner
     from service.kinds.front_document import FrontDocument
@@ -46,7 +46,7 @@ class Planned:
 
     def front(self) -> FrontOfAnyKind:
         """Return the front as the client does."""
-        return parse_any(json.loads(self.answer))
+        return parse_any(from_json(self.answer))
 
 
 @dataclass(frozen=True)
@@ -102,12 +102,13 @@ class LocalPlanner:
             with ThreadPoolExecutor(1) as threads:
                 if actor is not None:
                     threads.submit(actor.load)
-                self._load(missing, display)
+                if missing := [part for part in missing if not load_from_cache(part)]:
+                    self._load(missing, display)
         if actor is not None:
             actor.load()
 
     def _load(self, missing: Collection[Part], display: Display) -> None:
-        """Compile parts of the code, or load them, and show how far that is."""
+        """Compile parts of the code, and show how far that is."""
         with display.loading() as say:
 
             def tell(told: Part | Compiling) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Base64Bytes, BaseModel, Field
+from pydantic import Base64Bytes, BaseModel, ConfigDict, Field
 
 from service.actor_info import ActorInfo
 from service.replanning.earlier_tours import EarlierTours
@@ -42,6 +42,8 @@ _STOP = np.dtype("<i4")  # of a tour, in base64, which is read four times as fas
 class EncodedTours(BaseModel):
     """Tours that all have the same number of stops."""
 
+    model_config = ConfigDict(defer_build=True)
+
     count: int = Field(ge=1)
     stops: Base64Bytes = Field(description="of one tour after another, four bytes each")
 
@@ -53,6 +55,8 @@ class EncodedTours(BaseModel):
 
 class EarlierMembers(BaseModel):
     """The rest of the tours of an earlier front, as the service writes it."""
+
+    model_config = ConfigDict(defer_build=True)
 
     earlier_tours: EncodedTours = Field(
         description="what is left of each tour, first of the one being driven"

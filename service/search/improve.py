@@ -100,7 +100,7 @@ def _run(
     report: ReportOf[SearchResult] | None,
 ) -> Termination:
     """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
-    began = reported = time.monotonic()
+    began = reported = looked = time.monotonic()
     pause = REPORT_EVERY
     spent = 0
     for block, done in enumerate(search.run()):
@@ -109,8 +109,9 @@ def _run(
         if stop is not None and stop():
             return "cancelled"
         left = np.inf if deadline is None else deadline - now
+        step, looked = now - looked, now  # the next one may take as long
         begun = search.size >= LEAST_POINTS or block >= LEAST_BLOCKS
-        late = begun and left <= reserve(search.size)
+        late = begun and left <= reserve(search.size) + step
         if late or (iterations is not None and spent >= iterations):
             return "time_limit"
         # A report takes time; shortly before the deadline it could break it.
@@ -118,7 +119,7 @@ def _run(
         if report is not None and due and search.allowed:
             progress = Progress(now - began, search.hypervolume, search.size)
             report(progress, partial(_best_found, search))
-            reported = time.monotonic()
+            reported = looked = time.monotonic()
             pause = max(REPORT_EVERY, LONGEST_REPORTS * (reported - now))
     return "converged"
 

@@ -104,6 +104,17 @@ def test_2000_mutated_answers_are_values_or_one_exception(connect: Connect, url:
                 assert str(error).isprintable(), error  # noqa: PT017
 
 
+@pytest.mark.parametrize("member", ["angle", "balance", "lengths", "tour"])
+def test_a_wrong_member_of_one_tour_of_many_is_named(
+    connect: Connect, url: str, member: str
+) -> None:
+    answer = copy.deepcopy(answers_of(url)["front"])
+    answer["front"][1][member] = "north"
+    demand = rf"answer/front/1/{member} must be .*, got 'north'"
+    with pytest.raises(UnexpectedAnswer, match=demand):
+        read(connect(transport=Answers(response(answer))), "front")
+
+
 def response(document: Any) -> httpx.Response:
     return httpx.Response(200, content=json.dumps(document).encode(), headers=JSON)
 

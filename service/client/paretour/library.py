@@ -142,17 +142,19 @@ def plan_many(
     instances = list(instances)
     fronts: list[Any] = [None] * len(instances)
     bars: Any = bar_class()(total=len(instances), desc="planning") if progress else nullcontext()
-    with whole_package("service.library.crew").Crew(workers, len(instances)) as crew, bars as bar:
+    crews = whole_package("service.library.crew")
+    with crews.Crew(workers, len(instances)) as crew, bars as bar:
 
-        def run(instance: FrontRequest | Instance) -> Front:
-            return cast(Front, crew.run(_plan_of(instance, options)))
+        def run(instance: FrontRequest | Instance) -> Any:
+            return crew.run(_plan_of(instance, options))
 
         numbers = {crew.submit(run, each): index for index, each in enumerate(instances)}
         for future in as_completed(numbers):
-            index = numbers[future]
-            if (error := future.exception()) is not None:
+            index = numbers.pop(future)
+            try:
+                fronts[index] = crews.front_of(future.result())
+            except Exception as error:
                 raise InstanceFailed(index, str(error)) from error
-            fronts[index] = future.result()
             if bar is not None:
                 bar.update()
     return fronts

@@ -12,6 +12,7 @@ from paretour.display import counted, numbers
 from paretour.expect import (
     Members,
     Read,
+    column,
     count,
     each,
     floats,
@@ -216,8 +217,8 @@ def parse_front(document: Mapping[str, Any]) -> Front:
     return Front(
         **stored_members(answer, items),
         tours=rows(items, "tour", partial(indexes, below=cities), cities),
-        angles=_stacked([_of_two(item, "angle", m) for item in items]),
-        balances=_stacked([_of_two(item, "balance", m) for item in items]),
+        angles=_of_two_each(items, "angle", m),
+        balances=_of_two_each(items, "balance", m),
         hypervolume_bound=answer.maybe("hypervolume_bound", number),
         scale=answer.maybe("scale", floats(m)),
         actor=None if actor is None else actor.read("name", text),
@@ -225,10 +226,10 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         paths=of_all(items, "path", parse_path),
         stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
         objectives=objectives_of(answer),
-        kept=_maybe_stacked(of_all(items, "kept", number)),
+        kept=column(items, "kept") if _have(items, "kept") else None,
         arrivals=of_all(items, "arrivals", floats(None, m)),
         uncovered=answer.maybe("uncovered", parse_uncovered),
-        departures=_maybe_stacked(of_all(items, "departure", number)),
+        departures=column(items, "departure") if _have(items, "departure") else None,
         times=rows(items, "times", floats, cities + 1) if _have(items, "times") else None,
     )
 
@@ -263,6 +264,13 @@ def _objective_count(answer: Members, items: Sequence[Members]) -> int:
 def _of_two(item: Members, name: str, objectives: int) -> float:
     """Return a number that a tour has under two objectives; NaN under more."""
     return item.read(name, number) if objectives == PAIR else np.nan
+
+
+def _of_two_each(items: Sequence[Members], name: str, objectives: int) -> Array:
+    """Return that number of each tour, shape (k,)."""
+    if objectives == PAIR:
+        return column(items, name)
+    return read_only(np.full(len(items), np.nan))
 
 
 def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
@@ -331,13 +339,3 @@ def parse_path(value: Any, where: str) -> Path:
         yaws=path.maybe("yaws", floats(len(cells))),
         visits=path.maybe("visits", indexes(None, PAIR)),
     )
-
-
-def _maybe_stacked(values: Sequence[float] | None) -> Array | None:
-    """Return one number per item as an array; None where items have none."""
-    return None if values is None else _stacked(values)
-
-
-def _stacked(values: Sequence[float]) -> Array:
-    """Return one number per item as an array, also if there are no items."""
-    return read_only(np.array(values, dtype=np.float64))

@@ -20,7 +20,7 @@ _INFO = "occupancy_grid/info"
 
 
 class _Message(BaseModel):
-    model_config = ConfigDict(strict=True, extra="ignore", frozen=True)
+    model_config = ConfigDict(strict=True, extra="ignore", frozen=True, defer_build=True)
 
 
 class Point(_Message):
