@@ -26,7 +26,8 @@ def small(name: str) -> tuple[Actor, ModelProto]:
     """A small actor and its file, whose export takes many seconds."""
     config = NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=32)
     actor = build(config, seed=2).eval()
-    return actor, to_onnx(actor)
+    with unchecked_types():
+        return actor, to_onnx(actor)
 
 
 @pytest.fixture(params=NAMES)
@@ -35,9 +36,11 @@ def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
 
 
 def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
-    # 130: more than two blocks
     actor, model = exported
-    compared = compare(actor, model, sizes=(3, 130), counts=(1, 6), repairs=(0, 5))
+    sizes = (3, 130)  # 130: more than two blocks
+    compared = compare(actor, model, sizes, counts=(1,), repairs=(0, 1))
+    with unchecked_types():  # of the same axes
+        compared += compare(actor, model, sizes, counts=(6,), repairs=(0, 5))
     assert compared.tours >= 2 * (1 + 6) * (2 if actor.repairs_tours else 1)
 
 
