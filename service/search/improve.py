@@ -101,7 +101,7 @@ def _run(
 ) -> Termination:
     """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
     began = reported = looked = time.monotonic()
-    pause = REPORT_EVERY
+    pause, step = REPORT_EVERY, 0.0
     spent = 0
     for block, done in enumerate(search.run()):
         spent += done
@@ -109,9 +109,10 @@ def _run(
         if stop is not None and stop():
             return "cancelled"
         left = np.inf if deadline is None else deadline - now
-        step, looked = now - looked, now  # the next one may take as long
+        before, step, looked = step, now - looked, now
         begun = search.size >= LEAST_POINTS or block >= LEAST_BLOCKS
-        late = begun and left <= reserve(search.size) + step
+        next_step = min(before, step)  # the process may not have run during one of the two
+        late = begun and left <= reserve(search.size) + next_step
         if late or (iterations is not None and spent >= iterations):
             return "time_limit"
         # A report takes time; shortly before the deadline it could break it.
