@@ -15,7 +15,15 @@ from typer import echo
 from service.cli.errors import UsageError
 from service.files.json_files import read_object as object_in
 from service.files.reader import read_files, read_table
-from service.files.reading import Bounds, Kind, NamedFile, Request, Source, UnreadableFile
+from service.files.reading import (
+    Bounds,
+    Kind,
+    NamedFile,
+    Request,
+    Source,
+    UnreadableFile,
+    check_cells,
+)
 from service.files.stop_tables import numbers_of
 
 Array = NDArray[np.float64]
@@ -116,7 +124,10 @@ def read_layer(path: Path) -> Array:
         UnreadableFile: The file is not a table of numbers; the message names it.
         OSError: There is no such file.
     """
-    return np.array(numbers_of(*read_table(_content(path), _bounds())))
+    source, table = read_table(_content(path), _bounds())
+    costs = numbers_of(source, table)
+    check_cells([source])
+    return np.array(costs)
 
 
 def _bounds() -> Bounds:

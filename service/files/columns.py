@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from service.errors.printable import printable
 from service.files.chosen import DETAIL, IGNORED, chosen_fields, without_unused
@@ -12,9 +13,10 @@ from service.files.column_names import (
     best_fields,
     fields_of,
 )
-from service.files.reading import LONGEST_NAME, Column, Source, UnreadableFile, quoted
+from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
 from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
 
+Read = TypeVar("Read")
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
     rf"(?:SRID=4326;)?\s*POINT\s*Z?M?\s*\(\s*{_DEGREES}\s+{_DEGREES}(?:\s+{_DEGREES}){{0,2}}\s*\)",
@@ -67,9 +69,20 @@ class Columns:
         """Return the position of a field, for sentences."""
         return f"row {self.table.rows[row][0]}, column {quoted(self.names[column])}"
 
-    def refusal(self, row: int, column: int, demand: str, *came: object) -> UnreadableFile:
-        """Return the exception that says what a field must be, and quotes what came instead."""
-        return self.source.refusal(f"{self.where(row, column)} {demand}", *came)
+    def refuse(self, row: int, column: int, demand: str, *came: object) -> WrongCell:
+        """Return the exception that says what a field must be, and quotes what came instead.
+
+        The source keeps it as well: all wrong fields are refused together.
+        """
+        sentence = f"{self.where(row, column)} {demand}"
+        return self.source.refuse_cell(self.table.rows[row][0], column, sentence, *came)
+
+    def tried(self, instead: Read, read: Callable[..., Read], *arguments: object) -> Read:
+        """Return what a function reads from fields, or `instead` if one of them is wrong."""
+        try:
+            return read(*arguments)
+        except WrongCell:
+            return instead
 
     def leave_out(self, field: str, when: str = "") -> None:
         """Note that a column, if there is one for a field, is not used."""
@@ -90,14 +103,14 @@ class Columns:
         text = self.text(row, column)
         number = number_in(text)
         if number is None:
-            raise self.refusal(row, column, "must be a number", text)
+            raise self.refuse(row, column, "must be a number", text)
         return number
 
     def amount(self, row: int, column: int) -> float:
         """Return the number in a field, which must not be negative."""
         number = self.number(row, column)
         if number < 0:
-            raise self.refusal(row, column, f"must not be negative, got {number:g}")
+            raise self.refuse(row, column, f"must not be negative, got {number:g}")
         return number
 
     def whole(self, row: int, column: int) -> int:
@@ -105,15 +118,15 @@ class Columns:
         number = self.number(row, column)
         if number < 1 or not number.is_integer():
             demand = "must be a whole number from 1"
-            raise self.refusal(row, column, demand, self.text(row, column))
+            raise self.refuse(row, column, demand, self.text(row, column))
         return int(number)
 
     def numbers(self, columns: list[int]) -> list[list[float]]:
-        """Return the numbers of columns, row by row."""
-        rows = enumerate(self.table.rows)
+        """Return the numbers of columns, row by row; 0 in place of wrong ones."""
         return [
-            plain_numbers([texts[at] for at in columns]) or [self.number(row, at) for at in columns]
-            for row, (_, texts) in rows
+            plain_numbers([texts[at] for at in columns])
+            or [self.tried(0.0, self.number, row, at) for at in columns]
+            for row, (_, texts) in enumerate(self.table.rows)
         ]
 
     def are_numbers(self, column: int) -> bool:
@@ -260,20 +273,22 @@ def _place_column(columns: Columns, at: int) -> str | None:
 
 
 def _check_places(columns: Columns, at: int) -> None:
-    """Raise UnreadableFile unless each field of a column is a place."""
+    """Keep the fields of a column that are not places as wrong."""
     for row, (_, texts) in enumerate(columns.table.rows):
-        if not _POINT.fullmatch(texts[at]) and not _PAIR.fullmatch(texts[at]):
+        if place_in(texts[at]) is None:
             demand = "must be a place, as 60.1, 24.9 (latitude first) or POINT(24.9 60.1)"
-            raise columns.refusal(row, at, demand, texts[at])
+            columns.refuse(row, at, demand, texts[at])
 
 
-def place_in(text: str) -> list[float]:
-    """Return the longitude and latitude in a point of WKT, or in a pair, latitude first."""
+def place_in(text: str) -> list[float] | None:
+    """Return the longitude and latitude in a point of WKT, or in a pair, latitude first.
+
+    None if the text is neither.
+    """
     if point := _POINT.fullmatch(text):
         return [float(each) for each in point.group(1, 2)]
     pair = _PAIR.fullmatch(text)
-    assert pair is not None
-    return [float(each) for each in pair.group(2, 1)]
+    return [float(each) for each in pair.group(2, 1)] if pair else None
 
 
 def _is_index(table: Table) -> bool:
@@ -282,22 +297,19 @@ def _is_index(table: Table) -> bool:
 
 
 def ids_of(columns: Columns) -> list[str]:
-    """Return the id of each row.
-
-    Raises:
-        UnreadableFile: An id is missing, or comes twice.
-    """
+    """Return the id of each row. Those that are missing, or come twice, are kept as wrong."""
     at = columns.fields.index("id")
+    ids = [" ".join(texts[at].split()) for _, texts in columns.table.rows]
     seen: dict[str, int] = {}
-    for row, (number, texts) in enumerate(columns.table.rows):
-        name = " ".join(texts[at].split())
+    for row, name in enumerate(ids):
         if not name:
-            raise columns.refusal(row, at, "must be an id, got none")
-        if name in seen:
+            columns.refuse(row, at, "must be an id, got none")
+        elif name in seen:
             came = f"got {quoted(name)} as in row {seen[name]}"
-            raise columns.refusal(row, at, f"must be an id that no other row has, {came}")
-        seen[name] = number
-    return list(seen)
+            columns.refuse(row, at, f"must be an id that no other row has, {came}")
+        else:
+            seen[name] = columns.table.rows[row][0]
+    return ids
 
 
 def columns_of_vehicles(source: Source, table: Table) -> Columns:

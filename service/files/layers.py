@@ -14,15 +14,15 @@ _TAKEN = "distance"  # the name of the first objective
 def costs_of_cells(source: Source, table: Table, grid: Rows) -> Rows:
     """Return the costs in a table, which has a field for each cell of a grid.
 
-    Raises:
-        UnreadableFile: A field is not a number, or is negative; the message names it.
+    Fields that are not numbers, or are negative, are kept as wrong.
     """
-    rows = numbers_of(source, _without_counts(source, table, grid))
-    for number, row in enumerate(rows, 1):
-        if min(row) < 0:
-            column = row.index(min(row)) + 1
-            demand = f"row {number}, column {column} of its costs must be 0 or more"
-            raise source.refusal(f"{demand}, got {min(row):g}")
+    costs = _without_counts(source, table, grid)
+    rows = numbers_of(source, costs)
+    for at, row in enumerate(rows):
+        negative = [column for column, cost in enumerate(row) if cost < 0] if min(row) < 0 else []
+        for column in negative:
+            demand = f"row {at + 1}, column {column + 1} of its costs must be 0 or more"
+            source.refuse_cell(costs.rows[at][0], column, f"{demand}, got {row[column]:g}")
     return rows
 
 

@@ -27,16 +27,22 @@ def weighted(places: Array, weights: Array) -> list[list[float]]:
 
 def check_range(source: Source, place: Sequence[float], where: str) -> None:
     """Raise UnreadableFile if a longitude or a latitude is out of range."""
-    for name, value, most in (("longitude", place[0], 180), ("latitude", place[1], 90)):
+    if fault := out_of_range(place):
+        raise source.refusal(f"{where} {fault[1]}")
+
+
+def out_of_range(place: Sequence[float]) -> tuple[int, str] | None:
+    """Return the axis on which a place is not on the earth, and what is demanded; else None."""
+    for axis, (name, most) in enumerate((("longitude", 180), ("latitude", 90))):
+        value = place[axis]
         if not -most <= value <= most:
             hint = ""
             if name == "latitude" and abs(value) <= 180 and abs(place[0]) <= 90:
                 hint = "; latitude and longitude look swapped"
             elif max(abs(place[0]), abs(place[1])) > 180:
                 hint = "; places must be in degrees (WGS84, EPSG:4326): convert them from metres"
-            raise source.refusal(
-                f"{where} must have a {name} of -{most} to {most}, got {value:g}{hint}"
-            )
+            return axis, f"must have a {name} of -{most} to {most}, got {value:g}{hint}"
+    return None
 
 
 def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:

@@ -8,12 +8,14 @@ from service.files.json_files import looks_like_json, read_json
 from service.files.octile import is_octile
 from service.files.reading import (
     Bounds,
+    FileTooLarge,
     Kind,
     NamedFile,
     Reading,
     Request,
     Source,
     UnreadableFile,
+    check_cells,
     choices_of,
     reading_of_several,
 )
@@ -54,11 +56,24 @@ def read_files(
     """
     sources = [Source(file, bounds) for file in files]
     try:
-        return _read_all(sources, wanted, unrounded)
+        return _read_cells(sources, wanted, unrounded)
     except UnreadableFile as error:
         error.columns = [column for source in sources for column in source.supposed]
         error.choices = choices_of(sources)
         raise
+
+
+def _read_cells(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
+    """Return the request of files; where cells of tables are wrong, raise all of them together."""
+    try:
+        reading = _read_all(sources, wanted, unrounded)
+    except FileTooLarge:
+        raise
+    except UnreadableFile:
+        check_cells(sources)  # what else is wrong may follow from them
+        raise
+    check_cells(sources)
+    return reading
 
 
 def _read_all(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:

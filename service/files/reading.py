@@ -13,6 +13,7 @@ _PICTURES = (b"\x89PNG", b"P5", b"P2")
 _PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
 LONGEST_NAME = 200  # characters of the name of a column by which it is known
 _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
+MOST_WRONG = 1000  # cells; a table with more of them is not read any further
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,10 +94,16 @@ class UnreadableFile(ValueError):
     Attributes:
         columns: What the columns of tables were taken for, as far as they were read.
         choices: What they may be taken for instead, by file.
+        cells: A sentence on each wrong cell of tables, row by row, if only cells are wrong.
     """
 
     columns: Sequence[Column] = ()
     choices: Mapping[str, Sequence[str]] = MappingProxyType({})
+    cells: Sequence[str] = ()
+
+
+class WrongCell(UnreadableFile):
+    """A cell of a table that cannot be read. Its source keeps it, so that reading can go on."""
 
 
 class FileTooLarge(UnreadableFile):
@@ -145,6 +152,8 @@ class Source:
     supposed: list[Column] = field(default_factory=list)  # columns, while they are being read
     # The names of columns that are details, with their texts by the ids of stops.
     details: list[tuple[str, Mapping[str, str]]] = field(default_factory=list)
+    # The sentences on cells that cannot be read, by the numbers of their rows and columns.
+    wrong: dict[tuple[int, int], str] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -163,6 +172,20 @@ class Source:
         """Return the exception that says what the file must be, and quotes what came instead."""
         got = "".join(f", got {quoted(each)}" for each in came)
         return UnreadableFile(f"{self.name}: {printable(demand)}{got}")
+
+    def refuse_cell(self, row: int, column: int, demand: str, *came: object) -> WrongCell:
+        """Keep a wrong cell, and return the exception that says what it must be.
+
+        Only the first sentence about a cell is kept.
+
+        Raises:
+            UnreadableFile: There are more wrong cells than are counted.
+        """
+        refusal = self.refusal(demand, *came)
+        if len(self.wrong) >= MOST_WRONG:
+            raise refusal
+        self.wrong.setdefault((row, column), str(refusal))
+        return WrongCell(str(refusal))
 
     def check_count(self, noun: str, limit: int, actual: int) -> None:
         """Raise FileTooLarge if the number is over the limit."""
@@ -186,6 +209,18 @@ def reading_of_several(
     details = tuple(Detail(each, [texts.get(i, "") for i in ids]) for each, texts in found)
     choices = choices_of(sources)
     return Reading(kind, request, name, notes, columns, choices, planes, details=details)
+
+
+def check_cells(sources: Sequence[Source]) -> None:
+    """Raise UnreadableFile with all wrong cells that were found in tables, if there are any."""
+    cells = [text for source in sources for _, text in sorted(source.wrong.items())]
+    if not cells:
+        return
+    least = "at least " if any(len(source.wrong) >= MOST_WRONG for source in sources) else ""
+    more = f" (and {least}{len(cells) - 1} more)" if len(cells) > 1 else ""
+    error = UnreadableFile(f"{cells[0]}{more}")
+    error.cells = cells
+    raise error
 
 
 def _ids_in(request: Request) -> list[str]:

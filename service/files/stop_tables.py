@@ -1,6 +1,7 @@
 """Make requests from tables: of stops with places, of two to four planes, or of one objective."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from service.files.column_names import FLEET
 from service.files.columns import Columns, columns_of, ids_of, place_in
 from service.files.fleets import Stop, measured, planar, timed, with_vehicles
-from service.files.places import check_range, note_places, weighted
+from service.files.places import note_places, out_of_range, weighted
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
@@ -178,15 +179,25 @@ def _places(columns: Columns) -> list[list[float]]:
     at = columns.find("place")
     if at is None:
         longitude, latitude = columns.fields.index("longitude"), columns.fields.index("latitude")
-        places, column = columns.numbers([longitude, latitude]), latitude
+        places = columns.numbers([longitude, latitude])
     else:
         for name in ("longitude", "latitude"):
             if (other := columns.find(name)) is not None:
                 columns.fields[other] = None
-        places, column = [place_in(row[at]) for _, row in columns.table.rows], at
+        places = [place_in(row[at]) or [0.0, 0.0] for _, row in columns.table.rows]
+        longitude = latitude = at
     for row, place in enumerate(places):
-        check_range(columns.source, place, columns.where(row, column))
+        check_degrees(columns, row, (longitude, latitude), place)
     return places
+
+
+def check_degrees(
+    columns: Columns, row: int, fields: tuple[int, int], place: Sequence[float]
+) -> None:
+    """Keep the longitude or latitude of a row as wrong if it is out of range."""
+    if fault := out_of_range(place):
+        axis, demand = fault
+        columns.refuse(row, fields[axis], demand)
 
 
 def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
@@ -222,9 +233,8 @@ def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> dict[str,
     source = columns.source
     source.check_count("stops with a cost", source.bounds.matrix_cities, len(stops))
     weights = np.array([each for (each,) in columns.numbers([cost])])
-    if (weights < 0).any():
-        row = int(np.argmax(weights < 0))
-        raise columns.refusal(row, cost, "must not be negative")
+    for row in np.flatnonzero(weights < 0).tolist():
+        columns.refuse(row, cost, "must not be negative")
     name = quoted(columns.names[cost])
     source.note("objectives", f"{name} is what a metre costs near a stop: an objective.")
     places = np.array([stop["location"] for stop in stops])
@@ -272,7 +282,12 @@ def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:
         fields = [texts[at] for at in free]
         costs.append(
             [*(plain_numbers(fields) or ())]
-            or [None if texts[at].casefold() in _NO_WAY else columns.number(row, at) for at in free]
+            or [
+                None
+                if texts[at].casefold() in _NO_WAY
+                else columns.tried(0.0, columns.number, row, at)
+                for at in free
+            ]
         )
     missing = sum(
         cost is None for row, each in enumerate(costs) for at, cost in enumerate(each) if at != row

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from pydantic_core import to_json
 
 from service.actor_info import ActorInfo
-from service.errors import Refusal
+from service.errors import Fault, Refusal
 from service.files.chosen import DETAIL, IGNORED, with_chosen
 from service.files.maps import with_grid
 from service.files.reader import read_files
@@ -46,9 +46,13 @@ class _Unreadable(Refusal):
     code = "unreadable-file"
 
     def __init__(self, error: UnreadableFile) -> None:
-        super().__init__(detail=str(error))
+        super().__init__(detail=str(error), errors=[Fault(each) for each in error.cells])
         columns = [asdict(column) for column in error.columns]
-        self.members = {"columns": columns, "choices": error.choices} if columns else {}
+        self.members: dict[str, Any] = (
+            {"columns": columns, "choices": error.choices} if columns else {}
+        )
+        if error.cells:
+            self.members["wrong_cells"] = len(error.cells)
 
     def document(self, request_id: str) -> dict[str, Any]:
         return {**super().document(request_id), **self.members}

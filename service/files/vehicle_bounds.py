@@ -20,8 +20,7 @@ def check_servers(
 ) -> None:
     """Check that a vehicle may visit each stop; leave out skills if vehicles have none.
 
-    Raises:
-        UnreadableFile: A stop names a vehicle that does not exist, or skills that none has.
+    Fields that name a vehicle that does not exist, or skills that none has, are kept as wrong.
     """
     if "skills" not in columns.fields:
         visits.leave_out("skills", " without skills of vehicles")
@@ -32,11 +31,11 @@ def check_servers(
     if (at := visits.find("skills")) is not None:
         for row in visits.filled(at):
             name = stops[row].get("vehicle")
-            able = vehicles if name is None else [by_id[name]]
-            if not _any_has(able, stops[row]["skills"]):
+            able = [each for each in vehicles if name in (None, each["id"])]
+            if able and not _any_has(able, stops[row]["skills"]):
                 whose = "one vehicle" if name is None else f"vehicle {quoted(name)}"
                 demand = f"must be skills that {whose} has, all of them"
-                raise visits.refusal(row, at, demand, visits.text(row, at))
+                visits.refuse(row, at, demand, visits.text(row, at))
 
 
 def _check_pinned(
@@ -47,7 +46,7 @@ def _check_pinned(
         for row in visits.filled(at):
             if stops[row]["vehicle"] not in by_id:
                 demand = f"must be the id of a vehicle of {file}"
-                raise visits.refusal(row, at, demand, stops[row]["vehicle"])
+                visits.refuse(row, at, demand, stops[row]["vehicle"])
 
 
 def _any_has(vehicles: Iterable[Vehicle], skills: Sequence[str]) -> bool:
@@ -58,8 +57,7 @@ def _any_has(vehicles: Iterable[Vehicle], skills: Sequence[str]) -> bool:
 def add_bounds(columns: Columns, vehicles: list[Vehicle]) -> None:
     """Add the bounds on the routes of vehicles, whose places and shifts are known.
 
-    Raises:
-        UnreadableFile: A bound is not a number, or needs a shift or a stop for loading again.
+    Fields that are not numbers, or need a shift or a stop for loading again, are kept as wrong.
     """
     for name, add in (
         ("max_stops", _add_max_stops),
@@ -68,7 +66,7 @@ def add_bounds(columns: Columns, vehicles: list[Vehicle]) -> None:
     ):
         if (at := columns.find(name)) is not None:
             for row in columns.filled(at):
-                add(columns, row, at, vehicles[row])
+                columns.tried(None, add, columns, row, at, vehicles[row])
 
 
 def _add_max_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
@@ -81,14 +79,14 @@ def _add_max_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> Non
 
 def _beside(columns: Columns, row: int, at: int, other: int) -> UnreadableFile:
     demand = f"must be empty beside {quoted(columns.names[other])}"
-    return columns.refusal(row, at, demand, columns.text(row, at))
+    return columns.refuse(row, at, demand, columns.text(row, at))
 
 
 def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
     """Add the most trips of a route; by default vehicles load again where they start."""
     if "reload" not in vehicle:
         if "start" not in vehicle:
-            raise columns.refusal(row, at, "needs a stop for loading again, in a column 'reload'")
+            raise columns.refuse(row, at, "needs a stop for loading again, in a column 'reload'")
         vehicle["reload"] = [vehicle["start"]]
     vehicle["max_trips"] = columns.whole(row, at)
 
@@ -96,5 +94,5 @@ def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> Non
 def _add_max_overtime(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
     if overtime := seconds_in(columns, row, at):
         if not in_shifts([vehicle]):
-            raise columns.refusal(row, at, "needs a shift of the vehicle", columns.text(row, at))
+            raise columns.refuse(row, at, "needs a shift of the vehicle", columns.text(row, at))
         vehicle["max_overtime"] = overtime

@@ -4,6 +4,8 @@ from service.files.column_names import amount_of
 from service.files.columns import Columns
 from service.files.fleets import Stop, Vehicle, all_demand, numbers
 
+_IF_WRONG = 1e15  # in place of a capacity that is wrong: no initial load is more
+
 
 def add_loads(
     columns: Columns, vehicles: list[Vehicle], visits: Columns, stops: list[Stop], units: int
@@ -24,7 +26,8 @@ def add_loads(
     if "capacity" in columns.fields:
         found = _columns_of(columns, "capacity", visits, demands)
         for row, vehicle in enumerate(vehicles):
-            vehicle["capacity"] = [int(columns.amount(row, at) * units) for at in found]
+            amounts = [columns.tried(_IF_WRONG, columns.amount, row, at) for at in found]
+            vehicle["capacity"] = [int(amount * units) for amount in amounts]
     else:
         _hold_all(columns, vehicles, all_demand(stops))
     if "initial_load" in columns.fields:
@@ -62,9 +65,11 @@ def _add_initial_load(
     filled = [at for at in found if columns.text(row, at)]
     if not filled:
         return
-    load = [columns.amount(row, at) * units if at in filled else 0.0 for at in found]
+    load = [
+        columns.tried(0.0, columns.amount, row, at) * units if at in filled else 0.0 for at in found
+    ]
     for at, loaded, most in zip(found, load, vehicle["capacity"], strict=True):
         if loaded > most:
             came = f"{loaded / units:g}"
-            raise columns.refusal(row, at, f"must be at most the capacity, {most / units:g}", came)
+            columns.refuse(row, at, f"must be at most the capacity, {most / units:g}", came)
     vehicle["initial_load"] = [int(each) for each in load]

@@ -15,9 +15,8 @@ from service.files.fleets import (
     spans,
     with_measure,
 )
-from service.files.places import check_range
 from service.files.reading import Reading, Source, quoted, reading_of_several
-from service.files.stop_tables import visits_of
+from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
 from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
 from service.files.vehicle_loads import add_loads
@@ -112,12 +111,12 @@ class _Vehicles:
         columns = self._columns
         vehicle: Vehicle = {"id": id_}
         if (at := columns.find("count")) is not None and columns.text(row, at):
-            vehicle["count"] = columns.whole(row, at)
+            vehicle["count"] = columns.tried(1, columns.whole, row, at)
         for place, ends in _ENDS.items():
-            if name := self._place(row, place, id_):
+            if name := columns.tried(self._stops[0]["id"], self._place, row, place, id_):
                 vehicle |= dict.fromkeys(ends, name)
         if (at := columns.find("reload")) is not None and columns.text(row, at):
-            vehicle["reload"] = self._reload(row, at)
+            vehicle["reload"] = columns.tried(None, self._reload, row, at) or []
         return vehicle | spans("shift", spans_in(columns, row, ["shift"]))
 
     def _reload(self, row: int, at: int) -> list[str]:
@@ -126,7 +125,7 @@ class _Vehicles:
         ids = [text] if text in self._ids else texts_in(self._columns, row, at)
         for each in ids:
             if each not in self._ids:
-                raise self._columns.refusal(row, at, "must be ids of stops", each)
+                raise self._columns.refuse(row, at, "must be ids of stops", each)
         return ids
 
     def _place(self, row: int, place: str, vehicle: str) -> str | None:
@@ -135,7 +134,7 @@ class _Vehicles:
         at = columns.find(place)
         if at is not None and (text := " ".join(columns.text(row, at).split())):
             if text not in self._ids:
-                raise columns.refusal(row, at, "must be the id of a stop", text)
+                raise columns.refuse(row, at, "must be the id of a stop", text)
             return text
         longitude, latitude = columns.find(f"{place}_longitude"), columns.find(f"{place}_latitude")
         if longitude is None or latitude is None:
@@ -143,9 +142,10 @@ class _Vehicles:
         if not columns.text(row, longitude) and not columns.text(row, latitude):
             return None
         if not self._located:
-            raise columns.refusal(row, latitude, "must be empty, as stops have x and y")
-        location = [columns.number(row, longitude), columns.number(row, latitude)]
-        check_range(self._source, location, columns.where(row, latitude))
+            raise columns.refuse(row, latitude, "must be empty, as stops have x and y")
+        fields = (longitude, latitude)
+        location = [columns.tried(0.0, columns.number, row, at) for at in fields]
+        check_degrees(columns, row, fields, location)
         name = self._places.setdefault(tuple(location), f"{place} of {vehicle}")
         if name not in self._ids:
             self._ids.add(name)
@@ -165,7 +165,9 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
         if columns.text(row, at):
             unit = _KILOMETRE if _IN_KILOMETRES.search(columns.names[at]) else 1.0
             vehicle["longest"] = (
-                seconds_in(columns, row, at) if clock else unit * columns.amount(row, at)
+                columns.tried(0.0, seconds_in, columns, row, at)
+                if clock
+                else unit * columns.tried(0.0, columns.amount, row, at)
             )
 
 
@@ -179,7 +181,7 @@ def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> N
         columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
         for row, vehicle in enumerate(vehicles):
             if columns.text(row, at):
-                vehicle["fixed"] = columns.amount(row, at) / metre
+                vehicle["fixed"] = columns.tried(0.0, columns.amount, row, at) / metre
 
 
 def _rates(columns: Columns) -> set[float]:
@@ -187,7 +189,8 @@ def _rates(columns: Columns) -> set[float]:
     at = columns.find("per_km")
     if at is None:
         return set()
-    rates = {columns.amount(row, at) for row in range(len(columns.table.rows))}
+    rows = range(len(columns.table.rows))
+    rates = {columns.tried(0.0, columns.amount, row, at) for row in rows}
     if len(rates) > 1 or 0.0 in rates:
         columns.leave_out("per_km", ", which differs by vehicle,")
     return rates - {0.0}

@@ -11,7 +11,7 @@ import numpy as np
 from service.files.column_names import SECONDS, WINDOWS, seconds_of, unit_of_times
 from service.files.columns import Columns
 from service.files.fleets import Stop, spans
-from service.files.reading import quoted
+from service.files.reading import WrongCell, quoted
 from service.files.tables import number_in
 
 _TIME = re.compile(
@@ -41,6 +41,7 @@ _AROUND_SPAN = " []()"
 _AROUND_TEXT = " []{}\"'"  # as Python and JSON write lists
 _ENDS = 2  # of a window
 _BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
+_IF_WRONG = [[0.0, 1.0]]  # in place of wrong windows or shifts: overtime needs a shift
 _MOST = 1e6  # the largest demand
 _ROUNDING = 1e-6
 _MOST_DECIMALS = 3  # of a demand, which becomes a whole number
@@ -66,7 +67,9 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
     for name, read in readers.items():
         if (at := columns.find(name)) is not None:
             for row in columns.filled(at):
-                stops[row][name] = read(row, at)
+                value = columns.tried(None, read, row, at)
+                if value is not None:
+                    stops[row][name] = value
     _note_brief_service(columns, stops)
     for row, stop in enumerate(stops):
         stop |= spans("window", spans_in(columns, row, WINDOWS))
@@ -79,7 +82,7 @@ def _note_brief_service(columns: Columns, stops: list[Stop]) -> None:
     if at is None or columns.find("latitude") is None or seconds_of(columns.names[at]):
         return
     rows = columns.filled(at)
-    longest = max((stops[row]["service"] for row in rows), default=0)
+    longest = max((stops[row].get("service", 0) for row in rows), default=0)
     if 0 < longest < _BRIEF and all(number_in(columns.text(row, at)) is not None for row in rows):
         name = columns.names[at]
         columns.source.note(
@@ -129,9 +132,10 @@ def _columns_of_times(columns: Columns) -> list[list[int]]:
 
 
 def _times_in(columns: Columns, row: int, at: int) -> list[str]:
-    """Return the texts of the times in a field."""
+    """Return the texts of the times in a field; none of a window that cannot be read."""
     if columns.fields[at] in (*WINDOWS, "shift"):
-        return [text for bounds in _bounds_in(columns, row, at) for text in bounds]
+        windows = columns.tried(None, _bounds_in, columns, row, at)
+        return [text for bounds in windows or () for text in bounds]
     return [columns.text(row, at)]
 
 
@@ -173,7 +177,10 @@ def _note_hours(columns: Columns, group: list[int], cells: Iterable[tuple[int, i
         return
     decimal = (cell for cell in found if _DECIMALS.search(columns.text(*cell)))
     row, at = next(decimal, found[0])
-    times = [_clock(seconds_in(columns, row, at, each)) for each in _times_in(columns, row, at)]
+    times = [
+        _clock(columns.tried(0.0, seconds_in, columns, row, at, text))
+        for text in _times_in(columns, row, at)
+    ]
     read = "; ".join("-".join(times[at : at + _ENDS]) for at in range(0, len(times), _ENDS))
     columns.source.note(
         "times",
@@ -234,19 +241,20 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
     """Add demands as whole numbers; multiply fractions by a power of ten, and return that."""
     rows = np.array(
         [
-            [columns.number(row, at) if columns.text(row, at) else 0.0 for at in demands]
+            [
+                columns.tried(0.0, columns.number, row, at) if columns.text(row, at) else 0.0
+                for at in demands
+            ]
             for row in range(len(stops))
         ]
     )
     finer = [rows * 10**decimals for decimals in range(_MOST_DECIMALS + 1)]
     whole = [np.abs(each - np.rint(each)) < _ROUNDING for each in finer]
-    right = ((rows >= 0) & (rows <= _MOST) & whole[-1]).all(axis=1)
-    if not right.all():
-        row = int(np.argmin(right))
+    right = (rows >= 0) & (rows <= _MOST) & whole[-1]
+    for row, at in np.argwhere(~right).tolist():
         demand = f"must be 0 to {_MOST:g}, with at most {_MOST_DECIMALS} decimals"
-        came = ", ".join(f"{each:g}" for each in rows[row])
-        raise columns.refusal(row, demands[0], f"{demand}, got {came}")
-    decimals = next(at for at, each in enumerate(whole) if each.all())
+        columns.refuse(row, demands[at], f"{demand}, got {rows[row, at]:g}")
+    decimals = next((at for at, each in enumerate(whole) if each.all()), 0)
     if decimals:
         columns.source.note(
             "demand",
@@ -260,21 +268,24 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
 def spans_in(columns: Columns, row: int, fields: Iterable[str]) -> list[list[float]]:
     """Return the windows or shifts of a row in seconds, in order; none if its fields are empty.
 
-    Raises:
-        UnreadableFile: A window ends before it begins, or begins before the one before has ended.
+    Fields are kept as wrong, and another span is returned, where a window cannot be read, ends
+    before it begins, or begins before the one before has ended.
     """
-    found = [(span, at) for field in fields for span, at in _spans_in(columns, row, field)]
-    for span, at in found:
-        if span[1] < span[0]:
-            demand = f"must have a {_noun(columns, at)} that ends after it begins"
-            hint = " (after midnight, 2:00 is 26:00)" if at in columns.hours else ""
-            raise columns.refusal(row, at, demand + hint, columns.text(row, at))
+    read = [columns.tried(None, _spans_in, columns, row, field) for field in fields]
+    found = [each for spans in read for each in spans or ()]
+    backward = [(span, at) for span, at in found if span[1] < span[0]]
+    for _, at in backward:
+        demand = f"must have a {_noun(columns, at)} that ends after it begins"
+        hint = " (after midnight, 2:00 is 26:00)" if at in columns.hours else ""
+        columns.refuse(row, at, demand + hint, columns.text(row, at))
+    if backward or None in read:
+        return _IF_WRONG
     found.sort(key=lambda each: each[0])
     for (before, _), (span, at) in pairwise(found):
         if span[0] <= before[1]:
             came = f"got {span[0]:g} s after {before[1]:g} s"
             demand = f"must begin after the {_noun(columns, at)} before has ended, {came}"
-            raise columns.refusal(row, at, demand)
+            columns.refuse(row, at, demand)
     return [span for span, _ in found]
 
 
@@ -285,16 +296,17 @@ def _spans_in(columns: Columns, row: int, field: str) -> list[tuple[list[float],
         bounds = _bounds_in(columns, row, both)
         return [([seconds_in(columns, row, both, text) for text in each], both) for each in bounds]
     earliest, latest = (columns.find(f"{field}_{end}") for end in ("from", "to"))
-    texts = ["" if at is None else columns.text(row, at) for at in (earliest, latest)]
-    if not any(texts):
+    filled = [at for at in (earliest, latest) if at is not None and columns.text(row, at)]
+    if not filled:
         return []
-    if latest is None or not texts[1]:
-        at = latest if latest is not None else earliest
-        assert at is not None
-        noun = _noun(columns, at)
-        raise columns.refusal(row, at, f"must say when the {noun} ends, got none")
-    start = 0.0 if earliest is None or not texts[0] else seconds_in(columns, row, earliest)
-    return [([start, seconds_in(columns, row, latest)], latest)]
+    times = [columns.tried(None, seconds_in, columns, row, at) for at in filled]
+    if latest is None or latest not in filled:
+        at = filled[0] if latest is None else latest
+        raise columns.refuse(row, at, f"must say when the {_noun(columns, at)} ends, got none")
+    start, end = [0.0, *times][-_ENDS:]
+    if start is None or end is None:
+        raise WrongCell
+    return [([start, end], latest)]
 
 
 def _bounds_in(columns: Columns, row: int, at: int) -> list[list[str]]:
@@ -306,7 +318,7 @@ def _bounds_in(columns: Columns, row: int, at: int) -> list[list[str]]:
         if all(len(bounds) == _ENDS for bounds in found):
             return [[_with_unit(begin, end), end] for begin, end in found]
     demand = "must be two times, as 8:00-12:30, or several as 8:00-10:00; 14:00-16:00"
-    raise columns.refusal(row, at, demand, columns.text(row, at))
+    raise columns.refuse(row, at, demand, columns.text(row, at))
 
 
 def _with_unit(begin: str, end: str) -> str:
@@ -352,5 +364,5 @@ def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> 
     unit = own or seconds_of(columns.names[at])
     is_doubtful = at in columns.hours and not unit and 0 < (number or 0) < _LEAST_SECONDS
     if number is None or number < 0 or is_doubtful:
-        raise columns.refusal(row, at, "must be seconds, or a time as 10:30 or 5 min", text)
+        raise columns.refuse(row, at, "must be seconds, or a time as 10:30 or 5 min", text)
     return number * (unit or 1)

@@ -2,17 +2,16 @@
 
 import { arrange, narrow } from "./result/arrangement.js";
 import { keepDraft, keptDraft } from "./opening/draft.js";
-import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
-import { clearFaults, revealFault, showFault, showFaults } from "./planning/faults.js";
-import { FileNotes } from "./opening/file_notes.js";
+import { clearFaults, revealFault, showFaults } from "./planning/faults.js";
 import { formOf, kindOf } from "./common/kinds.js";
-import { detailsByStop, withoutDetails } from "./inputs/details.js";
+import { detailsByStop } from "./inputs/details.js";
 import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
 import { withUnits } from "./fleet/units.js";
-import { keyOf, without } from "./inputs/instance.js";
+import { keysOf } from "./inputs/request_keys.js";
+import { without } from "./inputs/instance.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
 import { Placing } from "./inputs/placing.js";
 import { holdStill } from "./inputs/pressing.js";
@@ -23,9 +22,8 @@ import { RequestForm } from "./inputs/request_form.js";
 import { SURVEY, say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
-import { Reading, read, takeDropped, takePasted } from "./opening/reading.js";
-import { Surroundings } from "./opening/surroundings.js";
-import { withEdited, withFleet } from "./opening/own_fleet.js";
+import { Opening } from "./opening/opening.js";
+import { takeDropped, takePasted } from "./opening/reading.js";
 import { Problem, Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
@@ -45,15 +43,20 @@ const result = new Result({
 });
 const input = new RequestForm(form, service, { onEdited: edited, onEnds: result.showEnds, onShaded: result.shade, settled });
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
-const examples = new Examples(element("example"), element("about"));
-const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"), element("columns"), {
-  onDismissed: () => element("file").focus(),
-  onChosen: openFiles,
-});
-const surroundings = new Surroundings(service, result);
-const exporting = new ExportButtons(service, screen, fail);
+const exporting = new ExportButtons(service, screen, (problem) => fail(problem, ""));
 const replanForm = new ReplanForm(replan, result.wait);
-const reading = new Reading(offer, () => planning || say(""));
+const opening = new Opening(service, result, {
+  leave,
+  offer,
+  onDone: () => planning || say(""),
+  open,
+  asked: () => input.asked,
+  plan,
+  fail,
+  settings: () => serviceSettings,
+  started: () => started,
+});
+const { examples, reading, surroundings } = opening;
 const undo = new Undo(element("undo"), takeBack);
 
 let way = null; // the way on which the front shown can be replanned
@@ -65,9 +68,6 @@ let answered = null; // its request
 let last = null; // the state in which the last plan was done, its request, and what was chosen in it
 let opened = 0; // how many requests were opened
 let shown = false; // whether anything was opened or typed
-let awaited = null; // the file of an example that will be shown, unless files are opened instead
-let vehiclesRead; // as JSON, before they were edited
-let refusal = null; // the refusal of such files, while that example is fetched nevertheless
 
 /** Opens a request in the form, and shows its stops under their objectives. */
 function open(wanted, names) {
@@ -79,7 +79,7 @@ function open(wanted, names) {
 function takeBack({ asked, names, example, number }) {
   const isOther = number !== opened || example !== examples.chosen?.file;
   opened = number;
-  if (isOther) forgetExample();
+  if (isOther) opening.forget();
   if (isOther && examples.choose(example)) surroundings.begin(examples.chosen);
   change({ ...asked, ...input.planning }, names);
   if (isOther && examples.chosen) surroundings.fetch();
@@ -97,14 +97,16 @@ function change(wanted, names) {
  */
 function edited(instance, fit) {
   shown = true;
-  awaited = null;
+  opening.giveUp();
   leave();
-  clear();
+  opening.clear();
   if (!reading.isRunning) say("");
   if (!instance) return;
-  const asked = without(input.asked, ...Object.keys(input.planning));
-  undo.note(keyOf(asked), { asked, names: input.objectives, example: examples.chosen?.file, number: opened });
-  const again = last && isAsked(last.asked);
+  const { asked } = input;
+  const brought = without(asked, ...Object.keys(input.planning));
+  undo.note(keysOf(asked).brought, { asked: brought, names: input.objectives, example: examples.chosen?.file, number: opened });
+  const isAsked = (request) => request && keysOf(request).planned === keysOf(asked).planned; // details are not planned
+  const again = isAsked(last?.asked);
   if (answer && isAsked(answered)) {
     if (again) tell(last.state);
     return;
@@ -121,9 +123,6 @@ function showAgain({ state, chosen: { balance, limits, selected } }) {
   result.want(balance, selected.item, limits);
   show(state);
 }
-
-/** Whether the form asks for this request; details are not planned. */
-const isAsked = (request) => Boolean(request) && keyOf(withoutDetails(input.asked)) === keyOf(withoutDetails(request));
 
 const tell = (state) => say(sentence(state, kindOf(input.asked).onGrid));
 
@@ -156,7 +155,7 @@ async function run(states, waiting = "A first try is being made.") {
   if (input.unread && !(await settled())) return;
   leave();
   const mine = (planning = new Planning(service, mostSeconds));
-  clear();
+  opening.clear();
   offer();
   placeResult();
   say(waiting);
@@ -256,139 +255,29 @@ function offer() {
   form.setAttribute("aria-busy", String(busy));
 }
 
-function clear() {
-  clearFaults();
-  if (refusal) tellUnread(refusal);
-}
-
 async function stop() {
-  if (reading.isRunning) {
-    reading.end();
-    if (awaited) examples.forget();
-    awaited = null;
-    say("Stopped.");
-  }
-  await planning?.stop().catch(fail);
-}
-
-/** Runs a reading instead of any planning. A refusal of files stays visible while the example is fetched that replaces them. */
-function whileReading(words, task, told = null) {
-  leave();
-  refusal = told;
-  clear();
-  say(words);
-  return reading.run(task);
+  if (reading.isRunning) opening.stop();
+  await planning?.stop().catch((error) => fail(error, "Not stopped."));
 }
 
 /** Reads what was typed. Returns false if it cannot be read, which is shown, or if reading was ended. */
 async function settled() {
   if (reading.isRunning) return false; // what is being read replaces what was typed
   try {
-    return await whileReading("What was typed is being read.", (mine) => input.settle(mine));
+    return await opening.run("What was typed is being read.", (mine) => input.settle(mine));
   } catch (error) {
     fail(error);
     return false;
   }
 }
 
-function fail(error) {
+/** Shows an error at its fields, and says what has failed: by default, planning. */
+function fail(error, said = answer ? "Not planned: what is shown is the plan before." : "") {
   if (!(error instanceof Problem)) throw error;
-  say(answer ? "Not planned: what is shown is the plan before." : "");
+  say(said);
   showFaults(error);
   input.mark();
   return (element("waiting").textContent = revealFault()); // a phone shows the form below
-}
-
-function openChosen() {
-  openFiles([...element("file").files]);
-  element("file").value = "";
-}
-
-/** Opens files as a request, or says why that is not possible; until then nothing can be planned. `columns` were chosen. */
-async function openFiles(files, columns = []) {
-  if (!files.length) return;
-  const words = files.length > 1 ? "The files are being read." : "The file is being read.";
-  try {
-    await whileReading(words, async ({ signal }) => {
-      const brought = await brings(files, columns, signal);
-      signal.throwIfAborted();
-      const before = examples.chosen ? undefined : input.asked.vehicles;
-      forgetExample();
-      const kept = (columns.length ? withEdited : withFleet)(brought, before, vehiclesRead);
-      openRead(kept);
-      fileNotes.show(files, columns, kept);
-    });
-  } catch (error) {
-    fileNotes.refused(files, columns, error);
-    await unread(error);
-  }
-}
-
-/** Opens what was read, and notes which of its vehicles nobody has edited. */
-function openRead({ members, objectives, vehicles }) {
-  open({ ...members, ...(vehicles && { vehicles }) }, objectives);
-  if (!vehicles) vehiclesRead = JSON.stringify(input.asked.vehicles);
-}
-
-async function brings(files, columns, signal) {
-  try {
-    return await read(service, files, columns, (await serviceSettings)?.roads ?? true, signal);
-  } catch (error) {
-    await started; // and the list says which example is shown instead
-    throw error;
-  }
-}
-
-/** Keeps what was shown, which can be planned; shows an example that was awaited. */
-async function unread(error) {
-  tellUnread(error);
-  if (!awaited) return;
-  if (await openExample(awaited, error)) plan();
-  if (refusal === error) refusal = null;
-}
-
-function tellUnread(error) {
-  if (!(error instanceof Problem)) throw error;
-  if (error.code === "unauthorized") showFaults(error);
-  else showFault("file", `not opened: ${error.message}`);
-}
-
-function tellFolder(name) {
-  tellUnread(new Problem({ code: "folder", detail: `${name} is a folder: drop its files` }));
-}
-
-/** Opens an example by its file. Returns false if it does not exist, or something else was opened meanwhile. */
-async function openExample(file, refused) {
-  if (!examples.choose(file)) return false;
-  const { chosen } = examples;
-  awaited = file;
-  fileNotes.dismiss();
-  const fetched = async ({ signal }) => {
-    const wanted = await service.get(`examples/${file}`, signal);
-    surroundings.begin(chosen);
-    open(wanted, chosen.objectives);
-  };
-  try {
-    if (!(await whileReading("The example is being opened.", fetched, refused))) return false;
-  } catch (error) {
-    awaited = null;
-    examples.forget();
-    fail(error);
-    return false;
-  }
-  examples.opened(input.asked);
-  surroundings.fetch();
-  return true;
-}
-
-async function planExample(file) {
-  if (await openExample(file)) await plan();
-}
-
-function forgetExample() {
-  examples.forget();
-  fileNotes.dismiss();
-  surroundings.forget();
 }
 
 /** Opens the front that a link names. Returns false if it names none. */
@@ -406,8 +295,8 @@ async function openLinked(link) {
 
 /** Opens the request in a link. Returns false if something else was opened meanwhile. */
 async function openAsked({ example, asked }) {
-  forgetExample();
-  if (examples.choose(example)) return openExample(example);
+  opening.forget();
+  if (examples.choose(example)) return opening.openExample(example);
   open(asked?.request ?? {}, asked?.objectives);
   return true;
 }
@@ -436,12 +325,13 @@ holdStill();
 narrow.addEventListener("change", placeResult);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {
-  forgetExample();
+  opening.forget();
   change({ coordinates: [] });
 });
-element("example").addEventListener("change", ({ target }) => planExample(target.value));
-element("file").addEventListener("change", openChosen);
-takeDropped(element("drop"), openFiles, tellFolder);
+element("example").addEventListener("change", ({ target }) => opening.planExample(target.value));
+element("file").addEventListener("change", () => opening.openChosen());
+const openFiles = (files) => opening.openFiles(files);
+takeDropped(element("drop"), openFiles, (name) => opening.refuseFolder(name));
 takePasted(openFiles);
 addEventListener("hashchange", async () => openLinked(await linked(location.hash)));
 for (const leaving of ["beforeunload", "pagehide"]) {
@@ -451,7 +341,7 @@ for (const leaving of ["beforeunload", "pagehide"]) {
 const serviceSettings = service.get("page/settings.json").catch(() => null);
 const started = start();
 offer(); // only now: before, the browser itself would send the form
-openChosen(); // while the page was being loaded
+opening.openChosen(); // while the page was being loaded
 serviceSettings.then((settings) => {
   if (!settings) return;
   mostSeconds = settings.seconds;
@@ -468,6 +358,5 @@ async function start() {
     return fail(error);
   }
   if ((await openLinked(keptDraft() ?? (await linked(location.hash)))) || shown) return;
-  if (reading.isRunning) awaited = examples.first;
-  else planExample(examples.first);
+  opening.begin();
 }

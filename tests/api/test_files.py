@@ -11,6 +11,7 @@ import httpx
 import openpyxl
 import pytest
 
+from service.errors import MOST_FAULTS
 from tests.files.test_examples import FOLDER as EXAMPLES
 from tests.helpers.serving import LIMITS, app_of, problem, serving
 
@@ -206,6 +207,29 @@ def test_what_cannot_be_read_is_refused(
     assert (answer.status_code, answer.json()["code"]) == (status, code)
     assert sentence in answer.json()["detail"]
     assert "\x1b" not in answer.text
+
+
+def test_all_wrong_cells_are_told_at_once_and_those_that_are_not_listed_are_counted(
+    address: str,
+) -> None:
+    stops = [f"s{row},{'north' if row % 2 else '60.1'},24.9" for row in range(2, 52)]
+    vans = b"vehicle,capacity\nKim,5\nLee,big\n"
+    files = ("orders.csv", "\n".join(["id,lat,lon,qty", *stops]).replace(".9", ".9,1").encode())
+    answer = sent(address, files, ("vans.csv", vans))
+    problem(answer, 422, "unreadable-file")
+    told = answer.json()
+    first = "orders.csv: row 3, column 'lat' must be a number, got 'north'"
+    assert told["detail"] == f"{first} (and 25 more)"
+    assert told["wrong_cells"] == 26
+    said = [f"row {row}, column 'lat'" for row in range(3, 3 + 2 * MOST_FAULTS, 2)]
+    assert [each["detail"].split(" must")[0] for each in told["errors"]] == [
+        f"orders.csv: {each}" for each in said
+    ]
+    assert {"latitude", "ignored"} <= {*told["choices"]["orders.csv"]}
+    alone = sent(address, ("vans.csv", vans), ("orders.csv", b"id,lat,lon,qty\na,1,2,3\nb,1,2,4\n"))
+    told = alone.json()
+    assert told["errors"] == [{"detail": told["detail"]}]
+    assert "errors" not in sent(address, ("a.csv", b"")).json()
 
 
 def test_other_bodies_are_refused(address: str) -> None:

@@ -162,6 +162,40 @@ def test_a_broken_file_is_told_until_something_else_is_opened_or_edited(opened: 
     expect(fault).to_be_empty()
 
 
+def test_all_wrong_cells_are_a_list_and_the_file_before_is_named_without_its_notes(
+    opened: Page,
+) -> None:
+    good = "id;lon;lat\na;24,9;60,1\nb;24,8;60,2\n"
+    open_files(opened, {"good.csv": good})
+    notes, fault = opened.locator("#file-notes"), opened.locator("#file-fault")
+    expect(notes.get_by_role("listitem").first).to_be_visible()
+    rows = ["a,24.9,60.1", *(f"s{at},24.8,north" for at in range(25))]
+    open_files(opened, {"many.csv": "\n".join(["id,lon,lat", *rows])})
+    expect(fault).to_contain_text("Not opened: 25 cells cannot be read.")
+    items = fault.get_by_role("listitem")
+    expect(items).to_have_count(21)
+    expect(items.first).to_have_text("many.csv: row 3, column 'lat' must be a number, got 'north'")
+    expect(items.last).to_have_text("and 5 more")
+    expect(notes).to_have_text("Still open: good.csv, as it was read before.")
+    assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["a", "b"]
+    open_files(opened, {"few.csv": "id,lon,lat\na,<b>x</b>,60\nb,east,60.2\nc,1,1\n"})
+    expect(items).to_have_count(2)
+    expect(items.first).to_contain_text("got '<b>x</b>'")
+    open_files(opened, {"good.csv": good})
+    expect(fault).to_be_empty()
+    expect(notes).not_to_contain_text("Still open")
+
+
+def test_an_example_that_cannot_be_opened_is_said_to_be_that(opened: Page) -> None:
+    opened.route("**/examples/*", lambda route: route.abort())
+    title = "City deliveries"
+    opened.get_by_label("Example", exact=True).select_option(title)
+    said = opened.locator("#status")
+    expect(said).to_have_text(f"The example “{title}” was not opened.")
+    expect(opened.locator("#request-fault")).to_contain_text("does not answer")
+    opened.unroute_all()
+
+
 def test_dropped_files_are_opened(opened: Page) -> None:
     opened.evaluate(DROP, {"dropped.csv": "Order ID;lon [deg];lat [deg]\n#1;24,9;60,1\n#2;25;60\n"})
     expect(opened.locator("#file-notes p")).to_contain_text("dropped.csv")

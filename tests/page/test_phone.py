@@ -6,6 +6,7 @@ from tests.helpers.browsing import PHONE, needs_chromium, open_files, open_page,
 
 pytestmark = needs_chromium
 
+RING = "document.querySelector('#plane-1 .ring.start').style.transform"  # its place on the map
 SCROLLED = ["scrollTo(0, 0)", "scrollTo(0, 2000)", "scrollTo(0, document.body.scrollHeight)"]
 
 
@@ -51,6 +52,31 @@ def test_a_stop_is_added_on_the_map_without_scrolling_and_is_seen_in_the_table(
         expect(page.get_by_label("Name of stop 27")).to_be_in_viewport(ratio=1)
         expect(button).to_be_in_viewport(ratio=1)
         expect(button).to_have_attribute("aria-pressed", "false")
+
+
+def test_a_finger_shows_all_stops_again(browser: Browser, released: str) -> None:
+    """Fingers zoom maps without buttons, and lose the stops as easily."""
+    size = {"width": PHONE, "height": 812}
+    page = browser.new_page(viewport=size, has_touch=True, is_mobile=True)
+    page.goto(released)
+    wait_until_planned(page)
+    button = page.get_by_role("button", name="Show all stops").first
+    expect(button).to_be_visible()
+    expect(page.get_by_role("button", name="Zoom in")).to_have_count(0)
+    assert page.evaluate("document.documentElement.scrollWidth") == PHONE
+    caption = page.locator("figcaption", has=button)
+    box, room = button.bounding_box(), caption.bounding_box()
+    assert box is not None
+    assert room is not None
+    assert room["x"] <= box["x"]
+    assert box["x"] + box["width"] <= room["x"] + room["width"] + 1
+    before = page.evaluate(RING)
+    page.locator("#plane-1").focus()
+    page.keyboard.press("Shift+=")
+    assert page.evaluate(RING) != before
+    button.tap()
+    assert page.evaluate(RING) == before
+    page.close()
 
 
 def test_a_desk_has_no_button_that_leads_to_the_stops(planned: Page) -> None:

@@ -19,6 +19,9 @@ const FIELDS = [
   { name: "bound", label: "Say how far from the best possible it may be", where: "more", box: true },
 ];
 
+/** The names of the settings of how to plan: all fields but the ends of tours. */
+export const SETTINGS = FIELDS.filter(({ stop }) => !stop).map(({ name }) => name);
+
 const ENDS = ["start", "end"];
 const OFFERED = 1000; // the most names in a list that a browser opens without delay
 
@@ -53,8 +56,7 @@ export class Fields {
 
   /** The filled-in values but for the ends of tours. */
   get planning() {
-    const names = FIELDS.filter(({ stop }) => !stop).map(({ name }) => name);
-    return Object.fromEntries(Object.entries(this.members).filter(([name]) => names.includes(name)));
+    return Object.fromEntries(Object.entries(this.members).filter(([name]) => SETTINGS.includes(name)));
   }
 
   /** The first that is not a number, or an end that is not a stop, as an error of a request; undefined if there is none. */

@@ -12,6 +12,9 @@ export function stopNamed(ids, name) {
 /** Cities as text: a row of four numbers on each line. */
 export const textOf = (rows) => rows.map((row) => row.join(", ")).join("\n");
 
+/** A coordinate of a place that was pointed at, without digits that nobody can point to. */
+export const rounded = (value) => Number(value.toPrecision(7));
+
 /** Whether the row can be drawn. */
 export const isCity = (row) => row.length === 4 && row.every(Number.isFinite);
 

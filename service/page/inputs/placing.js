@@ -1,5 +1,6 @@
 /** Place cities by clicks: with two planes, first in one, then in the other. */
 
+import { rounded } from "./places.js";
 import { narrow } from "../result/arrangement.js";
 
 export class Placing {
@@ -72,5 +73,3 @@ export class Placing {
     this.#help.textContent = this.#on ? next : "";
   }
 }
-
-const rounded = (value) => Number(value.toPrecision(7));

@@ -10,7 +10,7 @@ import { byIds, servedBy, stopRenamed } from "../fleet/references.js";
 import { RequestText } from "../fleet/fleet_request.js";
 import { placedAt, withRobotEnd } from "./map_ends.js";
 import { isProposed, withoutLayer } from "./map_proposal.js";
-import { IF_LOST, isCity, nameOf, textOf } from "./places.js";
+import { IF_LOST, isCity, nameOf, rounded, textOf } from "./places.js";
 import { PlanLine } from "./plan_line.js";
 import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
@@ -187,13 +187,13 @@ export class RequestForm {
   }
 
   #put(plane, city, place) {
-    const rounded = place.map((value) => Number(value.toPrecision(7)));
+    const there = place.map(rounded);
     if (this.#brought.stops) {
-      this.#brought = put(this.#brought, plane, city, rounded);
+      this.#brought = put(this.#brought, plane, city, there);
       return this.#edited(false);
     }
     const row = this.#drawn[city];
-    this.#write(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...rounded) : each)), false);
+    this.#write(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...there) : each)), false);
   }
 
   /** Puts an end of a robot's tour into a cell of its map; null takes it away. */
@@ -396,5 +396,5 @@ function numberOr(text) {
 
 function middleOf(rows, width) {
   const sum = (column) => rows.reduce((all, row) => all + (Number(row[column]) || 0), 0);
-  return Array.from({ length: width }, (_, column) => Number((sum(column) / (rows.length || 1)).toPrecision(7)));
+  return Array.from({ length: width }, (_, column) => rounded(sum(column) / (rows.length || 1)));
 }

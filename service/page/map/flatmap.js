@@ -19,7 +19,7 @@ const PANES = { streets: 300, tours: 350, stops: 400, names: 450 };
 
 /**
  * A map with panes for streets, tours, stops and names, each above the one before. Its buttons are in the caption of its
- * figure, where they hide no stop: those that zoom, and one that fits the map to all of it.
+ * figure, where they hide no stop: those that zoom, unless two fingers do, and one that fits the map to all of it.
  *
  * @param {{ name: string, fit: () => void }} whole the name of the last button, and what it does
  */
@@ -34,13 +34,13 @@ export function flatMap(element, whole, options) {
     dragging: !BY_FINGER, // so does one finger
     ...options,
   });
-  if (!BY_FINGER) element.closest("figure").querySelector("figcaption").append(buttonsOf(map, whole));
+  element.closest("figure").querySelector("figcaption").append(buttonsOf(map, whole));
   for (const [name, height] of Object.entries(PANES)) map.createPane(name).style.zIndex = height;
   return map;
 }
 
 function buttonsOf(map, { name, fit }) {
-  const buttons = L.control.zoom().addTo(map).getContainer();
+  const buttons = BY_FINGER ? made("div", { className: "leaflet-bar" }) : L.control.zoom().addTo(map).getContainer();
   const button = made("button", { type: "button", className: "fit", title: name, ariaLabel: name, onclick: fit });
   const corners = svgElement("svg", { viewBox: "0 0 14 14", width: 14, height: 14, "aria-hidden": "true" });
   corners.append(svgElement("path", { d: "M1 5V1h4M9 1h4v4M13 9v4H9M5 13H1V9" }));

@@ -7,6 +7,7 @@ export class FileNotes {
   #status;
   #button;
   #columns;
+  #name = ""; // of what was opened last
 
   /**
    * @param {HTMLElement} status a live region, which is read out when it is filled
@@ -28,6 +29,7 @@ export class FileNotes {
   /** Shows what was read from files, given what was chosen for their columns. */
   show(files, chosen, read) {
     const { name, notes } = read;
+    this.#name = name;
     this.#columns.show(files, chosen, read);
     const said = notes.filter(({ code }) => code !== "columns"); // these are lists to choose from
     const texts = [...new Set(said.map(({ text }) => text))]; // several files may have the same
@@ -37,13 +39,15 @@ export class FileNotes {
     this.#button.hidden = false;
   }
 
-  /** Shows the columns of files that cannot be read so. */
+  /** Shows the columns of files that cannot be read so, and names the file that is still open instead of its notes. */
   refused(files, chosen, problem) {
     this.#columns.show(files, chosen, problem);
+    if (this.#name) this.#status.replaceChildren(made("p", {}, `Still open: ${this.#name}, as it was read before.`));
   }
 
   dismiss() {
     this.#columns.clear();
+    this.#name = "";
     this.#status.replaceChildren();
     this.#button.hidden = true;
   }

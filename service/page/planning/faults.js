@@ -1,6 +1,7 @@
 /** Show each fault of an error at its field. A field whose text cannot be taken is invalid. */
 
 import { Problem } from "./service.js";
+import { made } from "../common/elements.js";
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end", clock: "objectives", start_pose: "start", end_pose: "end" };
 const REPLANNED = { tour: "at", done: "at", remove: "removed", add: "replan", position: "replan", now: "now" };
@@ -39,10 +40,12 @@ export function clearFaults() {
   for (const field of document.querySelectorAll("[aria-invalid]")) field.removeAttribute("aria-invalid");
 }
 
-/** Says what is wrong with one field. */
-export function showFault(field, detail) {
+/** Says what is wrong with one field, and with its parts in a list. */
+export function showFault(field, detail, parts = []) {
   clearFaults();
-  tellFault(field, detail).scrollIntoView({ block: "nearest" });
+  const said = tellFault(field, detail);
+  if (parts.length) said.append(made("ul", {}, ...parts.map((each) => made("li", {}, each))));
+  said.scrollIntoView({ block: "nearest" });
 }
 
 /** Says what is wrong with one field beside what is said of others; returns where that is said. */

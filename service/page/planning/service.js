@@ -4,9 +4,9 @@ import { EventSourceParserStream } from "../vendor/eventsource-parser/stream.js"
 
 /** An error of the service, or that it did not answer. */
 export class Problem extends Error {
-  constructor({ code, detail, errors = [], columns, choices }, retryAfter = null) {
+  constructor({ code, detail, errors = [], columns, choices, wrong_cells: wrongCells }, retryAfter = null) {
     super(detail);
-    Object.assign(this, { columns, choices }); // of files that cannot be read
+    Object.assign(this, { columns, choices, wrongCells }); // of files that cannot be read
     this.code = code;
     this.errors = errors;
     this.retryAfter = retryAfter; // seconds
