@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -31,6 +32,10 @@ from tests.helpers.serving import app_of, serving
 
 pytestmark = needs_chromium
 
+EXAMPLES = Path(__file__).parents[2] / "service/examples"
+VANS = json.loads(
+    (Path(__file__).parents[2] / "service/examples" / "helsinki-vans.json").read_text()
+)
 # Okabe and Ito (2008), as far as six vans need them.
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00"]
 # The van must bring a parcel from "shop" to "home" and may leave "far" out, whose prize is small.
@@ -78,12 +83,15 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         plan = select_last(page)
         routes = plan["routes"]
         expect(page.locator("#choice")).to_contain_text(", and the longest route is ")
+        demands = {each["id"]: each.get("demand", [0])[0] for each in VANS["stops"]}
+        [capacity] = VANS["vehicles"][0]["capacity"]
         rows = page.locator("#fleet-legend tbody tr")
         shown = [row.inner_text().split("\t") for row in rows.all()]
-        for number, (route, [name, stops_of, *times]) in enumerate(
+        for number, (route, [name, stops_of, load, *times]) in enumerate(
             zip(routes, shown, strict=True), 1
         ):
             assert (name, stops_of) == (f"van {number}", str(len(route["stops"]) - 2))
+            assert load == f"{sum(map(demands.__getitem__, route['stops']))} of {capacity}"
             assert [seconds(said) for said in times] == pytest.approx(route["lengths"], abs=60)
         assert set(COLOURS[: len(routes)]) <= set(
             page.locator("#plane-1 canvas.routes").evaluate(DRAWN)
@@ -191,7 +199,7 @@ def test_the_list_of_stops_says_until_when_a_vehicle_waits(browser: Browser, rel
         wait_until_planned(page)
         page.get_by_text("Stops of each vehicle").click()
         second, third = page.locator("#fleet-stops ol li").all_inner_texts()[1:3]
-        assert re.fullmatch(r"early 0:\d\d", second)
+        assert re.fullmatch(r"early 0:\d\d.*", second)
         assert re.fullmatch(r"late 0:1\d, waits until 5:00", third)
 
 

@@ -19,11 +19,16 @@ export const UNNAMED = [unnamed(0), unnamed(1)];
 /** Whether the service named these objectives, since the request did not. */
 export const isUnnamed = (objectives) => objectives.every(({ name }, axis) => name === NTH[axis]);
 
+const TIME = /^(driving |travel )?(time|duration)$/i;
+
+/** The longest of a plan's routes, where the name could be that of a total. */
+const plainly = (name, over) => (over === "max" && TIME.test(name) ? "longest route" : name);
+
 /** The names in a request or an answer; where it has none, UNNAMED, or as many as its scale has numbers. */
 export function namesIn({ objectives, scale }) {
   const named = objectives?.length >= 2 && objectives.every((each) => each?.name && typeof each.name === "string");
   if (!named) return scale?.length > 2 ? scale.map((_, axis) => unnamed(axis)) : UNNAMED;
-  return objectives.map(({ name, unit, measure, over }) => ({ name, unit: typeof unit === "string" ? unit : "", ...(measure && { measure }), ...(over === "max" && { over }) }));
+  return objectives.map(({ name, unit, measure, over }) => ({ name: plainly(name, over), unit: typeof unit === "string" ? unit : "", ...(measure && { measure }), ...(over === "max" && { over }) }));
 }
 
 export const titled = ({ name }) => capital(name);

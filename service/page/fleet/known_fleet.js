@@ -7,14 +7,16 @@ const DAY = 86400; // seconds
 
 /**
  * The stops and the types of vehicles of a request by id, as far as it is known. Each type has its
- * `start`, `end` and `reload` as ids of stops, and its `shifts`.
+ * `start`, `end` and `reload` as ids of stops, and its `shifts`. `pickups` maps
+ * the stop of each delivery to that of its pick-up.
  */
-export function knownFleet({ stops = [], vehicles = [] }) {
+export function knownFleet({ stops = [], vehicles = [], shipments }) {
   const idOf = (stop) => (typeof stop === "number" ? stops[stop]?.id : stop);
   const typed = vehicles.map(({ id, start, end, reload = [], shift, shifts = shift ? [shift] : [], ...others }) => {
     return [id, { ...others, start: idOf(start), end: idOf(end), reload: reload.map(idOf), shifts }];
   });
-  return { stops: new Map(stops.map((stop) => [stop.id, stop])), types: new Map(typed) };
+  const pickups = new Map((shipments ?? []).map(({ pickup, delivery }) => [idOf(delivery), idOf(pickup)]));
+  return { stops: new Map(stops.map((stop) => [stop.id, stop])), types: new Map(typed), pickups };
 }
 
 /** The day of each shift of a type of vehicles, from 1; null if that is not known, or two are on the same day. */

@@ -26,14 +26,15 @@ export function laneElements({ name, visits }, at, { left, top, place, said, las
     return svgElement("rect", { x: place(from), y: y + NAME, width, height: BAR, class: kind, fill });
   };
   const stopOf = (visit, order) => {
-    const { stop, kind, arrival, begin, end, waiting, due, late } = visit;
-    const label = `${name}, ${stop}${DOES[kind]}, ${said(begin)}${end > begin ? ` to ${said(end)}` : ""}${late ? `, ${lasting(late)} late` : ""}`;
+    const { stop, kind, arrival, begin, end, waiting, due, late, closing } = visit;
+    const label = `${name}, ${stop}${DOES[kind]}, ${said(begin)}${end > begin ? ` to ${said(end)}` : ""}${late ? `, ${lasting(late)} late` : ""}${closing && `, ${closing}`}`;
     const made = svgElement("g", { class: "stop", role: "button", tabindex: -1, "aria-label": label, "aria-pressed": false, "data-lane": at, "data-at": order });
     const x = place(begin);
     if (waiting) made.append(box("wait", arrival, begin, "var(--card)"));
     if (kind === "loading") made.append(svgElement("path", { d: diamond(x, y + NAME + BAR / 2), class: "visit loading" }));
     else made.append(box("visit", begin, end, `var(--${style.colour})`));
     if (late) made.append(...delay(place(due), Math.max(x, place(due) + LEAST), y + NAME + BAR));
+    if (closing) made.append(svgElement("path", { d: hourglass(x, y + NAME + BAR + 1), class: "tight" }));
     made.append(svgElement("title", {}, note && !order ? `${label}. ${note}` : label));
     return made;
   };
@@ -62,6 +63,7 @@ export function windowElements({ windows }, at, { top, place, from, to }) {
 }
 
 const diamond = (x, y) => `M${x} ${y - 8}l6 8l-6 8l-6 -8z`;
+const hourglass = (x, y) => `M${x - 3} ${y}h7l-7 8h7z`;
 
 /** A striped line below the bar, from when a visit was due to when it begins. */
 function delay(from, to, y) {

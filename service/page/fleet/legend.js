@@ -1,24 +1,28 @@
-/** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, and its lengths. */
+/** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, its load, and its lengths. */
 
 import { compared } from "../common/amounts.js";
 import { made } from "../common/elements.js";
 import { isLongest, withUnit } from "../common/objectives.js";
+import { knownFleet } from "./known_fleet.js";
 import { stylesOf, swatch } from "./route_styles.js";
-import { visits } from "./routes_of_plan.js";
+import { loadOf, visits } from "./routes_of_plan.js";
 
 /** Fills a table with the routes of a plan, and the plan itself in the last row. */
 export function showLegend(table, plan, movers, asked, objectives, names) {
   const said = ({ lengths }) => lengths.map((value, axis) => compared(value, objectives[axis]));
   const styles = stylesOf(plan.routes, asked.robots);
   const counts = plan.routes.map((route) => visits(route, movers, asked));
+  const known = knownFleet(asked);
+  const loads = plan.routes.map((route) => loadOf(route, known));
+  const load = (said) => (loads.some(Boolean) ? [said] : []); // a column, if a vehicle has a capacity
   const rows = plan.routes.map((route, at) => {
     const head = made("th", { scope: "row" }, swatch(styles[at]), names[at]);
-    return [head, ...cells([counts[at], ...said(route)])];
+    return [head, ...cells([counts[at], ...load(loads[at]), ...said(route)])];
   });
   const all = counts.reduce((sum, count) => sum + count, 0);
-  table.tHead.replaceChildren(line([movers.one, movers.stops, ...objectives.map(titleOf)].map((title) => made("th", { scope: "col" }, title))));
+  table.tHead.replaceChildren(line([movers.one, movers.stops, ...load("Load"), ...objectives.map(titleOf)].map((title) => made("th", { scope: "col" }, title))));
   table.tBodies[0].replaceChildren(...rows.map(line));
-  table.tFoot.replaceChildren(line([made("th", { scope: "row" }, "Plan"), ...cells([all, ...said(plan).map((value, axis) => `${value}${isLongest(objectives[axis]) ? ", the longest" : ""}`)])]));
+  table.tFoot.replaceChildren(line([made("th", { scope: "row" }, "Plan"), ...cells([all, ...load(""), ...said(plan).map((value, axis) => `${value}${isLongest(objectives[axis]) ? ", the longest" : ""}`)])]));
 }
 
 /** The title of a column: each row has the whole of its own route where the plan has the longest of all. */

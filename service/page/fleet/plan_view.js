@@ -91,6 +91,7 @@ function showSigns(lanes) {
     waits: visits.some(({ waiting }) => waiting),
     loads: visits.some(({ kind }) => kind === "loading"),
     late: visits.some(({ late }) => late),
+    tight: visits.some(({ closing }) => closing),
     windows: visits.some(({ windows }) => windows.length),
   };
   for (const [name, shown] of Object.entries(there)) element("fleet-signs").querySelector(`.${name}`).hidden = !shown;

@@ -1,5 +1,6 @@
-/** The routes of a plan by vehicle or robot: their names, and how much they visit. */
+/** The routes of a plan by vehicle or robot: their names, and how much they visit and carry. */
 
+import { length } from "../common/numbers.js";
 import { daysOf, knownFleet } from "./known_fleet.js";
 
 /**
@@ -43,6 +44,38 @@ export function visits(route, { through }, asked) {
   const { reload = [] } = knownFleet(asked).types.get(route.vehicle) ?? {};
   const loads = reload.length ? stops.slice(1, -1).filter((stop) => reload.includes(stop)).length : 0;
   return stops.length - loads - (ends ? ends.filter((end) => end != null).length : round ? 2 : 0);
+}
+
+/**
+ * The most load that a vehicle has on board at once, of its capacity, such as "18 of 20": one for each kind of load.
+ * "" if it has no capacity.
+ */
+export function loadOf({ vehicle, stops }, { stops: asked, types, pickups }) {
+  const { capacity, reload, initial_load: initial } = types.get(vehicle) ?? {};
+  const loads = (capacity ?? []).map((most, kind) => {
+    const demand = (stop) => asked.get(stop)?.demand?.[kind] ?? 0;
+    const carried = tripsIn(stops, reload).map((trip, at) => onBoard(trip, demand, pickups, at ? 0 : (initial?.[kind] ?? 0)));
+    return `${length(Math.max(...carried))} of ${length(most)}`;
+  });
+  return loads.join(", ");
+}
+
+/** The stops of each trip: another one begins where the vehicle loads again. */
+function tripsIn(stops, reload = []) {
+  const trips = [[]];
+  for (const [at, stop] of stops.entries()) {
+    if (at && reload.includes(stop)) trips.push([]);
+    else trips.at(-1).push(stop);
+  }
+  return trips;
+}
+
+/** The most on board on a trip. What is not picked up on the way is on board from its start. */
+function onBoard(trip, demand, pickups, initial) {
+  const picked = new Set(pickups.values());
+  const change = (stop) => (picked.has(stop) ? demand(stop) : -demand(pickups.get(stop) ?? stop));
+  let load = trip.reduce((sum, stop) => (picked.has(stop) || pickups.has(stop) ? sum : sum + demand(stop)), initial);
+  return Math.max(load, ...trip.map((stop) => (load += change(stop))));
 }
 
 /** Where the request wants a route to start and end; undefined if that is not known. */

@@ -19,7 +19,7 @@ export function visitSentence({ name: named, visits }, at, { said, lasting }) {
   const waits = waiting ? ` and waits ${lasting(waiting)}` : "";
   const rest = rests.length ? `; the driver has a break from ${spansIn(rests, said).join(" and from ")}` : "";
   if (kind === "loading") return `${stop}: ${name} loads again at ${said(begin)}${waited(released, begin)}; it arrives at ${said(arrival)}${from}${waits}${rest}.`;
-  return `${stop}: ${asked(visit, said)}begins ${said(begin)}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${rest}${tripOf(visits, at, said)}.`;
+  return `${stop}: ${asked(visit, said)}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${rest}${tripOf(visits, at, said)}.`;
 }
 
 const waited = (released, begin) => (released && released >= begin ? ", when its load is released" : "");
@@ -46,11 +46,11 @@ function asked({ windows, due }, said) {
   return `${windows.length ? `open ${spansIn(windows, said).join(" or ")}, ` : ""}${due === undefined ? "" : `due ${said(due)}, `}`;
 }
 
-/** When a vehicle arrives, and when the visit begins if that is later, such as "12:13, waits until 13:00". */
-export function arrivalIn({ arrival, begin, rests }, said) {
+/** When a vehicle arrives, when the visit begins if that is later, and how soon its window closes, such as "12:13, waits until 13:00". */
+export function arrivalIn({ arrival, begin, rests, closing }, said) {
   const [arrives, begins] = [said(arrival), said(begin)];
-  if (arrives === begins) return arrives;
-  return `${arrives}, ${rests.length ? "begins" : "waits until"} ${begins}`;
+  const later = arrives === begins ? "" : `${rests.length ? "begins" : "waits until"} ${begins}`;
+  return [arrives, later, closing].filter(Boolean).join(", ");
 }
 
 /** Windows or breaks in words, such as "8:00 to 10:00". */

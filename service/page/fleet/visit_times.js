@@ -9,8 +9,8 @@ const NEAR = 1e-6; // times that differ by less, relative to them, are equal
  * `begin` and `end` are those of the visit, after the vehicle has arrived and waited; `waiting` is how long it waits before,
  * `rests` are breaks there, each `[from, to]`, and `leaves` is when it goes on; `due` is when a visit should begin, or a shift
  * ends, and `late` how much later that is; `windows` are those of the stop, and it `opens` when the visit begins, if it was
- * closed before; `released` is when the last load of the trip that begins there is released, 0 without one; `shift` is when
- * the shift of a vehicle that starts there begins.
+ * closed before, and `closes` after that; `released` is when the last load of the trip that begins there is released, 0
+ * without one; `shift` is when the shift of a vehicle that starts there begins.
  *
  * @param {{ vehicle: string, stops: string[], arrivals: number[], breaks?: number[], shift?: number }} route
  * @param {{ stops: Map<string, object>, types: Map<string, object> }} known the request, by `knownFleet`
@@ -29,7 +29,8 @@ export function visitTimes(route, { stops: asked, types }) {
     const times = timesAt(arrivals[at], ready, service, breaks[at]);
     const until = due ?? (kind === "end" ? to : undefined);
     const opens = windows.find(([opening]) => Math.abs(times.begin - opening) <= NEAR * opening)?.[0];
-    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, released, shift: kind === "start" ? from : undefined };
+    const closes = openIn(windows, times.begin)?.[1];
+    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, closes, released, shift: kind === "start" ? from : undefined };
   });
 }
 
@@ -55,9 +56,11 @@ function kindOf(stop, at, last, { start, end, reload }) {
 
 /** When a visit may begin after an arrival: in the first window that is not over then. */
 function opened(windows, arrival) {
-  const open = windows.find(([, closes]) => closes >= arrival * (1 - NEAR));
-  return Math.max(arrival, open?.[0] ?? arrival);
+  return Math.max(arrival, openIn(windows, arrival)?.[0] ?? arrival);
 }
+
+/** The first window that is not over at a time; undefined if there is none. */
+const openIn = (windows, time) => windows.find(([, closes]) => closes >= time * (1 - NEAR));
 
 /** When the last load of the trip that begins at this place is released. */
 function releaseOf(at, stops, kinds, asked) {

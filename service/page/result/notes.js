@@ -31,8 +31,18 @@ function unitOf(objective) {
 
 /** Which routes are counted: those of all movers, or the longest one, with its parts as far as they are known. */
 function ofRoutes(objective, axis, item, { movers, asked }) {
-  if (!isLongest(objective)) return item.routes.length > 1 ? `all ${movers.words} together` : "";
-  return (isTime(objective) && partsOf(item, axis, objective, { movers, asked })) || "";
+  if (!isLongest(objective)) return [countedIn(item, axis, objective), item.routes.length > 1 && `all ${movers.words} together`].filter(Boolean).join(", ");
+  const named = /longest/i.test(objective.name) ? "" : "the longest route";
+  return [named, isTime(objective) && partsOf(item, axis, objective, { movers, asked })].filter(Boolean).join(", ");
+}
+
+/** Whether a total time has more than the driving; "" if that is plain from its name, or not known. */
+function countedIn({ measures, lengths }, axis, objective) {
+  if (!isTime(objective) || !measures || /driving/i.test(objective.name)) return "";
+  const { driving, service = 0, waiting = 0 } = measures;
+  if (!(service + waiting > 0)) return "";
+  const isNear = (value) => Math.abs(value - lengths[axis]) <= NEAR * value;
+  return isNear(driving) ? "driving only" : isNear(driving + service + waiting) ? "driving, stops and waiting" : "";
 }
 
 /** The longest route by name, and what its time is spent on; null if that is not known. */
