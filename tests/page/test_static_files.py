@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import httpx
+import pytest
 
 SERVICE = Path(__file__).parents[2] / "service"
 
@@ -20,14 +21,18 @@ def test_all_that_the_page_can_load_is_sent_as_less_than_220_kilobytes(released:
     assert sum(response.num_bytes_downloaded for response in sent) < 220_000
 
 
-def test_scripts_are_sent_without_comments_and_with_their_line_numbers(released: str) -> None:
-    script = Path("page/main.js")
-    source = (SERVICE / script).read_text().splitlines()
-    sent = httpx.get(f"{released}/{script}").text.splitlines()
-    assert sum(line.startswith("/** ") for line in source) > 5
+@pytest.mark.parametrize("path", ["page/main.js", "page/style.css"])
+def test_comments_are_not_sent_and_lines_keep_their_numbers(released: str, path: str) -> None:
+    source = (SERVICE / path).read_text().splitlines()
+    sent = httpx.get(f"{released}/{path}").text.splitlines()
+    assert sum(line.lstrip().startswith("/*") for line in source) > 5
     assert len(sent) == len(source)
-    assert all(line in ("", original) for line, original in zip(sent, source, strict=True))
-    assert not any(line.lstrip().startswith(("//", "/*", "*")) for line in sent)
+    assert all(full.startswith(line) for line, full in zip(sent, source, strict=True))
+    assert not any(line.lstrip().startswith(("//", "/*", "*/")) for line in sent)
+    pairs = zip(sent, source, strict=True)
+    after_code = [full.removeprefix(line) for line, full in pairs if line not in ("", full)]
+    assert all(each.lstrip().startswith(("// ", "/* ")) for each in after_code)
+    assert len(after_code) > 1
 
 
 def test_a_first_view_sends_less_than_120_kilobytes(released: str) -> None:

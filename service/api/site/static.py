@@ -29,7 +29,12 @@ _COMPRESSED = [Middleware(GZipMiddleware)]  # plain text, which anybody may read
 REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
 _KEEP = {"Cache-Control": "public, max-age=31536000, immutable"}  # a year
 _VERSION = "version-"  # how the version begins in the address of a file
-_COMMENT = re.compile(r"^[ \t]*(?:/\*\*.*?\*/|//[^\n]*)$", re.DOTALL | re.MULTILINE)
+# Whole lines, and what follows code; in a string, a quotation mark would come after the slashes.
+_COMMENT = re.compile(
+    r"^[ \t]*(?:/\*(?:(?!\*/).)*\*/|//[^\n]*)$|[ \t]+(?:/\*[^\n]*\*/|// [^\n\"'`]*)$",
+    re.DOTALL | re.MULTILINE,
+)
+_COMMENTED = {".js": "text/javascript", ".css": "text/css"}
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
 
@@ -91,7 +96,7 @@ class _Page:
 
 
 class _PageFiles(StaticFiles):
-    """The files of the page; its scripts have empty lines for comments."""
+    """The files of the page; its scripts and style sheets have empty lines for comments."""
 
     def file_response(
         self,
@@ -101,12 +106,13 @@ class _PageFiles(StaticFiles):
         status_code: int = 200,
     ) -> Response:
         found = super().file_response(full_path, stat_result, scope, status_code)
-        script = Path(full_path)
-        if found.status_code != 200 or script.suffix != ".js" or script.is_relative_to(_VENDORED):
+        path = Path(full_path)
+        media_type = _COMMENTED.get(path.suffix)
+        if found.status_code != 200 or media_type is None or path.is_relative_to(_VENDORED):
             return found
-        lines = _COMMENT.sub(lambda comment: "\n" * comment[0].count("\n"), script.read_text())
+        lines = _COMMENT.sub(lambda comment: "\n" * comment[0].count("\n"), path.read_text())
         kept = {name: found.headers[name] for name in ("etag", "last-modified")}
-        return Response(lines, headers=kept, media_type="text/javascript")
+        return Response(lines, headers=kept, media_type=media_type)
 
 
 def _version() -> str:
