@@ -1,6 +1,6 @@
 """Check places on the earth: degrees out of range, and places that look mistaken."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,12 +27,12 @@ def weighted(places: Array, weights: Array) -> list[list[float]]:
 
 def check_range(source: Source, place: Sequence[float], where: str) -> None:
     """Raise UnreadableFile if a longitude or a latitude is out of range."""
-    if fault := out_of_range(place):
-        raise source.refusal(f"{where} {fault[1]}")
+    for _, demand in out_of_range(place):
+        raise source.refusal(f"{where} {demand}")
 
 
-def out_of_range(place: Sequence[float]) -> tuple[int, str] | None:
-    """Return the axis on which a place is not on the earth, and what is demanded; else None."""
+def out_of_range(place: Sequence[float]) -> Iterator[tuple[int, str]]:
+    """Yield each axis on which a place is not on the earth, and what is demanded of it."""
     for axis, (name, most) in enumerate((("longitude", 180), ("latitude", 90))):
         value = place[axis]
         if not -most <= value <= most:
@@ -41,8 +41,7 @@ def out_of_range(place: Sequence[float]) -> tuple[int, str] | None:
                 hint = "; latitude and longitude look swapped"
             elif max(abs(place[0]), abs(place[1])) > 180:
                 hint = "; places must be in degrees (WGS84, EPSG:4326): convert them from metres"
-            return axis, f"must have a {name} of -{most} to {most}, got {value:g}{hint}"
-    return None
+            yield axis, f"must have a {name} of -{most} to {most}, got {value:g}{hint}"
 
 
 def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:

@@ -194,9 +194,8 @@ def _places(columns: Columns) -> list[list[float]]:
 def check_degrees(
     columns: Columns, row: int, fields: tuple[int, int], place: Sequence[float]
 ) -> None:
-    """Keep the longitude or latitude of a row as wrong if it is out of range."""
-    if fault := out_of_range(place):
-        axis, demand = fault
+    """Keep the longitude and latitude of a row as wrong if they are out of range."""
+    for axis, demand in out_of_range(place):
         columns.refuse(row, fields[axis], demand)
 
 

@@ -26,6 +26,7 @@ from service.cli.backends import LocalBackend, RemoteBackend
 from service.cli.errors import UsageError
 from service.cli.progress import LOADING
 from service.jobs import compiled_code
+from service.library import local_planner
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
@@ -186,6 +187,7 @@ def test_the_compilation_is_announced_where_compiled_code_is_run(
     options: dict[str, float], compiles: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(compiled_code, "_loaded", set())  # as in a process that planned nothing
+    monkeypatch.setattr(local_planner, "load_from_cache", lambda _: False)  # where none did
     announced: list[str] = []
     console = Console(file=io.StringIO())
     status = console.status
