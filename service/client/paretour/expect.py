@@ -171,30 +171,32 @@ def rows(
 ) -> NDArray[Any]:
     """Return a member of all items, lists of numbers of one width, as the rows of an array.
 
-    They are read at once, as one by one takes several times as long. If something is wrong, they
-    are read one by one, to say which of them it is.
-
     Args:
         items: The items.
         name: The name of the member.
         reader: `floats` or `indexes`.
         width: The length of each list.
     """
-    try:
-        return reader(None, width)([item.document.get(name) for item in items], name)
-    except UnexpectedAnswer:
-        for item in items:
-            item.read(name, reader(width))
-        raise
+    return _at_once(items, name, reader(None, width), reader(width))
 
 
 def column(items: Sequence[Members], name: str) -> NDArray[np.float64]:
-    """Return a member of all items, a number, as an array: at once, as `rows` does."""
+    """Return a member of all items, a number, as an array."""
+    return _at_once(items, name, floats(None), number)
+
+
+def _at_once(
+    items: Sequence[Members], name: str, every: Read[AnyArray], one: Read[Any]
+) -> AnyArray:
+    """Return a member of all items, which are read at once: one by one takes several times as long.
+
+    If something is wrong, they are read one by one, to say which of them it is.
+    """
     try:
-        return floats(None)([item.document.get(name) for item in items], name)
+        return every([item.document.get(name) for item in items], name)
     except UnexpectedAnswer:
         for item in items:
-            item.read(name, number)
+            item.read(name, one)
         raise
 
 
