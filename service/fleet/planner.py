@@ -40,6 +40,9 @@ _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, p
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
 _BRIEF = 0.25  # seconds for them without a time limit, and to find what is in the way after it
+# With fewer plans, and fewer stops looked at (in each iteration all), a search goes on after its
+# deadline, for some 50 ms: a process that was not run for a moment else finds no plan.
+_LEAST_PLANS, _LEAST_WORK = 10, 2000
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
@@ -214,6 +217,7 @@ class _Search:
         self._constructed = 0
         self._iterations = 0
         self._checked = self._began
+        self._worked = 0  # stops looked at
         self._pause = 0.0  # the longest recent seconds between two checks of the time
         self._cancelled = False
 
@@ -260,7 +264,7 @@ class _Search:
         mover = Mover(self._translation, archive, random)
         sweep = _sweep_of(self._fleet.rules)
         for step in sweep(self._translation, archive, random, self._left).steps():
-            if self._left() < 1 or self._ended():
+            if self._iterations >= options.iterations or self._ended():
                 return "cancelled" if self._cancelled else "time_limit"
             iterations = min(step.iterations, options.iterations - self._iterations)
             self._iterations += solver.search(replace(step, iterations=iterations))
@@ -323,10 +327,12 @@ class _Search:
         now = time.monotonic()
         self._pause = max(now - self._checked, _FORGOTTEN * self._pause)
         self._checked = now
+        self._worked += self._fleet.rules.n
         if self._stop():
             self._cancelled = True
             return True
-        if now > self._gives_up and not self.archive:
+        begun = len(self.archive) >= _LEAST_PLANS or self._worked >= _LEAST_WORK
+        if now > self._gives_up and begun and not self.archive:
             return True
         left = self._deadline - now
         if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and self.archive:
@@ -335,7 +341,7 @@ class _Search:
             volume = hypervolume(points, self._reference_point)
             progress = Progress(now - self._began, volume, len(points))
             self._report(progress, partial(self.front, terminated=None))
-        return left <= self._reserve()
+        return begun and left <= self._reserve()
 
     def _reserve(self) -> float:
         """Return the seconds for one more iteration, and for checking and selecting plans after it.

@@ -224,6 +224,19 @@ def test_where_capacities_have_room_there_is_a_plan_in_any_time(over: tuple[Over
     assert violations(fleet, front.plans[0]) == []
 
 
+@pytest.mark.parametrize("n", [20, 60, 150])
+def test_a_deadline_that_has_passed_still_gives_a_plan_of_narrow_windows(n: int) -> None:
+    """A process that is held up has passed its deadline before it begins to search."""
+    fleet = deliveries(n)
+    depot, *visits = fleet.rules.visits
+    narrow = [
+        replace(visit, windows=((begin := visit.windows[0][0], begin + 1),)) for visit in visits
+    ]
+    fleet = replace(fleet, rules=replace(fleet.rules, visits=(depot, *narrow)))
+    front = plan_fleet(fleet, FleetOptions(time_limit=1e-300))
+    assert all(not violations(front.fleet, plan) for plan in front.plans)
+
+
 @pytest.mark.parametrize("time_limit", [1e-300, 1e-3])
 @pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
 @pytest.mark.parametrize("n", [1, 2, 5, 40])
