@@ -21,12 +21,14 @@ from service.jit.cache import name_by_place
 from service.jit.indices import trust_indices
 from service.jit.loading import use_cache
 from service.jit.native_code import Standalone, generate_late
+from service.jit.resolutions import resolve_once
 
 P = ParamSpec("P")
 R = TypeVar("R")
 _tuple_of: Any = types.BaseTuple.from_types
 
 generate_late()
+resolve_once()
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:

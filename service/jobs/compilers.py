@@ -20,6 +20,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from threading import Thread
 from typing import NoReturn
 
+from llvmlite.binding import ffi
 from numba.core.event import Event, Listener, install_listener
 from numba.core.registry import cpu_target
 
@@ -116,6 +117,7 @@ def _compile_and_exit(queue: int, done: int, end: int, processes: int) -> NoRetu
 def _fork_compilers(number: int) -> Collection[int]:
     """Continue as this process and others, which share what was imported; return the others."""
     cpu_target.target_context.refresh()  # imports what numba compiles with
+    ffi.lib._lock._cblist.clear()  # noqa: SLF001  # nobody asks how long numba calls LLVM
     gc.freeze()
     children = []
     for _ in range(number):
