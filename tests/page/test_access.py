@@ -1,19 +1,26 @@
 """The page before a service that is not ready, or wants to know who calls."""
 
+import time
 from pathlib import Path
 
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Route, expect
 
 from service.api.app import Edge
 from service.api.auth import Access
 from service.api.keys import KeyHash, new_key
 from service.settings import Settings
-from tests.helpers.browsing import needs_chromium, open_page, wait_until_planned
+from tests.helpers.browsing import SECOND, needs_chromium, open_page, wait_until_planned
 from tests.helpers.serving import app_of, runner_of, serving, workers_of
 
 LIMITS = Settings().limits
 
 pytestmark = needs_chromium
+
+
+def late(route: Route) -> None:
+    """Let a request come as late as on a busy machine: the page looks at the job meanwhile."""
+    time.sleep(0.7)
+    route.continue_()
 
 
 def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
@@ -22,8 +29,12 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
     warm = tmp_path / "warm"
     workers = workers_of(runner_of(limits=LIMITS, warm=warm))
     app = app_of(workers=workers, limits=LIMITS)
-    with serving(app, warm=False) as address, open_page(browser, address) as page:
+    with serving(app, warm=False) as address, open_page(browser, "about:blank") as page:
+        page.route("**/events", late)
+        page.goto(address)
         status = page.locator("#status")
+        expect(status).to_contain_text("The search is being compiled")
+        page.wait_for_timeout(SECOND)
         expect(status).to_contain_text("The search is being compiled")
         expect(page.get_by_role("button", name="Stop", exact=True)).to_be_enabled()
         warm.touch()

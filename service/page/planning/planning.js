@@ -94,17 +94,20 @@ export class Planning {
     let answer = await this.#service.get(path, this.#signal);
     while (!FINAL.includes(answer.status)) {
       let looked = performance.now();
+      let compiling = null;
       for await (const [name, data] of this.#service.events(`${path}/events`, this.#signal)) {
         if (name === "progress" && data.hypervolume > 0) growth.push([data.seconds, data.hypervolume]);
         if (FINAL.includes(data.status)) break;
         if (name === "compiling") {
-          yield { stage: "warming-up", compiling: data, alone, answer: alone, growth };
+          compiling = data;
+          yield { stage: "warming-up", compiling, alone, answer: alone, growth };
           continue;
         }
         if (performance.now() < looked + GLANCE) continue;
         answer = await this.#service.get(path, this.#signal);
         if (FINAL.includes(answer.status)) break; // before the stream says so
         looked = performance.now();
+        if (answer.status === "queued" && compiling) continue; // what is said of it still holds
         yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
       }
       answer = await this.#service.get(path, this.#signal);
