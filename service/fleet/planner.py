@@ -40,8 +40,8 @@ _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, p
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
 _BRIEF = 0.25  # seconds for them without a time limit, and to find what is in the way after it
-# With fewer plans, and fewer stops looked at (in each iteration all), a search goes on after its
-# deadline, for some 50 ms: a process that was not run for a moment else finds no plan.
+# With fewer plans, and fewer stops looked at (all in each iteration), a search goes on after its
+# deadline, for some 50 ms up to 200 stops: a process that is held up else finds no plan.
 _LEAST_PLANS, _LEAST_WORK = 10, 2000
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
@@ -51,8 +51,9 @@ class FleetOptions:
     """The options of plan_fleet(...).
 
     Args:
-        time_limit: The most seconds for everything. At 0 there is no search: plans are made by
-            cutting the tours of the network into routes.
+        time_limit: The most seconds for everything, or up to 0.3 s more where hardly a plan is
+            found by then. At 0 there is no search: plans are made by cutting the tours of the
+            network into routes.
         size: The greatest number of plans of the front.
         seed: The seed of all random choices.
         reference_point: The reference point of the hypervolume under m objectives, shape (m,); by
