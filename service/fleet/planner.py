@@ -51,7 +51,7 @@ class FleetOptions:
     """The options of plan_fleet(...).
 
     Args:
-        time_limit: The most seconds for everything, or up to 0.3 s more where hardly a plan is
+        time_limit: The most seconds for everything, or up to 0.4 s more where hardly a plan is
             found by then. At 0 there is no search: plans are made by cutting the tours of the
             network into routes.
         size: The greatest number of plans of the front.
