@@ -9,22 +9,21 @@ from typing import Any
 
 from numba.core.compiler import Flags
 from numba.core.target_extension import get_local_target
-from numba.core.targetconfig import ConfigStack, TargetConfig
+from numba.core.targetconfig import ConfigStack
 from numba.core.types.functions import BaseFunction
 
 _Function: Any = BaseFunction  # it has no types
-_Options: Any = TargetConfig
-_AllOptions: Any = Flags
+_Flags: Any = Flags
 
-_DEFAULTS = {name: option.default for name, option in _AllOptions.options.items()}
+_DEFAULTS = {name: option.default for name, option in _Flags.options.items()}
 _numba_resolve = _Function.get_call_type
-_numba_equal = _Options.__eq__
+_numba_equal = _Flags.__eq__
 # By function, target, types and options. The function is kept, so that no other one has its id.
 _resolved: dict[tuple[Any, ...], tuple[Any, Any, Any]] = {}
 
 
 def _resolve(function: Any, context: Any, arguments: Any, named: Any) -> Any:
-    """Return the signature of an implementation that takes arguments, as numba does, or None.
+    """Return the signature of an implementation that takes arguments, or raise, as numba does.
 
     With it, the function notes the implementation; under other options that is another one.
     """
@@ -36,11 +35,9 @@ def _resolve(function: Any, context: Any, arguments: Any, named: Any) -> Any:
         function._impl_keys[signature.args] = implementation  # noqa: SLF001  # it has no setter
         return signature
     signature = _numba_resolve(function, context, arguments, named)
-    if signature is not None:
-        implementation = function.get_impl_key(signature)
-        # numba may change the options later.
-        kept = None if options is None else options.copy()
-        _resolved[*call, kept] = function, signature, implementation
+    # numba may change the options later.
+    kept = None if options is None else options.copy()
+    _resolved[*call, kept] = function, signature, function.get_impl_key(signature)
     return signature
 
 
@@ -56,11 +53,11 @@ def _equal(options: Any, others: object) -> bool:
 
 def _hash(_: Any) -> int:
     """Return the same number for all options, as numba does, which takes long to find it."""
-    return hash(TargetConfig)
+    return hash(Flags)
 
 
 def resolve_once() -> None:
     """Let numba remember what it has resolved, from here on."""
     _Function.get_call_type = _resolve
-    _Options.__eq__ = _equal
-    _Options.__hash__ = _hash
+    _Flags.__eq__ = _equal
+    _Flags.__hash__ = _hash

@@ -46,13 +46,17 @@ def points_of(front: FleetFront) -> list[Point]:
     return [tuple(point.tolist()) for point in front.points]
 
 
-def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> Fleet:
-    """Return a fleet with a depot, n stops with windows, and vehicles enough."""
+def deliveries(
+    n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1, width: float = 5.0
+) -> Fleet:
+    """Return a fleet with a depot, n stops with windows of a width, and vehicles enough."""
     random = np.random.default_rng(seed)
     places = random.random((n + 1, 2))
     costs = np.linalg.norm(places[:, np.newaxis] - places, axis=2)
     begins = random.random(n) * 5
-    visits = [Visit(demand=(1,), windows=((begin, begin + 5),), service=0.1) for begin in begins]
+    visits = [
+        Visit(demand=(1,), windows=((begin, begin + width),), service=0.1) for begin in begins
+    ]
     rules = Rules(
         visits=(Visit(), *visits),
         vehicles=(VehicleType(start=0, end=0, count=n // 5 + 1, capacity=(10,), shift=(0, 12)),),
@@ -227,13 +231,7 @@ def test_where_capacities_have_room_there_is_a_plan_in_any_time(over: tuple[Over
 @pytest.mark.parametrize("n", [20, 60, 150])
 def test_a_deadline_that_has_passed_still_gives_a_plan_of_narrow_windows(n: int) -> None:
     """A process that is held up has passed its deadline before it begins to search."""
-    fleet = deliveries(n)
-    depot, *visits = fleet.rules.visits
-    narrow = [
-        replace(visit, windows=((begin := visit.windows[0][0], begin + 1),)) for visit in visits
-    ]
-    fleet = replace(fleet, rules=replace(fleet.rules, visits=(depot, *narrow)))
-    front = plan_fleet(fleet, FleetOptions(time_limit=1e-300))
+    front = plan_fleet(deliveries(n, width=1.0), FleetOptions(time_limit=1e-300))
     assert all(not violations(front.fleet, plan) for plan in front.plans)
 
 
