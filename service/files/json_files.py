@@ -5,11 +5,11 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from service.files.planners.vroom import is_vroom, read_vroom
 from service.files.reading import Kind, Reading, Source, quoted
 from service.files.stop_tables import reading_of
 from service.files.tables import table_of
 from service.files.texts import text_of
-from service.files.vroom import is_vroom, read_vroom
 
 _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
 _OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives", "cost_layers"}

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from itertools import chain
 
-from service.files.benchmarks import is_customers, is_cvrp, read_customers, read_cvrp
+from service.files.benchmarks.customers import is_customers, is_cvrp, read_customers, read_cvrp
 from service.files.json_files import looks_like_json, read_json
 from service.files.octile import is_octile
 from service.files.reading import (

@@ -1,0 +1,1 @@
+"""Benchmarks of vehicle routing: CVRPLIB and VRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
