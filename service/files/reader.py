@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 from itertools import chain
 
-from service.files.benchmarks.customers import is_customers, is_cvrp, read_customers, read_cvrp
+from service.files.benchmarks.customers import is_customers, read_customers
+from service.files.benchmarks.cvrp import read_cvrp
+from service.files.benchmarks.keywords import check_costs, is_fleet
 from service.files.json_files import looks_like_json, read_json
 from service.files.octile import is_octile
 from service.files.reading import (
@@ -126,8 +128,9 @@ def _read(source: Source, wanted: Kind | None) -> Reading:
     if isinstance(content, Table):
         return reading_of(source, content)
     if isinstance(content, TsplibFile):
-        if is_cvrp(content):
+        if is_fleet(content):
             return read_cvrp(content)
+        check_costs(content)
         raise source.refusal("a file of TSPLIB is one objective: name another for the other one")
     if is_customers(content):
         return read_customers(source, content)
@@ -174,12 +177,13 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Pa
         return part_of(source, file)
     if isinstance(file, str):
         raise source.refusal("must be a table or TSPLIB, as one of several files")
+    check_costs(file)
     if unrounded:
         if file.kind != "EUC_2D":
             raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
         return Part(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
     found = costs(file)
-    if file.kind != "EXPLICIT":
+    if file.kind not in ("EXPLICIT", "EXACT_2D", "EXACT_3D"):
         source.note("rounded", f"Distances are whole numbers, as TSPLIB defines {file.kind}.")
     plane = places(file).tolist() if file.kind == "EUC_2D" else None
     return Part(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)

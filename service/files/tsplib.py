@@ -3,15 +3,20 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain, takewhile
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.files.reading import Source
+from service.files.tables import number_in
 
 Array = NDArray[np.float64]
-_KEYWORD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)[ \t]*(?::(.*))?")
+_KEYWORD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)[ \t]*(?:[:=](.*))?")
+_IN_HEAD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)(?:[ \t]*[:=]|[ \t])?(.*)")  # as LKH reads it
+_REPEATED = {"COMMENT"}  # in several lines
 _LAYOUTS = {
     "FULL_MATRIX": "full",
     "UPPER_ROW": "upper",
@@ -23,25 +28,25 @@ _LAYOUTS = {
     "LOWER_DIAG_ROW": "lower diagonal",
     "UPPER_DIAG_COL": "lower diagonal",
 }
+_PLANAR_KINDS = ("EUC", "CEIL", "FLOOR", "EXACT", "MAN", "MAX")
 # The axes of places, by the kind of distance between them.
 _AXES = {
-    **dict.fromkeys(("EUC_2D", "CEIL_2D", "MAN_2D", "MAX_2D", "GEO", "ATT"), 2),
-    **dict.fromkeys(("EUC_3D", "MAN_3D", "MAX_3D"), 3),
+    **dict.fromkeys((*(f"{each}_2D" for each in _PLANAR_KINDS), "GEO", "ATT"), 2),
+    **dict.fromkeys((f"{each}_3D" for each in _PLANAR_KINDS), 3),
 }
 _PI = 3.141592  # as TSPLIB defines it
 _EARTH = 6378.388  # kilometres, as TSPLIB defines it
 _LARGEST = 1e150  # its square is still a float
 _TELLING = ("EDGE_WEIGHT_TYPE", "NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "EDGE_DATA_FORMAT")
-_NOT_PLANNED = {"SOP": "an order of cities", "HCP": "no costs", "TOUR": "a tour, and no costs"}
 
 
 @dataclass(frozen=True)
 class TsplibFile:
-    """The keywords of a file, and the words of each section."""
+    """The keywords of a file, and the words in each line of each section."""
 
     source: Source
     header: dict[str, str] = field(default_factory=dict)
-    sections: dict[str, list[str]] = field(default_factory=dict)
+    sections: dict[str, list[list[str]]] = field(default_factory=dict)
 
     @property
     def kind(self) -> str:
@@ -65,9 +70,45 @@ class TsplibFile:
         self.source.check_count("cities", self.source.bounds.cities, int(value))
         return int(value)
 
+    def words(self, section: str) -> list[str]:
+        """Return the words of a section."""
+        return list(chain.from_iterable(self.sections.get(section, ())))
+
+    def listed(self, section: str) -> list[str]:
+        """Return the words of a section that is a list, which -1 may end."""
+        return list(takewhile(lambda word: word != "-1", self.words(section)))
+
+    @cached_property
+    def first_node(self) -> int:
+        """The number of the first node: 1, or 0 where NODE_COORD_SECTION counts from 0."""
+        lines = self.sections.get("NODE_COORD_SECTION", ())
+        numbers = {number_in(line[0]) for line in lines if line}
+        return 0 if numbers == set(range(len(lines))) else 1
+
+    def of_nodes(self, section: str, columns: int) -> Array:
+        """Return the numbers of each node in a section, by ascending numbers of the nodes.
+
+        Raises:
+            UnreadableFile: There is not one row for each node, with the number of the node first.
+        """
+        found = self.numbers(section, self.dimension, 1 + columns)
+        order = self.order(found[:, 0])
+        if order is None:
+            first, last = self.first_node, self.first_node + self.dimension - 1
+            raise self.source.refusal(
+                f"{section} must have one row for each node {first} to {last}"
+            )
+        return found[order, 1:]
+
+    def order(self, nodes: Array) -> NDArray[np.intp] | None:
+        """Return the order of rows by the numbers of their nodes; None if these do not count."""
+        order = np.argsort(nodes, kind="stable")
+        counted = np.arange(self.first_node, self.first_node + len(nodes))
+        return order if np.array_equal(nodes[order], counted) else None
+
     def numbers(self, section: str, rows: int, columns: int) -> Array:
         """Return the numbers of a section in rows and columns."""
-        words = self.sections.get(section, [])
+        words = self.words(section)
         if len(words) != rows * columns:
             demand = f"{rows} rows of {columns} numbers, as DIMENSION says"
             raise self.source.refusal(f"{section} must have {demand}, got {len(words)} numbers")
@@ -93,37 +134,48 @@ def split_tsplib(source: Source, text: str) -> TsplibFile:
     """Return the keywords and sections of a text. A section ends at the next keyword."""
     file = TsplibFile(source)
     _fill(file, text)
-    kind = file.word("TYPE").upper()
-    if kind in _NOT_PLANNED:
-        raise source.refusal(f"TYPE must be TSP, ATSP or CVRP, got {kind}: {_NOT_PLANNED[kind]}")
-    if file.sections.get("FIXED_EDGES_SECTION", ["-1"]) != ["-1"]:
-        source.note("left-out", "FIXED_EDGES_SECTION was not used: tours may do without its edges.")
     return file
 
 
 def _fill(file: TsplibFile, text: str) -> None:
     """Read the lines of a text into the keywords and sections of a file."""
-    words: list[str] | None = None  # the words of the current section
-    for line in text.splitlines():
-        keyword = _KEYWORD.fullmatch(line.strip())
+    lines: list[list[str]] | None = None  # the words in each line of the current section
+    for line in map(str.strip, text.splitlines()):
+        keyword = _KEYWORD.fullmatch(line)
+        if lines is None and keyword is None:
+            keyword = _IN_HEAD.fullmatch(line)
         if keyword is None or keyword[1].casefold() in ("inf", "infinity", "nan"):
-            if words is not None:
-                words.extend(line.split())
+            if lines is not None and line:
+                lines.append(line.split())
             continue
-        name = keyword[1].upper()
+        name, value = keyword[1].upper(), (keyword[2] or "").strip()
         if name == "EOF":
             break
-        words = file.sections.setdefault(name, []) if name.endswith("_SECTION") else None
-        if words is None:
-            file.header.setdefault(name, (keyword[2] or "").strip())
-        elif keyword[2]:
-            words.extend(keyword[2].split())
+        lines = [] if name.endswith("_SECTION") else None
+        if lines is None:
+            _add(file, file.header, name, value)
+        else:
+            _add(file, file.sections, name, lines)
+            lines.extend([value.split()] if value else [])
+
+
+def _add(file: TsplibFile, found: dict[str, Any], name: str, value: Any) -> None:
+    """Add what stands at a keyword.
+
+    Raises:
+        UnreadableFile: The keyword stands twice, with different values.
+    """
+    if name in found and name not in _REPEATED and (found[name] != value or value == []):
+        raise file.source.refusal(f"{name} must stand once, got it twice")
+    found.setdefault(name, value)
 
 
 def places(file: TsplibFile) -> Array:
-    """Return the places of the cities, shape (n, 2 or 3), in the order of the file."""
+    """Return the places of the cities, shape (n, 2 or 3), by their numbers if these count."""
     axes = _AXES.get(file.kind, 2)
-    return file.numbers("NODE_COORD_SECTION", file.dimension, 1 + axes)[:, 1:]
+    found = file.numbers("NODE_COORD_SECTION", file.dimension, 1 + axes)
+    order = file.order(found[:, 0])
+    return found[:, 1:] if order is None else found[order, 1:]
 
 
 def costs(file: TsplibFile) -> Array:
@@ -159,7 +211,7 @@ def _explicit(file: TsplibFile) -> Array:
     half, _, diagonal = layout.partition(" ")
     shift = 0 if diagonal else 1
     at = np.triu_indices(n, shift) if half == "upper" else np.tril_indices(n, -shift)
-    words = file.sections.get(section, [])
+    words = file.words(section)
     if len(words) != len(at[0]):
         demand = f"{section} must have {len(at[0])} numbers, as {named} of DIMENSION {n}"
         raise file.source.refusal(f"{demand}, got {len(words)}")
@@ -204,6 +256,8 @@ def _att(apart: Array) -> Array:
 _PLANAR: dict[str, Callable[[Array], Array]] = {
     "EUC": lambda apart: _nearest(_euclidean(apart)),
     "CEIL": lambda apart: np.ceil(_euclidean(apart)),
+    "FLOOR": lambda apart: np.floor(_euclidean(apart)),
+    "EXACT": _euclidean,
     "MAN": lambda apart: _nearest(apart.sum(axis=-1)),
     "MAX": lambda apart: _nearest(apart).max(axis=-1),
     "ATT": _att,

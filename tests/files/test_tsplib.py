@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from service.files.benchmarks.keywords import check_costs
 from service.files.reading import Bounds, FileTooLarge, NamedFile, Source, UnreadableFile
 from service.files.tsplib import costs, split_tsplib
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
@@ -16,7 +17,9 @@ BURMA14_OPTIMUM = 3323  # as TSPLIB gives it
 
 def matrix_of(text: str) -> list[list[float]]:
     source = Source(NamedFile("a.tsp", b""), Bounds())
-    return costs(split_tsplib(source, text)).tolist()
+    file = split_tsplib(source, text)
+    check_costs(file)
+    return costs(file).tolist()
 
 
 def test_euclidean_distances_are_rounded() -> None:
@@ -49,13 +52,15 @@ def placed(kind: str, places: list[list[float]]) -> str:
         ("CEIL_2D", [3, 0.1], 4),
         ("MAN_2D", [3.3, 1.3], 5),
         ("MAX_2D", [3.3, 1.3], 3),
+        ("FLOOR_2D", [3.9, 0], 3),
+        ("EXACT_2D", [1.5, 2], 2.5),
         ("ATT", [10, 1], 4),  # the root of 10.1 is 3.18, which is never rounded down
         ("EUC_3D", [2, 3, 6], 7),
         ("MAN_3D", [2, 3, 6], 11),
         ("MAX_3D", [2, 3, 6], 6),
     ],
 )
-def test_every_kind_has_its_own_distances(kind: str, there: list[float], distance: int) -> None:
+def test_every_kind_has_its_own_distances(kind: str, there: list[float], distance: float) -> None:
     places = [[0.0] * len(there), there]
     assert matrix_of(placed(kind, places)) == [[0, distance], [distance, 0]]
 

@@ -1,72 +1,14 @@
-"""Read benchmarks of vehicle routing: CVRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
+"""Read customers with windows, as Solomon, Gehring and Homberger, and Li and Lim write them."""
 
 import re
 from typing import Any
 
 from service.files.fleets import fleet_request, planar
-from service.files.reading import Reading, Request, Source
+from service.files.reading import Reading, Source
 from service.files.tables import number_in
-from service.files.tsplib import TsplibFile, costs, plain
 
-Rows = list[tuple[int, list[float]]]
 _WITH_TIMES = 7  # numbers of a customer: id, x, y, demand, ready, due, service
 _WITH_PAIRS = 9  # the same, and the ids of its pick-up and delivery
-_DEMAND = "DEMAND_SECTION"
-
-
-def is_cvrp(file: TsplibFile) -> bool:
-    """Return whether a file of TSPLIB is about vehicles."""
-    return _DEMAND in file.sections or "CVRP" in file.header.get("TYPE", "").upper()
-
-
-def read_cvrp(file: TsplibFile) -> Reading:
-    """Return the request of a file of CVRPLIB: total against longest route.
-
-    Raises:
-        UnreadableFile: A keyword or a section is missing, or does not fit DIMENSION.
-    """
-    source, n = file.source, file.dimension
-    demands = file.numbers(_DEMAND, n, 2)[:, 1].tolist()
-    words = [word for word in file.sections.get("DEPOT_SECTION", ["1"]) if word != "-1"]
-    if len(words) != 1 or not words[0].isdecimal() or not 1 <= int(words[0]) <= n:
-        raise source.refusal("DEPOT_SECTION must have one depot", " ".join(words))
-    depot = int(words[0]) - 1
-    windows = _optional(file, "TIME_WINDOW_SECTION", 3)
-    services = _optional(file, "SERVICE_TIME_SECTION", 2)
-    stops: list[dict[str, Any]] = [{"id": str(number)} for number in range(1, n + 1)]
-    for at in {*range(n)} - {depot}:
-        stops[at]["demand"] = [_whole(source, demands[at], f"{_DEMAND}, stop {at + 1}")]
-        stops[at] |= {"window": windows[at][1:]} if windows else {}
-        stops[at] |= {"service": services[at][1]} if services else {}
-    vehicle = {"capacity": [_header(file, "CAPACITY")]}
-    vehicle |= {"shift": windows[depot][1:]} if windows else {}
-    vehicle |= {"longest": _header(file, "DISTANCE")} if "DISTANCE" in file.header else {}
-    count = _header(file, "VEHICLES") if "VEHICLES" in file.header else max(1, n - 1)
-    if "VEHICLES" not in file.header:
-        source.note("vehicle", "The file does not say how many vehicles: as many as needed.")
-    objectives = planar({"matrix": plain(costs(file))})
-    return source.reading("fleet", _request(stops, stops[depot]["id"], count, vehicle, objectives))
-
-
-def _optional(file: TsplibFile, section: str, columns: int) -> list[list[float]]:
-    if section not in file.sections:
-        return []
-    rows: list[list[float]] = file.numbers(section, file.dimension, columns).tolist()
-    return rows
-
-
-def _header(file: TsplibFile, name: str) -> Any:
-    number = number_in(file.word(name))
-    if number is None:
-        raise file.source.refusal(f"{name} must be a number", file.word(name))
-    return int(number) if number.is_integer() else number
-
-
-def _request(
-    stops: list[dict[str, Any]], depot: str, count: Any, vehicle: dict[str, Any], objectives: Any
-) -> Request:
-    fleet = {"id": "vehicle", "count": count, "start": depot, "end": depot, **vehicle}
-    return fleet_request(stops, [fleet], objectives)
 
 
 def is_customers(text: str) -> bool:
@@ -103,11 +45,12 @@ def read_customers(source: Source, text: str) -> Reading:
     names = [f"{row[0]:g}" for _, row in customers]
     stops = [{"id": names[0]}, *(_customer(source, row) for row in others)]
     vehicle: dict[str, Any] = {
+        **{"id": "vehicle", "count": int(count), "start": names[0], "end": names[0]},
         "capacity": [_whole(source, capacity, "capacity")],
         "shift": depot[4:6],
     }
     objectives = planar({"coordinates": [row[1:3] for _, row in customers]})
-    request = _request(stops, names[0], int(count), vehicle, objectives)
+    request = fleet_request(stops, [vehicle], objectives)
     if width == _WITH_PAIRS:
         pairs = [(f"{row[0]:g}", f"{row[8]:g}") for row in others if row[8]]
         request["shipments"] = [{"pickup": one, "delivery": other} for one, other in pairs]

@@ -1,0 +1,337 @@
+"""Read the depots and vehicles of VRPLIB: keywords and sections with a row for each vehicle."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.files.benchmarks.keywords import count_of
+from service.files.fleets import Vehicle
+from service.files.reading import quoted
+from service.files.tables import number_in
+from service.files.tsplib import TsplibFile
+
+Array = NDArray[np.float64]
+_MOST_SKILLS = 50  # of a vehicle
+_DISTANCE = "VEHICLES_MAX_DISTANCE"
+_LIMITS = ("DISTANCE", "VEHICLES_MAX_DURATION", _DISTANCE)
+
+
+@dataclass(frozen=True)
+class Depots:
+    """The depots: their stops by position, and whether routes are open."""
+
+    first_node: int
+    stops: tuple[int, ...]
+    open_routes: bool = False
+
+    @classmethod
+    def of(cls, file: TsplibFile, *, open_routes: bool) -> "Depots":
+        """Return the depots of a file: those that it lists, or the first node."""
+        first = file.first_node
+        words = file.listed("DEPOT_SECTION") or [str(first)]
+        stops = tuple(_index(file, "DEPOT_SECTION", word) for word in words)
+        return cls(first, tuple(dict.fromkeys(stops)), open_routes)
+
+    def name(self, at: int) -> str:
+        """Return the id of a stop: the number of its node."""
+        return str(at + self.first_node)
+
+
+@dataclass(frozen=True)
+class Vehicles:
+    """The types of vehicles, what stops are told of them, and the depots that they use."""
+
+    types: list[Vehicle]
+    unit_cost: float = 1.0
+    used: frozenset[int] = frozenset()
+    allowed: Mapping[int, dict[str, Any]] = field(default_factory=dict)
+    limits_distances: bool = False
+
+    def without(self, member: str) -> "Vehicles":
+        """Return these vehicles without one of their members."""
+        types = [{k: v for k, v in each.items() if k != member} for each in self.types]
+        return replace(self, types=types)
+
+    def check_distances(self, file: TsplibFile, *, timed: bool) -> None:
+        """Raise UnreadableFile if distances are limited where a limit is on times."""
+        if timed and self.limits_distances:
+            demand = f"{_DISTANCE} is not supported beside times: VEHICLES_MAX_DURATION is"
+            raise file.source.refusal(demand)
+
+
+def vehicles_of(
+    file: TsplibFile, depots: Depots, clients: Sequence[int], windows: Array | None
+) -> Vehicles:
+    """Return the vehicles of a file, equal ones as one type.
+
+    Args:
+        file: The file.
+        depots: Its depots.
+        clients: The other stops.
+        windows: The windows of all stops, of which those of depots are shifts.
+
+    Raises:
+        UnreadableFile: A section does not have a row for each vehicle, or cannot be said.
+    """
+    count = _count(file)
+    rows = _Rows(file, count)
+    unit = _unit_cost(rows)
+    kinds, alike = _alike(rows, depots, windows, unit)
+    if count is None:
+        text = "The file does not say how many vehicles: as many as needed."
+        file.source.note("vehicle", text)
+        alike = [max(1, len(clients))]
+    types: list[Vehicle] = [
+        {"id": f"vehicle {at + 1}" if len(kinds) > 1 else "vehicle", "count": number, **vehicle}
+        for (at, vehicle, _), number in zip(kinds, alike, strict=True)
+    ]
+    used = {stop for each in types for stop in (each["start"], *each.get("reload", ()))}
+    allowed = {}
+    if rows.has("VEHICLES_ALLOWED_CLIENTS"):
+        allowed = _allowed(file, types, [each for *_, each in kinds], clients, depots)
+    at_depots = frozenset(at for at in depots.stops if depots.name(at) in used)
+    return Vehicles(types, unit, at_depots, allowed, rows.has(_DISTANCE))
+
+
+def _alike(
+    rows: "_Rows", depots: "Depots", windows: Array | None, unit: float
+) -> tuple[list[tuple[int, Vehicle, frozenset[int]]], list[int]]:
+    """Return the first of each kind of equal vehicles, and how many there are of each kind."""
+    kinds: dict[str, tuple[int, Vehicle, frozenset[int]]] = {}
+    counts: dict[str, int] = {}
+    several = rows.count if rows.differ else 1
+    clients_of = rows.lists("VEHICLES_ALLOWED_CLIENTS")
+    for at in range(several or 1):
+        vehicle, allowed = _vehicle(rows, depots, windows, unit, at), clients_of[at]
+        key = repr((vehicle, sorted(allowed)))
+        kinds.setdefault(key, (at, vehicle, allowed))
+        counts[key] = counts.get(key, 0) + 1
+    alike = list(counts.values()) if rows.differ else [rows.count or 1]
+    return list(kinds.values()), alike
+
+
+def _count(file: TsplibFile) -> int | None:
+    """Return the number of vehicles: as a keyword says, or as sections have rows."""
+    name = count_of(file)
+    if name is None:
+        lengths = [len(file.sections[section]) for section in _sections(file)]
+        return lengths[0] if lengths else None
+    value = number_in(file.word(name))
+    if value is None or not value.is_integer() or value < 1:
+        raise file.source.refusal(f"{name} must be a whole number from 1", file.word(name))
+    return int(value)
+
+
+def _sections(file: TsplibFile) -> list[str]:
+    """Return the sections with a row for each vehicle."""
+    return [
+        section
+        for section in file.sections
+        if section == "CAPACITY_SECTION" or section.startswith("VEHICLES_")
+    ]
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """What keywords and sections say of each vehicle."""
+
+    file: TsplibFile
+    count: int | None
+    parsed: dict[str, list[list[float]]] = field(default_factory=dict)
+
+    @property
+    def differ(self) -> bool:
+        """Whether vehicles may differ."""
+        return bool(_sections(self.file))
+
+    def has(self, name: str) -> bool:
+        """Return whether a keyword or its section stands in the file."""
+        return name in self.file.header or f"{name}_SECTION" in self.file.sections
+
+    def number(self, name: str, at: int) -> float | None:
+        """Return the number of a vehicle; None if nothing is said."""
+        found = self.numbers(name, at)
+        if found and len(found) > 1:
+            raise self._refusal(name, "one number for each vehicle", len(found))
+        return found[0] if found else None
+
+    def numbers(self, name: str, at: int) -> list[float]:
+        """Return the numbers of a vehicle in its row, or the one of the keyword."""
+        section = f"{name}_SECTION"
+        if name in self.file.header:
+            if section in self.file.sections:
+                raise self.file.source.refusal(f"{name} must not stand beside {section}")
+            value = number_in(self.file.word(name))
+            if value is None:
+                raise self.file.source.refusal(f"{name} must be a number", self.file.word(name))
+            return [value]
+        return self._by_vehicle(section)[at] if section in self.file.sections else []
+
+    def lists(self, name: str) -> list[frozenset[int]]:
+        """Return the positions of the stops in the row of each vehicle."""
+        section = f"{name}_SECTION"
+        if section not in self.file.sections:
+            return [frozenset()] * (self.count or 1 if self.differ else 1)
+        return [
+            frozenset(_index(self.file, section, f"{each:g}") for each in row if each != -1)
+            for row in self._by_vehicle(section)
+        ]
+
+    def _by_vehicle(self, section: str) -> list[list[float]]:
+        """Return the rows of a section by the numbers of their vehicles, which come first."""
+        if section in self.parsed:
+            return self.parsed[section]
+        file = self.file
+        rows = [file.parsed(section, words).tolist() for words in file.sections[section]]
+        if rows and rows[-1] == [-1]:
+            rows.pop()
+        numbers = [row[0] if row else None for row in rows]
+        if sorted(numbers, key=str) != sorted(map(float, range(1, (self.count or 0) + 1)), key=str):
+            raise self._refusal(section, f"one row for each vehicle 1 to {self.count}", len(rows))
+        self.parsed[section] = [row[1:] for row in sorted(rows)]
+        return self.parsed[section]
+
+    def _refusal(self, name: str, demand: str, came: int) -> Exception:
+        return self.file.source.refusal(f"{name} must have {demand}, got {came}")
+
+
+def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at: int) -> Vehicle:
+    """Return the members of a vehicle, without its id and count."""
+    file = rows.file
+    start = _start(rows, depots, at)
+    home = depots.name(start)
+    made: Vehicle = {"start": home} if depots.open_routes else {"start": home, "end": home}
+    if capacity := rows.numbers("CAPACITY", at):
+        made["capacity"] = [_load(file, each) for each in capacity]
+    elif "DEMAND_SECTION" in file.sections:
+        raise file.source.refusal("CAPACITY must be a number, or a section", "nothing")
+    if windows is not None:
+        made["shift"] = windows[start].tolist()
+    if (longest := _longest(rows, at)) is not None:
+        made["longest"] = longest
+    if fixed := rows.number("VEHICLES_FIXED_COST", at):
+        made["fixed"] = _plain(fixed / unit)
+    return made | _reload(rows, depots, at)
+
+
+def _longest(rows: _Rows, at: int) -> float | None:
+    """Return the limit on the routes of a vehicle, the least if there are several."""
+    limits = [limit for name in _LIMITS if (limit := rows.number(name, at)) is not None]
+    if limits and min(limits) <= 0:
+        raise rows.file.source.refusal(f"limits on routes must be over 0, got {min(limits):g}")
+    return _plain(min(limits)) if limits else None
+
+
+def _reload(rows: _Rows, depots: Depots, at: int) -> Vehicle:
+    """Return where a vehicle may load again, and how often."""
+    file, section, most = rows.file, "VEHICLES_RELOAD_DEPOT_SECTION", "VEHICLES_MAX_RELOADS"
+    found = sorted(rows.lists("VEHICLES_RELOAD_DEPOT")[at])
+    reloads = rows.number(most, at)
+    if not found:
+        if reloads:
+            raise file.source.refusal(f"{most} needs {section}")
+        return {}
+    if wrong := [depots.name(each) for each in found if each not in depots.stops]:
+        raise file.source.refusal(f"{section} must name depots of DEPOT_SECTION", wrong[0])
+    reload = {"reload": [depots.name(each) for each in found]}
+    return reload if reloads is None else reload | {"max_trips": _load(file, reloads) + 1}
+
+
+def _start(rows: _Rows, depots: Depots, at: int) -> int:
+    """Return the depot of a vehicle.
+
+    Raises:
+        UnreadableFile: There are several, and nothing says at which it starts.
+    """
+    found = rows.number("VEHICLES_DEPOT", at)
+    source = rows.file.source
+    if found is not None:
+        start = _index(rows.file, "VEHICLES_DEPOT_SECTION", f"{found:g}")
+        if start not in depots.stops:
+            raise source.refusal("VEHICLES_DEPOT_SECTION must name a depot", f"{found:g}")
+        return start
+    first, *others = depots.stops
+    reloads = frozenset[int]().union(*rows.lists("VEHICLES_RELOAD_DEPOT"))
+    if not {*others} <= reloads:
+        demand = "DEPOT_SECTION must have one depot, or VEHICLES_DEPOT_SECTION one for each vehicle"
+        raise source.refusal(demand, " ".join(map(depots.name, depots.stops)))
+    if others and at == 0:
+        source.note("vehicle", f"All vehicles start at the first depot, {depots.name(first)}.")
+    return first
+
+
+def _unit_cost(rows: _Rows) -> float:
+    """Return the cost of a unit of distance, the same for all vehicles.
+
+    Raises:
+        UnreadableFile: They differ, which no objective can say.
+    """
+    name = "VEHICLES_UNIT_DISTANCE_COST"
+    if not rows.has(name):
+        return 1.0
+    units = {rows.number(name, at) for at in range(rows.count or 1)}
+    [unit, *others] = [each or 0.0 for each in units]
+    if others or unit <= 0:
+        came = ", ".join(sorted(f"{each or 0:g}" for each in units))
+        demand = f"{name} must be one number over 0 for all vehicles: others are not supported"
+        raise rows.file.source.refusal(demand, came)
+    if unit != 1:
+        text = f"Fixed costs and prizes were divided by {unit:g}, the cost of a unit of distance."
+        rows.file.source.note("fixed", text)
+    return unit
+
+
+def _allowed(
+    file: TsplibFile,
+    types: list[Vehicle],
+    clients_of: list[frozenset[int]],
+    clients: Sequence[int],
+    depots: Depots,
+) -> dict[int, dict[str, Any]]:
+    """Return what stops are told of the vehicles that may visit them.
+
+    A stop of one type names it, and a stop of some of them has a skill that these alone have.
+    """
+    section = "VEHICLES_ALLOWED_CLIENTS_SECTION"
+    told: dict[int, dict[str, Any]] = {}
+    skills: dict[tuple[int, ...], str] = {}
+    for stop in clients:
+        able = tuple(at for at, allowed in enumerate(clients_of) if stop in allowed)
+        if not able:
+            demand = f"{section} must allow each client to a vehicle, and allows to none"
+            raise file.source.refusal(demand, depots.name(stop))
+        if len(able) == len(types):
+            continue
+        if len(able) == 1:
+            told[stop] = {"vehicle": types[able[0]]["id"]}
+        else:
+            told[stop] = {"skills": [skills.setdefault(able, f"allowed {len(skills) + 1}")]}
+    for able, skill in skills.items():
+        for at in able:
+            types[at].setdefault("skills", []).append(skill)
+    if any(len(each.get("skills", ())) > _MOST_SKILLS for each in types):
+        demand = f"{section} must have at most {_MOST_SKILLS} different sets of vehicles"
+        raise file.source.refusal(demand)
+    return told
+
+
+def _index(file: TsplibFile, section: str, word: str) -> int:
+    """Return the position of the stop that a word of a section numbers."""
+    first, last = file.first_node, file.first_node + file.dimension - 1
+    if not word.isdecimal() or not first <= int(word) <= last:
+        raise file.source.refusal(f"{section} must have numbers of nodes, {first} to {last}", word)
+    return int(word) - first
+
+
+def _load(file: TsplibFile, number: float) -> int:
+    if not number.is_integer() or number < 0:
+        demand = "capacities and trips must be whole numbers from 0"
+        raise file.source.refusal(demand, quoted(f"{number:g}")[1:-1])
+    return int(number)
+
+
+def _plain(number: float) -> float:
+    return int(number) if float(number).is_integer() else number
