@@ -3,11 +3,15 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+import numpy as np
+
 from service.files.reading import Request, Source, quoted
+from service.roads.great_circle import great_circle_distances
 
 Stop = dict[str, Any]
 Vehicle = dict[str, Any]
-_SPEED = 30  # km/h: a van in a city
+_SPEED, _SPEED_BETWEEN_TOWNS = 30, 50  # km/h, along straight lines: a van in a city, and outside
+_CITY = 10_000.0  # metres from the middle of a city, for half of all stops
 _TIMES = ("service", "window", "windows", "due", "release")
 _OF_VISITS = (*_TIMES, "demand", "prize", "skills", "vehicle")
 _OF_VISITED = ("skills", "vehicle")  # members that no depot has
@@ -20,17 +24,39 @@ def planar(costs: dict[str, Any]) -> list[dict[str, Any]]:
     return [{"name": name, **costs, "over": over} for name, over in (total, longest)]
 
 
-def measured(source: Source, timed: bool) -> list[dict[str, Any]]:
-    """Return both objectives of stops on the earth; if `timed`, the second is time in seconds."""
+def measured(
+    source: Source, timed: bool, stops: Sequence[Stop] = (), factor: float = 1
+) -> list[dict[str, Any]]:
+    """Return both objectives of stops on the earth; if `timed`, the second is time in seconds.
+
+    Args:
+        source: The file.
+        timed: Whether the second is time.
+        stops: The stops, whose distances say how fast vehicles are without a routing engine.
+        factor: How much faster than usual the vehicles are.
+    """
     distance = {"name": "distance", "from": "great_circle", "over": "sum"}
     if source.bounds.roads:
         return [distance, {"name": "time", "from": "road_time", "over": "max"}]
     if not timed:
         return [distance, {"name": "longest route", "from": "great_circle", "over": "max"}]
-    where = f"along straight lines at {_SPEED} km/h"
+    speed = speed_between(stops) if factor == 1 else round(speed_between(stops) * factor, 3)
+    where = f"along straight lines at {speed:g} km/h"
     source.note("objectives", f"Times are {where}, as there is no routing engine here.")
-    time = {"name": "time", "from": "great_circle", "speed": _SPEED, "over": "max"}
+    time = {"name": "time", "from": "great_circle", "speed": speed, "over": "max"}
     return [distance, time]
+
+
+def speed_between(stops: Sequence[Stop]) -> float:
+    """Return how fast a van is along straight lines between stops, in km/h.
+
+    It is faster where half of them or more lie outside a city.
+    """
+    places = np.array([stop["location"] for stop in stops if "location" in stop])
+    if not len(places):
+        return _SPEED
+    off = great_circle_distances(places, np.median(places, axis=0))
+    return _SPEED_BETWEEN_TOWNS if np.median(off) > _CITY else _SPEED
 
 
 def timed(stops: Sequence[Stop]) -> bool:

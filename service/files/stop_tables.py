@@ -149,7 +149,7 @@ def _fleet(columns: Columns) -> Reading:
     stops, plane = visits_of(columns)
     add_visits(columns, stops)
     columns.report()
-    objectives = planar({"coordinates": plane}) if plane else measured(source, timed(stops))
+    objectives = planar({"coordinates": plane}) if plane else measured(source, timed(stops), stops)
     return source.reading("fleet", with_vehicles(source, stops, objectives))
 
 

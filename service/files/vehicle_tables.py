@@ -60,7 +60,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     stops, vehicles = at_depots(stops, vehicles)
     add_bounds(columns, vehicles)
     clock = have_times(stops, vehicles)
-    objectives = planar({"coordinates": plane}) if plane else measured(source, clock)
+    objectives = planar({"coordinates": plane}) if plane else measured(source, clock, stops)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)
     columns.report()

@@ -4,16 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from service.files.fleets import Stop, Vehicle, fleet_request, have_times, measured, spans
-from service.files.places import check_range, note_places
+from service.files.fleets import Stop, Vehicle, fleet_request, have_times, spans
+from service.files.places import check_range
+from service.files.planners.vroom_costs import objectives_of
+from service.files.planners.vroom_members import note_others
+from service.files.planners.vroom_times import Task, add_services, load_of_jobs
 from service.files.reading import Reading, Source, quoted
 
-_LEFT_OUT = {
-    "jobs": ("priority", "setup", "pickup", "time_window"),
-    "shipments": ("priority",),
-    "vehicles": ("speed_factor", "max_travel_time", "max_distance", "steps", "type"),
-}
 _NO_BREAKS = "breaks of vehicles without exactly one time window were left out."
+_LONGEST_DETAIL = 200  # characters
 
 
 @dataclass
@@ -23,26 +22,35 @@ class _Problem:
     source: Source
     stops: list[Stop] = field(default_factory=list)
     indexes: list[Any] = field(default_factory=list)
+    tasks: list[Task] = field(default_factory=list)
     depots: dict[str, str] = field(default_factory=dict)  # the ids of stops, by their places
 
-    def add(self, name: str, place: Any, index: Any, where: str, **members: Any) -> str:
-        """Add a stop, and return its id."""
+    def add(self, name: str, place: Any, index: Any, where: str, **members: Any) -> Stop:
+        """Add a stop, and return it."""
         stop: Stop = {"id": name}
         if place is not None:
             if not _are_numbers(place, 2):
                 raise self.source.refusal(f"{where} must be longitude and latitude", place)
             check_range(self.source, place, where)
             stop["location"] = list(place)
-        self.stops.append({**stop, **{k: v for k, v in members.items() if v}})
+        stop |= {k: v for k, v in members.items() if v}
+        self.stops.append(stop)
         self.indexes.append(index)
-        return name
+        return stop
+
+    def add_task(self, task: dict[str, Any], of: str, where: str, **members: Any) -> str:
+        """Add the stop of a job, a pick-up or a delivery, and return its id."""
+        place, index = task.get("location"), task.get("location_index")
+        stop = self.add(members.pop("id"), place, index, where, **members)
+        self.tasks.append(Task(task, of, where, stop, f"{place} {index}"))
+        return str(stop["id"])
 
     def depot(self, place: Any, index: Any, where: str) -> str:
         """Return the id of the stop where a vehicle starts or ends, one for each place."""
         key = f"{place} {index}"
         if key not in self.depots:
             name = f"depot {len(self.depots) + 1}"
-            self.depots[key] = self.add(name, place, index, where)
+            self.depots[key] = str(self.add(name, place, index, where)["id"])
         return self.depots[key]
 
 
@@ -62,23 +70,39 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
         UnreadableFile: A member has a wrong type, or a shipment several windows.
     """
     problem = _Problem(source)
+    note_others(source, [value], "the problem")
     vehicles = _vehicles(problem, value)
+    load = load_of_jobs(source, value)
     for job, where in _items(source, value, "jobs"):
         name = str(job.get("id", len(problem.stops)))
         skills = _skills(source, job, where)
         windows = _windows(source, job, where)
-        load = job.get("delivery", job.get("amount"))
-        _add_task(problem, job, where, id=name, demand=load, skills=skills, **windows)
+        demand = job.get(load, job.get("amount"))
+        problem.add_task(job, "jobs", where, id=name, demand=demand, skills=skills, **windows)
     shipments = [
         _shipment(problem, each, where) for each, where in _items(source, value, "shipments")
     ]
     source.check_count("stops", source.bounds.cities, len(problem.stops))
-    clock = have_times(problem.stops, vehicles)
-    objectives = _objectives(problem, value, clock)
-    request = fleet_request(problem.stops, vehicles, objectives)
+    add_services(source, value["vehicles"], problem.tasks, set(problem.depots))
+    _add_descriptions(problem)
+    timed = have_times(problem.stops, vehicles)
+    stops, indexes = problem.stops, problem.indexes
+    objectives = objectives_of(source, value, (stops, indexes), vehicles, timed)
+    request = fleet_request(stops, vehicles, objectives)
     if shipments:
         request["shipments"] = shipments
     return source.reading("fleet", request)
+
+
+def _add_descriptions(problem: _Problem) -> None:
+    """Add the descriptions of tasks, which tell drivers something."""
+    texts = {
+        str(each.stop["id"]): str(each.task["description"])[:_LONGEST_DETAIL]
+        for each in problem.tasks
+        if each.task.get("description")
+    }
+    if texts:
+        problem.source.details.append(("description", texts))
 
 
 def _items(
@@ -88,9 +112,7 @@ def _items(
     items = value.get(name) or []
     if not isinstance(items, list) or not all(isinstance(each, dict) for each in items):
         raise source.refusal(f"{name} must be a list of objects")
-    for member in _LEFT_OUT[name]:
-        if any(each.get(member) for each in items):
-            source.note_left_out(f"{member} of {name}")
+    note_others(source, items, name)
     for at, each in enumerate(items):
         yield each, f"{name}/{at}"
 
@@ -99,6 +121,8 @@ def _vehicles(problem: _Problem, value: dict[str, Any]) -> list[Vehicle]:
     """Return all vehicles, and note what is left out of them."""
     source = problem.source
     items = list(_items(source, value, "vehicles"))
+    if not items:
+        raise source.refusal("vehicles must be a list of one or more")
     vehicles = [_vehicle(problem, each, where) for each, where in items]
     _number_same(source, vehicles)
     if value.get("shipments") and any("max_stops" in each for each in vehicles):
@@ -151,6 +175,7 @@ def _breaks(source: Source, vehicle: dict[str, Any], where: str) -> list[dict[st
     breaks = vehicle.get("breaks") or []
     if not isinstance(breaks, list) or not all(isinstance(each, dict) for each in breaks):
         raise source.refusal(f"{where}/breaks must be a list of objects", breaks)
+    note_others(source, breaks, "breaks of vehicles")
     found = []
     for index, each in enumerate(breaks):
         windows, length = each.get("time_windows"), each.get("service", 0)
@@ -173,22 +198,16 @@ def _shipment(problem: _Problem, shipment: dict[str, Any], where: str) -> dict[s
         task = shipment.get(role)
         if not isinstance(task, dict):
             raise source.refusal(f"{where} must have a {role}, an object")
+        note_others(source, [task], "steps of shipments")
         load = shipment.get("amount") if role == "pickup" else None
         name = f"{role} {task.get('id', len(problem.stops))}"
         windows = _windows(source, task, f"{where}/{role}")
         if "windows" in windows:
             demand = f"{where}/{role}/time_windows must be one window: several are for jobs alone"
             raise source.refusal(demand, task["time_windows"])
-        pair[role] = _add_task(
-            problem, task, f"{where}/{role}", id=name, demand=load, skills=skills, **windows
-        )
+        members = {"id": name, "demand": load, "skills": skills, **windows}
+        pair[role] = problem.add_task(task, "steps of shipments", f"{where}/{role}", **members)
     return pair
-
-
-def _add_task(problem: _Problem, task: dict[str, Any], where: str, **members: Any) -> str:
-    """Add the stop of a job, a pick-up or a delivery, and return its id."""
-    place, index, name = task.get("location"), task.get("location_index"), members.pop("id")
-    return problem.add(name, place, index, where, service=task.get("service"), **members)
 
 
 def _skills(source: Source, task: dict[str, Any], where: str) -> list[str]:
@@ -225,41 +244,3 @@ def _are_numbers(value: Any, count: int) -> bool:
         and len(value) == count
         and all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
     )
-
-
-def _objectives(problem: _Problem, value: dict[str, Any], clock: bool) -> list[dict[str, Any]]:
-    """Return both objectives: from the matrices of the first profile, or from the stops' places."""
-    source = problem.source
-    matrices = value.get("matrices")
-    if not isinstance(matrices, dict) or not matrices:
-        if any("location" not in stop for stop in problem.stops):
-            raise source.refusal("each task must have a location, as there are no matrices")
-        note_places(source, problem.stops)
-        return measured(source, clock)
-    profile, costs = next(iter(matrices.items()))
-    if len(matrices) > 1:
-        source.note_left_out(f"all profiles but {quoted(profile)}")
-    given = costs if isinstance(costs, dict) else {}
-    durations = _submatrix(problem, given.get("durations"), f"matrices/{profile}/durations")
-    other = given.get("distances") or given.get("costs")
-    first = {"name": "total time", "unit": "s", "matrix": durations}
-    if other:
-        matrix = _submatrix(problem, other, f"matrices/{profile}/distances")
-        first = {"name": "distance", "matrix": matrix}
-    second = {"name": "longest route", "unit": "s", "matrix": durations}
-    return [{**first, "over": "sum"}, {**second, "over": "max"}]
-
-
-def _submatrix(problem: _Problem, matrix: Any, where: str) -> list[list[Any]]:
-    """Return the costs between the stops, by their indexes in a matrix."""
-    source, indexes = problem.source, problem.indexes
-    source.check_count("stops with a matrix", source.bounds.matrix_cities, len(indexes))
-    for at, index in enumerate(indexes):
-        if not isinstance(index, int) or index < 0:
-            name = quoted(problem.stops[at]["id"])
-            raise source.refusal(f"{name} must have a location_index, as there are matrices")
-    try:
-        return [[matrix[row][column] for column in indexes] for row in indexes]
-    except (TypeError, IndexError, KeyError):
-        demand = f"{where} must have a row and a column for each location_index"
-        raise source.refusal(f"{demand}, up to {max(indexes)}") from None

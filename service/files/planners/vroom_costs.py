@@ -1,0 +1,292 @@
+"""Make objectives of the costs, matrices and speeds in VROOM's JSON.
+
+In VROOM the cost of a route is `fixed`, and `per_hour` for its travel time, and `per_km` for its
+distance: by default one for each second. It is the first objective wherever a vehicle says more
+than these defaults; the second objective is the longest route.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from service.files.fleets import Stop, Vehicle, measured, speed_between
+from service.files.places import note_places
+from service.files.planners.vroom_members import note_others, note_unused
+from service.files.reading import Source, quoted
+
+_PER_HOUR, _PER_KM = 3600, 0  # the defaults of VROOM
+_DIFFER = "vehicles differ in it, and objectives hold for all of them"
+_OF = "costs of vehicles"
+_LIMITS = ("max_travel_time", "max_distance")
+Objectives = list[dict[str, Any]]
+Matrix = list[list[Any]]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """What VROOM's vehicles cost: for an hour, for a kilometre, and each at all."""
+
+    per_hour: float
+    per_km: float
+    fixed: bool
+
+
+def rates_of(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> Rates:
+    """Return the rates of all vehicles. Where they differ, they are noted, and are the defaults.
+
+    Raises:
+        UnreadableFile: A cost is not a number from 0.
+    """
+    costs = [each.get("costs") or {} for each in vehicles]
+    for at, each in enumerate(costs):
+        if not isinstance(each, dict):
+            raise source.refusal(f"vehicles/{at}/costs must be an object", each)
+        for name in ("fixed", "per_hour", "per_km"):
+            if not _is_cost(each.get(name, 0)):
+                demand = f"vehicles/{at}/costs/{name} must be a number from 0"
+                raise source.refusal(demand, each[name])
+    note_others(source, costs, _OF)
+    hours = {each.get("per_hour", _PER_HOUR) for each in costs}
+    kilometres = {each.get("per_km", _PER_KM) for each in costs}
+    differing = [
+        name for name, found in (("per_hour", hours), ("per_km", kilometres)) if len(found) > 1
+    ]
+    for name in differing:
+        note_unused(source, name, _OF, _DIFFER)
+    fixed = any(each.get("fixed") for each in costs)
+    if differing or not costs:
+        return Rates(_PER_HOUR, _PER_KM, fixed)
+    return Rates(hours.pop(), kilometres.pop(), fixed)
+
+
+def objectives_of(
+    source: Source,
+    problem: Mapping[str, Any],
+    located: tuple[Sequence[Stop], Sequence[Any]],
+    vehicles: list[Vehicle],
+    timed: bool,
+) -> Objectives:
+    """Return both objectives, and convert what vehicles cost and their limits to these.
+
+    Args:
+        source: The file.
+        problem: VROOM's problem.
+        located: The stops, and the index of each in the matrices.
+        vehicles: The vehicles, whose members are changed.
+        timed: Whether stops or vehicles have times.
+
+    Raises:
+        UnreadableFile: Places or matrices are missing or do not fit.
+    """
+    (stops, indexes), items = located, problem["vehicles"]
+    rates = rates_of(source, items)
+    factor = _speed_factor(source, items)
+    limited = _limit(source, items, timed)
+    matrices = _matrices(source, problem)
+    if matrices is None:
+        if any("location" not in stop for stop in stops):
+            raise source.refusal("each task must have a location, as there are no matrices")
+        note_places(source, stops)
+        if any(each.get("profile", "car") != "car" for each in items):
+            why = "without matrices all vehicles drive as cars do"
+            note_unused(source, "profile", "vehicles", why)
+        found = _by_places(source, stops, rates, factor, timed or limited == "max_travel_time")
+    else:
+        found = _by_matrices(source, _Cut(source, stops, indexes, *matrices), rates, factor)
+    objectives, unit = found
+    for vehicle in vehicles:
+        if "fixed" in vehicle and unit != 1:
+            vehicle["fixed"] = round(vehicle["fixed"] / unit, 6)
+    _add_limits(source, items, vehicles, limited, objectives[1])
+    return objectives
+
+
+def _by_places(
+    source: Source, stops: Sequence[Stop], rates: Rates, factor: float, timed: bool
+) -> tuple[Objectives, float]:
+    """Return the objectives of stops on the earth, and VROOM's cost of a unit of the first."""
+    if source.bounds.roads and factor != 1:
+        note_unused(source, "speed_factor", "vehicles", "times are by road")
+        factor = 1
+    if not rates.fixed:  # at one speed, any rates have the same best plans
+        return measured(source, timed, stops, factor), 1
+    distance, time = measured(source, rates.per_hour > 0 or timed, stops, factor)
+    per_second, per_metre = rates.per_hour / 3600, rates.per_km / 1000
+    if not per_second and per_metre:
+        return [distance, time], _noted(source, "distance", per_metre)
+    total = {**time, "name": "total time", "over": "sum"}
+    if source.bounds.roads:
+        if per_metre:
+            note_unused(source, "per_km", _OF, "times by road are not distances")
+    else:
+        per_second += per_metre * speed_between(stops) * factor / 3.6
+    return [total, time], _noted(source, "total time", per_second)
+
+
+def _noted(source: Source, name: str, unit: float) -> float:
+    """Note how fixed costs were converted, and return the cost of a unit of an objective."""
+    if unit <= 0:
+        note_unused(source, "per_hour", _OF, "nothing costs anything but the vehicles")
+        unit = 1
+    was = "" if unit == 1 else f", and was divided by {unit:g}, the cost of its unit"
+    source.note("fixed", f"fixed of {_OF} is added to the first objective, {name}{was}.")
+    return unit
+
+
+@dataclass(frozen=True)
+class _Cut:
+    """The matrices of one profile, cut to the stops."""
+
+    source: Source
+    stops: Sequence[Stop]
+    indexes: Sequence[Any]
+    profile: str
+    given: Mapping[str, Any]
+
+    def matrix(self, name: str, scale: float = 1) -> Matrix:
+        """Return the costs between the stops, by their indexes in a matrix."""
+        source, indexes, matrix = self.source, self.indexes, self.given.get(name)
+        source.check_count("stops with a matrix", source.bounds.matrix_cities, len(indexes))
+        for at, index in enumerate(indexes):
+            if not isinstance(index, int) or isinstance(index, bool) or index < 0:
+                known = quoted(self.stops[at]["id"])
+                raise source.refusal(f"{known} must have a location_index, as there are matrices")
+        try:
+            cut = [[matrix[row][column] for column in indexes] for row in indexes]  # type: ignore[index]
+        except (TypeError, IndexError, KeyError):
+            where = f"matrices/{self.profile}/{name}"
+            demand = f"{where} must have a row and a column for each location_index"
+            raise source.refusal(f"{demand}, up to {max(indexes)}") from None
+        return cut if scale == 1 else [[_scaled(each, scale) for each in row] for row in cut]
+
+
+def _by_matrices(
+    source: Source, cut: _Cut, rates: Rates, factor: float
+) -> tuple[Objectives, float]:
+    """Return the objectives of matrices, and VROOM's cost of a unit of the first."""
+    durations = cut.matrix("durations", 1 / factor)
+    longest = {"name": "longest route", "unit": "s", "matrix": durations, "over": "max"}
+    total = {"name": "total time", "unit": "s", "matrix": durations, "over": "sum"}
+    if cut.given.get("costs"):
+        _note_beside_costs(source, cut, rates)
+        return [{"name": "cost", "matrix": cut.matrix("costs"), "over": "sum"}, longest], 1
+    if not cut.given.get("distances"):
+        if rates.per_km:
+            note_unused(source, "per_km", _OF, "there are no matrices of distances")
+        unit = _noted(source, "total time", rates.per_hour / 3600) if rates.fixed else 1
+        return [total, longest], unit
+    distances = cut.matrix("distances")
+    distance = {"name": "distance", "matrix": distances, "over": "sum"}
+    if rates.per_hour and rates.per_km:
+        source.note("objectives", "The first objective is VROOM's cost: per_hour and per_km.")
+        costs = _costs(durations, distances, rates)
+        return [{"name": "cost", "matrix": costs, "over": "sum"}, longest], 1
+    if not rates.fixed:
+        return [distance, longest], 1
+    if rates.per_km:
+        return [distance, longest], _noted(source, "distance", rates.per_km / 1000)
+    return [total, longest], _noted(source, "total time", rates.per_hour / 3600)
+
+
+def _note_beside_costs(source: Source, cut: _Cut, rates: Rates) -> None:
+    """Note what a matrix of costs stands for."""
+    why = "there are matrices of costs"
+    if rates.per_hour != _PER_HOUR:
+        note_unused(source, "per_hour", _OF, why)
+    if rates.per_km != _PER_KM:
+        note_unused(source, "per_km", _OF, why)
+    if cut.given.get("distances"):
+        note_unused(source, "distances", "matrices", why)
+
+
+def _costs(durations: Matrix, distances: Matrix, rates: Rates) -> Matrix:
+    """Return what legs cost by their time and their length."""
+    return [
+        [_sum(second, metre, rates) for second, metre in zip(*rows, strict=True)]
+        for rows in zip(durations, distances, strict=True)
+    ]
+
+
+def _sum(second: Any, metre: Any, rates: Rates) -> Any:
+    """Return the cost of a leg; None where there is no way."""
+    if not _is_cost(second) or not _is_cost(metre):
+        return None
+    return round(second * rates.per_hour / 3600 + metre * rates.per_km / 1000, 6)
+
+
+def _scaled(value: Any, scale: float) -> Any:
+    return round(value * scale, 6) if _is_cost(value) else value
+
+
+def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]] | None:
+    """Return the profile and its matrices that the vehicles use; None if there are none."""
+    matrices = problem.get("matrices")
+    old = problem.get("matrix")
+    if matrices and old:
+        note_unused(source, "matrix", "the problem", "there are matrices")
+    elif old:
+        source.note("objectives", "matrix was read as durations in seconds, as VROOM 1.8 did.")
+        return "matrix", {"durations": old}
+    if not isinstance(matrices, dict) or not matrices:
+        return None
+    used = list(dict.fromkeys(str(each.get("profile", "car")) for each in problem["vehicles"]))
+    profile = next((each for each in used if each in matrices), next(iter(matrices)))
+    others = [each for each in (*used, *matrices) if each != profile]
+    if others:
+        named = ", ".join(quoted(each) for each in dict.fromkeys(others))
+        text = f"All vehicles use the matrices of {quoted(profile)}: {named} was not used."
+        source.note("left-out", text)
+    given = matrices[profile]
+    if not isinstance(given, dict):
+        raise source.refusal(f"matrices/{profile} must be an object", given)
+    note_others(source, [given], "matrices")
+    return profile, given
+
+
+def _speed_factor(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> float:
+    """Return how much faster than usual all vehicles are; 1, with a note, if they differ."""
+    factors = {each.get("speed_factor", 1) for each in vehicles}
+    if len(factors) != 1 or not all(_is_cost(each) and each for each in factors):
+        note_unused(source, "speed_factor", "vehicles", _DIFFER)
+        return 1
+    return float(factors.pop())
+
+
+def _limit(source: Source, vehicles: Sequence[Mapping[str, Any]], timed: bool) -> str | None:
+    """Return the member that limits routes; note a limit that cannot be said.
+
+    A limit is on the length of a route in the second objective, or beside times, on its time with
+    service and waiting, which VROOM's limits are not.
+    """
+    given = [name for name in _LIMITS if any(each.get(name) is not None for each in vehicles)]
+    if timed:
+        for name in given:
+            why = "beside times a limit is on service and waiting, too"
+            note_unused(source, name, "vehicles", why)
+        return None
+    for name in given[1:]:
+        note_unused(source, name, "vehicles", f"{given[0]} is the limit on routes")
+    return given[0] if given else None
+
+
+def _add_limits(
+    source: Source,
+    items: Sequence[Mapping[str, Any]],
+    vehicles: Sequence[Vehicle],
+    name: str | None,
+    second: Mapping[str, Any],
+) -> None:
+    """Add the limits on routes, if the second objective is what they limit."""
+    if name is None:
+        return
+    in_metres = second.get("from") == "great_circle" and "speed" not in second
+    if in_metres != (name == "max_distance"):
+        note_unused(source, name, "vehicles", "the longest route is of another unit")
+        return
+    for item, vehicle in zip(items, vehicles, strict=True):
+        if item.get(name) is not None:
+            vehicle["longest"] = item[name]
+
+
+def _is_cost(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0

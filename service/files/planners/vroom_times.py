@@ -1,0 +1,79 @@
+"""Read how long the tasks of VROOM's JSON take, and what they bring or take away."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from service.files.fleets import Stop
+from service.files.planners.vroom_members import note_unused
+from service.files.reading import Source
+
+_LONGEST_TAKEN = "vehicles of several types visit them: the longest of their times was taken"
+
+
+class Task(NamedTuple):
+    """A job, or a step of a shipment, and the stop that it became."""
+
+    task: Mapping[str, Any]
+    of: str  # jobs, or steps of shipments
+    where: str
+    stop: Stop
+    place: str  # by which tasks at one place are known
+
+
+def add_services(
+    source: Source, vehicles: Sequence[Mapping[str, Any]], tasks: Sequence[Task], depots: set[str]
+) -> None:
+    """Add to stops how long their visits take: the set-up, and the service.
+
+    VROOM asks for one set-up where a vehicle visits several tasks at one place in a row.
+
+    Args:
+        source: The file.
+        vehicles: VROOM's vehicles, whose types may have times of their own.
+        tasks: The tasks.
+        depots: The places where vehicles start.
+
+    Raises:
+        UnreadableFile: A time is not a number.
+    """
+    types = {str(each.get("type", "")) for each in vehicles}
+    shared = Counter(each.place for each in tasks)
+    for each in tasks:
+        service, setup = (_time(source, each, name, types) for name in ("service", "setup"))
+        if service + setup:
+            each.stop["service"] = service + setup
+        if setup and (shared[each.place] > 1 or each.place in depots):
+            text = "is part of each service here, also where tasks at one place follow each other"
+            note = f"setup of {each.of} {text}."
+            if all(known.text != note for known in source.notes):
+                source.note("times", note)
+
+
+def _time(source: Source, task: Task, name: str, types: set[str]) -> Any:
+    """Return a time of a task: for the types of all vehicles, or by itself."""
+    usual, of_types = task.task.get(name) or 0, task.task.get(f"{name}_per_type") or {}
+    if not isinstance(of_types, dict):
+        raise source.refusal(f"{task.where}/{name}_per_type must be an object", of_types)
+    found = [of_types.get(each, usual) for each in sorted(types)] or [usual]
+    for value in found:
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            raise source.refusal(f"{task.where}/{name} must be a time in seconds", value)
+    if len(set(found)) > 1:
+        note_unused(source, f"{name}_per_type", task.of, _LONGEST_TAKEN)
+    return max(found)
+
+
+def load_of_jobs(source: Source, problem: Mapping[str, Any]) -> str:
+    """Return the member that is the demand of jobs: delivery; or pickup if there is nothing else.
+
+    Vehicles that only bring things back have room for as much as those that only take things along.
+    """
+    jobs = [each for each in problem.get("jobs") or () if isinstance(each, dict)]
+    if not any(any(each.get("pickup") or ()) for each in jobs):
+        return "delivery"
+    brought = any(each.get("delivery") or each.get("amount") for each in jobs)
+    if brought or problem.get("shipments"):
+        note_unused(source, "pickup", "jobs")
+        return "delivery"
+    return "pickup"

@@ -1,0 +1,251 @@
+"""Members of VROOM's JSON: each is honoured where a fleet can say it, or a note names it."""
+
+import json
+from typing import Any
+
+import pytest
+from pydantic_core import to_json
+
+from service.files.reader import read_files
+from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
+from service.requests.parser import parse_task
+from service.requests.task import TaskSource
+from tests.files.test_examples import ACTORS
+from tests.helpers.serving import LIMITS
+
+Members = dict[str, Any]
+HOME, NEAR, FAR = [24.94, 60.17], [24.99, 60.17], [24.89, 60.17]
+SECONDS = [[0, 1800, 900], [1800, 0, 600], [900, 600, 0]]
+METRES = [[0, 20_000, 9000], [20_000, 0, 5000], [9000, 5000, 0]]
+CARS = {"matrices": {"car": {"durations": SECONDS, "distances": METRES}}}
+
+
+def problem(vehicle: Members | None = None, job: Members | None = None, **members: Any) -> Members:
+    """A van, and two jobs: on the earth, or with indexes where there are matrices."""
+    if {"matrices", "matrix"} & members.keys():
+        at = [{"location_index": 1}, {"location_index": 2}]
+        home = {"start_index": 0, "end_index": 0}
+    else:
+        at = [{"location": NEAR}, {"location": FAR}]
+        home = {"start": HOME, "end": HOME}
+    jobs = [{"id": number, **place, **(job or {})} for number, place in enumerate(at, 1)]
+    vehicles = [{"id": number, **home, **(vehicle or {})} for number in (1, 2)]
+    return {"vehicles": vehicles, "jobs": jobs, **members}
+
+
+def of_second(vehicle: Members, **members: Any) -> Members:
+    """A problem whose second vehicle differs from the first."""
+    made = problem(**members)
+    made["vehicles"][1] |= vehicle
+    return made
+
+
+def read(value: Members, bounds: Bounds = Bounds()) -> Reading:  # noqa: B008  it is frozen
+    return read_files([NamedFile("v.json", json.dumps(value).encode())], bounds, wanted=None)
+
+
+def notes(reading: Reading) -> str:
+    return " | ".join(note.text for note in reading.notes)
+
+
+# The problem; the first objective's name and first leg or source; `fixed` of the first vehicle.
+COSTS = {
+    "nothing said": (problem(**CARS), "distance", 20_000, None),
+    "the defaults said": (
+        problem({"costs": {"fixed": 0, "per_hour": 3600, "per_km": 0}}, **CARS),
+        *("distance", 20_000, None),
+    ),
+    "fixed, in seconds": (
+        problem({"costs": {"fixed": 3600}}, **CARS),
+        *("total time", 1800, 3600),
+    ),
+    "fixed and another rate for an hour": (
+        problem({"costs": {"fixed": 100, "per_hour": 36}}, **CARS),
+        *("total time", 1800, 10_000),
+    ),
+    "fixed and kilometres alone": (
+        problem({"costs": {"fixed": 100, "per_hour": 0, "per_km": 50}}, **CARS),
+        *("distance", 20_000, 2000),
+    ),
+    "hours and kilometres": (
+        problem({"costs": {"fixed": 7, "per_hour": 36, "per_km": 2}}, **CARS),
+        *("cost", 1800 / 100 + 40, 7),
+    ),
+    "fixed on the earth": (
+        problem({"costs": {"fixed": 3600}}),
+        *("total time", "great_circle", 3600),
+    ),
+    "fixed, hours and kilometres on the earth, at 30 km/h": (
+        problem({"costs": {"fixed": 96, "per_hour": 36, "per_km": 2}}),
+        *("total time", "great_circle", 96 / (36 + 60) * 3600),
+    ),
+    "a matrix of costs": (
+        problem(
+            {"costs": {"fixed": 9}},
+            matrices={"car": {"durations": SECONDS, "costs": [[0, 8, 1], [8, 0, 1], [1, 1, 0]]}},
+        ),
+        *("cost", 8, 9),
+    ),
+    "the old matrix": (problem(matrix=SECONDS), "total time", 1800, None),
+    "the profile of the vehicles, not the first": (
+        problem(
+            {"profile": "bike"},
+            matrices={"car": {"durations": SECONDS}, "bike": {"durations": METRES}},
+        ),
+        *("total time", 20_000, None),
+    ),
+    "the same speed factor": (
+        problem({"speed_factor": 1.5}, matrices={"car": {"durations": SECONDS}}),
+        *("total time", 1200, None),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", COSTS)
+def test_the_first_objective_is_what_vroom_minimises_where_costs_are_said(name: str) -> None:
+    value, first, leg, fixed = COSTS[name]
+    reading = read(value)
+    [objective, second] = reading.request["objectives"]
+    assert objective["name"] == first
+    assert (objective["matrix"][0][1] if "matrix" in objective else objective["from"]) == leg
+    assert objective["over"] == "sum"
+    assert second["over"] == "max"
+    assert reading.request["vehicles"][0].get("fixed") == fixed
+    assert ("fixed" in {note.code for note in reading.notes}) == (
+        fixed is not None and first != "cost"
+    )
+    parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
+
+
+NOTED = {
+    "per_hour of costs of vehicles": of_second({"costs": {"per_hour": 36}}),
+    "per_km of costs of vehicles": of_second({"costs": {"per_km": 36}}, **CARS),
+    "per_km of costs of vehicles was not used: there are no matrices of distances": problem(
+        {"costs": {"per_km": 5}}, matrices={"car": {"durations": SECONDS}}
+    ),
+    "per_task_hour of costs of vehicles": problem({"costs": {"per_task_hour": 36}}),
+    "per_hour of costs of vehicles was not used: there are matrices of costs": problem(
+        {"costs": {"per_hour": 5}}, matrices={"car": {"durations": SECONDS, "costs": METRES}}
+    ),
+    "distances of matrices": problem(
+        matrices={"car": {"durations": SECONDS, "costs": METRES, "distances": METRES}}
+    ),
+    "matrix was read as durations in seconds": problem(matrix=SECONDS),
+    "matrix of the problem": problem(matrix=SECONDS, **CARS),
+    "All vehicles use the matrices of 'car': 'bike' was not used": of_second(
+        {"profile": "bike"}, **CARS
+    ),
+    "profile of vehicles": problem({"profile": "truck"}),
+    "speed_factor of vehicles": of_second({"speed_factor": 2}),
+    "setup of jobs is part of each service": problem(job={"setup": 60, "location": NEAR}),
+    "service_per_type of jobs": of_second(
+        {"type": "bike"}, job={"service": 60, "service_per_type": {"bike": 90}}
+    ),
+    "max_load of breaks of vehicles": problem(
+        {"breaks": [{"id": 1, "service": 60, "time_windows": [[0, 900]], "max_load": [1]}]}
+    ),
+    "max_travel_time of vehicles was not used: beside times": problem(
+        {"max_travel_time": 900, "time_window": [0, 9000]}
+    ),
+    "max_distance of vehicles was not used: max_travel_time is the limit": problem(
+        {"max_travel_time": 900, "max_distance": 9000}
+    ),
+    "max_distance of vehicles was not used: the longest route": problem(
+        {"max_distance": 9000}, **CARS
+    ),
+    "priority of jobs": problem(job={"priority": 5}),
+    "pickup of jobs": problem({"capacity": [9]}, {"pickup": [1], "delivery": [1]}),
+    "steps of vehicles": problem({"steps": [{"type": "start"}]}),
+    "options of the problem": problem(options={"g": True}),
+    "colour of vehicles": problem({"colour": "red"}),
+    "zone of steps of shipments": problem(
+        shipments=[
+            {
+                "pickup": {"id": 5, "location": NEAR, "zone": 3},
+                "delivery": {"id": 6, "location": FAR},
+            }
+        ]
+    ),
+}
+
+
+@pytest.mark.parametrize("sentence", NOTED)
+def test_a_note_names_each_member_that_is_not_used(sentence: str) -> None:
+    reading = read(NOTED[sentence])
+    assert sentence in notes(reading)
+    parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
+
+
+def test_nothing_is_noted_of_members_that_are_used() -> None:
+    value = problem({"type": "van", "description": "white"}, {"service_per_type": {"van": 90}})
+    reading = read(value)
+    assert [stop.get("service") for stop in reading.request["stops"]] == [None, 90, 90]
+    assert {note.code for note in reading.notes} == {"objectives"}
+
+
+def test_a_set_up_is_part_of_the_service_where_one_task_is_at_a_place() -> None:
+    reading = read(problem(job={"setup": 60, "service": 30}))
+    assert [stop.get("service") for stop in reading.request["stops"]] == [None, 90, 90]
+    assert "setup" not in notes(reading)
+
+
+def test_what_is_picked_up_alone_is_the_demand() -> None:
+    reading = read(problem({"capacity": [3]}, {"pickup": [2]}))
+    assert [stop.get("demand") for stop in reading.request["stops"]] == [None, [2], [2]]
+    assert "pickup" not in notes(reading)
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "members"),
+    [
+        ({"max_distance": 9000}, {}),
+        ({"max_travel_time": 9000}, {}),
+        ({"max_travel_time": 9000}, CARS),
+    ],
+)
+def test_a_limit_is_on_routes_where_the_longest_is_of_its_unit(
+    vehicle: Members, members: Members
+) -> None:
+    reading = read(problem(vehicle, **members))
+    assert [each["longest"] for each in reading.request["vehicles"]] == [9000, 9000]
+    parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
+
+
+def test_descriptions_tell_drivers_something() -> None:
+    [detail] = read(problem(job={"description": "ring twice"})).details
+    assert (detail.column, detail.texts) == ("description", ["", "ring twice", "ring twice"])
+
+
+def test_a_speed_between_towns_is_told() -> None:
+    value = problem({"time_window": [0, 36_000]})
+    value["jobs"][0]["location"] = [25.9, 60.4]
+    value["jobs"][1]["location"] = [24.1, 60.6]
+    reading = read(value)
+    assert reading.request["objectives"][1]["speed"] == 50
+    assert "Times are along straight lines at 50 km/h" in notes(reading)
+
+
+def test_by_road_a_fixed_cost_is_seconds_by_road() -> None:
+    reading = read(problem({"costs": {"fixed": 60, "per_km": 2}}), Bounds(roads=True))
+    sources = [objective["from"] for objective in reading.request["objectives"]]
+    assert sources == ["road_time", "road_time"]
+    assert "per_km of costs of vehicles was not used: times by road are not" in notes(reading)
+
+
+REFUSED = [
+    (problem({"costs": 5}), "vehicles/0/costs must be an object, got '5'"),
+    (problem({"costs": {"fixed": "5"}}), "vehicles/0/costs/fixed must be a number from 0"),
+    (problem({"costs": {"per_hour": -1}}), "vehicles/0/costs/per_hour must be a number from 0"),
+    (problem(job={"setup": "1"}), "jobs/0/setup must be a time in seconds, got '1'"),
+    (problem(job={"service_per_type": 3}), "jobs/0/service_per_type must be an object"),
+    (problem(matrices={"car": SECONDS}), "matrices/car must be an object"),
+    (problem(matrix=[[0, 1], [1, 0]]), "must have a row and a column for each location_index"),
+    ({"vehicles": [], "jobs": []}, "vehicles must be a list of one or more"),
+]
+
+
+@pytest.mark.parametrize(("value", "sentence"), REFUSED)
+def test_a_wrong_member_is_refused_by_name(value: Members, sentence: str) -> None:
+    with pytest.raises(UnreadableFile) as refused:
+        read(value)
+    assert sentence in str(refused.value)
