@@ -166,7 +166,7 @@ def _add(file: TsplibFile, found: dict[str, Any], name: str, value: Any) -> None
         UnreadableFile: The keyword stands twice, with different values.
     """
     if name in found and name not in _REPEATED and (found[name] != value or value == []):
-        raise file.source.refusal(f"{name} must stand once, got it twice")
+        raise file.source.refusal(f"{name[:60]} must stand once, got it twice")
     found.setdefault(name, value)
 
 

@@ -102,6 +102,8 @@ _NOT_PLANNED = {
 }
 _LATENCY = "it minimises the sum of all arrivals; here the objectives are lengths"
 _PLANNED_OTHERWISE = {"CCVRP": _LATENCY, "MLP": _LATENCY, "TRP": _LATENCY}
+_SWITCH = re.compile("yes|no|true|false", re.IGNORECASE)
+_MOST_NAMED, _LONGEST_SHOWN = 5, 60
 _SPLIT = "SDVRP"  # or a site-dependent problem, if vehicles have clients
 
 
@@ -173,25 +175,30 @@ def _check_type(file: TsplibFile) -> None:
 
 
 def _check(file: TsplibFile, known: set[str]) -> None:
-    for name, value in file.header.items():
-        if (
-            name in known
-            or name in _ABOUT
-            or number_in(file.word(name)) == _NO_EFFECT.get(name, "any")
-        ):
-            continue
-        _check_unknown(file, name, value)
+    """Refuse and note keywords that are not known; a file of other words has many."""
+    known = known | _ABOUT
     for name in file.sections:
         if name in _NOTED and file.listed(name):
             file.source.note("left-out", f"{name} was not used: {_NOTED[name]}.")
-        elif name not in known and name not in _ABOUT and name not in _NOTED:
-            raise file.source.refusal(f"{name} is not supported: remove it to plan without it")
+        elif name not in known and name not in _NOTED:
+            demand = f"{_shown(name)} is not supported: remove it to plan without it"
+            raise file.source.refusal(demand)
+    unknown = [
+        name
+        for name in file.header
+        if name not in known and number_in(file.word(name)) != _NO_EFFECT.get(name, "other")
+    ]
+    for name in unknown:
+        word = file.word(name)
+        if number_in(word) is not None or _SWITCH.fullmatch(word):
+            demand = f"{_shown(name)} is not supported: remove it to plan without it"
+            raise file.source.refusal(demand, word)
+    if unknown:
+        shown = ", ".join(map(_shown, unknown[:_MOST_NAMED]))
+        more = f" and {len(unknown) - _MOST_NAMED} more" if len(unknown) > _MOST_NAMED else ""
+        text = f"{shown}{more} was not used: it is not a known keyword."
+        file.source.note("left-out", text)
 
 
-def _check_unknown(file: TsplibFile, name: str, value: str) -> None:
-    """Refuse a keyword whose value is a number, or yes or no; and note another one."""
-    word = (value.split() or [""])[0]
-    if number_in(word) is None and not re.fullmatch("yes|no|true|false", word, re.IGNORECASE):
-        file.source.note("left-out", f"{name} was not used: it is not a known keyword.")
-        return
-    raise file.source.refusal(f"{name} is not supported, got {word}: remove it to plan without it")
+def _shown(name: str) -> str:
+    return name[:_LONGEST_SHOWN]

@@ -154,7 +154,7 @@ class _Cut:
         try:
             cut = [[matrix[row][column] for column in indexes] for row in indexes]  # type: ignore[index]
         except (TypeError, IndexError, KeyError):
-            where = f"matrices/{self.profile}/{name}"
+            where = f"matrices/{self.profile[:60]}/{name}"
             demand = f"{where} must have a row and a column for each location_index"
             raise source.refusal(f"{demand}, up to {max(indexes)}") from None
         return cut if scale == 1 else [[_scaled(each, scale) for each in row] for row in cut]
@@ -238,7 +238,7 @@ def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[
         source.note("left-out", text)
     given = matrices[profile]
     if not isinstance(given, dict):
-        raise source.refusal(f"matrices/{profile} must be an object", given)
+        raise source.refusal(f"matrices/{profile[:60]} must be an object", given)
     note_others(source, [given], "matrices")
     return profile, given
 

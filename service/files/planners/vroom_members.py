@@ -5,6 +5,7 @@ from typing import Any
 
 from service.files.reading import Source
 
+_MOST_NAMED, _LONGEST_SHOWN = 20, 60
 _STEP = {
     *("id", "description", "location", "location_index"),
     *("setup", "service", "setup_per_type", "service_per_type", "time_windows"),
@@ -39,13 +40,15 @@ def note_others(source: Source, items: Iterable[Mapping[str, Any]], of: str) -> 
         for name, value in item.items()
         if name not in _READ[of] and value not in (None, 0, [], {}, False)
     }
-    for name in others:
+    for name in list(others)[:_MOST_NAMED]:
         note_unused(source, name, of)
+    if len(others) > _MOST_NAMED:
+        note_unused(source, f"{len(others) - _MOST_NAMED} more members", of)
 
 
 def note_unused(source: Source, name: str, of: str, why: str = "") -> None:
     """Note a member that is not used, and why, if that is not the same for all fleets."""
     because = f": {why}." if why else ": it is not supported for fleets."
-    text = f"{name} of {of} was not used{because}"
+    text = f"{name[:_LONGEST_SHOWN]} of {of} was not used{because}"
     if not any(note.text == text for note in source.notes):
         source.note("left-out", text)

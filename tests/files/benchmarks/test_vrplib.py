@@ -246,10 +246,16 @@ REFUSED = {
     ),
     "a keyword in the head that is a number": (
         text("ENERGY_CAPACITY : 94\n"),
-        "ENERGY_CAPACITY is not supported, got 94",
+        "ENERGY_CAPACITY is not supported: remove it to plan without it, got '94'",
     ),
-    "a keyword that is yes or no": (text("SPLIT : YES\n"), "SPLIT is not supported, got YES"),
-    "SCALE": (text("SCALE : 100\n"), "SCALE is not supported, got 100"),
+    "a keyword that is yes or no": (
+        text("SPLIT : YES\n"),
+        "it to plan without it, got 'YES'",
+    ),
+    "SCALE": (
+        text("SCALE : 100\n"),
+        "it to plan without it, got '100'",
+    ),
     "a keyword in the head and its section": (
         text("SERVICE_TIME : 4\n", "SERVICE_TIME_SECTION\n1 0\n2 4\n3 0\n4 5\n"),
         "SERVICE_TIME must not stand beside SERVICE_TIME_SECTION",
