@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from service.errors.printable import printable
+from service.files.work import TooMuchWork, Work
 
 Kind = Literal["front", "fleet", "coverage"]
 Request = dict[str, Any]
@@ -142,10 +143,14 @@ class Reading:
 
 @dataclass(frozen=True)
 class Source:
-    """A file that is being read, and the notes and columns found so far."""
+    """A file that is being read, and the notes and columns found so far.
+
+    `work` is the budget of all files of its request.
+    """
 
     file: NamedFile
     bounds: Bounds
+    work: Work = field(default_factory=Work)
     notes: list[Note] = field(default_factory=list)
     columns: list[Column] = field(default_factory=list)
     choices: list[str] = field(default_factory=list)  # fields that its columns may be taken for
@@ -191,6 +196,35 @@ class Source:
         """Raise FileTooLarge if the number is over the limit."""
         if actual > limit:
             raise FileTooLarge(f"{self.name}: must have at most {limit} {noun}, got {actual}")
+
+    def spend(self, units: int) -> None:
+        """Spend work of the budget of all files.
+
+        Raises:
+            FileTooLarge: Less is left.
+        """
+        try:
+            self.work.spend(units)
+        except TooMuchWork:
+            raise self.too_much_work() from None
+
+    def spend_on_xml(self, piece: bytes) -> None:
+        """Spend work on bytes of XML that were unpacked.
+
+        Raises:
+            FileTooLarge: Less is left.
+        """
+        try:
+            self.work.spend_on_xml(piece)
+        except TooMuchWork:
+            raise self.too_much_work() from None
+
+    def too_much_work(self) -> FileTooLarge:
+        """Return the exception for a file that has too much beside what a request is made of."""
+        return FileTooLarge(
+            f"{self.name}: must have less beside its texts and numbers (empty rows and cells,"
+            " formats, names, sheets): copy the table alone into a new file"
+        )
 
     def reading(self, kind: Kind, request: Request) -> Reading:
         """Return the reading of this file alone."""
