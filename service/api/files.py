@@ -124,7 +124,8 @@ def file_router(
         client = client_of(request)
         with budget.open(client) as allowance:
             files, columns = await receive_files(request, most_bytes, allowance)
-            answer = await parser.read_files(Upload([NamedFile(*each) for each in files], columns))
+            upload = Upload([NamedFile(*each) for each in files], columns)
+            answer = await parser.read_files(upload, client)
             with answers.open(client, len(answer), always=True) as sent:
                 return sent.until_sent(await compressed(request, json_bytes(answer)))
 

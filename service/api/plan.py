@@ -176,7 +176,7 @@ class PlanRoutes:
             received = await receive_source(request, kind, self._most_bytes, allowance)
             body = _Body(received, front, Deadline.after(self._seconds))
             if front is None:
-                task = await self._parser.parse(received)
+                task = await self._parser.parse(received, client_of(request))
             else:
                 task = await self._rest(request, received, front)
             return await self._planned(request, task, body, allowance)
@@ -197,7 +197,8 @@ class PlanRoutes:
             raise not_replannable(record.id, reason)
         stored = StoredFront(record.id, source, record.front)
         length = body.length + source.length + len(record.front.tours) // _QUICK
-        return await self._parser.replan(ReplanSource(body.body, stored), length)
+        asked = ReplanSource(body.body, stored)
+        return await self._parser.replan(asked, length, client_of(request))
 
     async def _planned(
         self, request: Request, task: Task, body: _Body, allowance: BodyAllowance

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from anyio import BrokenWorkerProcess, CancelScope, CapacityLimiter, Lock, to_process
+from anyio import BrokenWorkerProcess, CancelScope, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
-from service.errors import QueueFull, Refusal
+from service.api.turns import FairTurns
+from service.errors import Refusal
 from service.files.upload import Upload, read_upload
 from service.requests.limits import Limits, check_structure
 from service.requests.parser import parse_task
@@ -27,6 +28,7 @@ _FEW_QUOTES = 2000  # as 300 stops have, whose faults take a few milliseconds to
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
 _MOST_WAITING = 16  # bodies for each process
+_MOST_OF_CLIENT = 8  # of these
 _NICENESS = 5  # like the processes that plan: the event loop comes first
 _MOST_WARNINGS = 10  # the most of one body that are logged
 _LONGEST_WARNING = 500  # characters
@@ -55,8 +57,9 @@ class TaskParser:
     """Parses bodies under these limits, for these actors: short ones itself, others in a process.
 
     There are two processes, one for bodies of up to 1 MiB and one for longer ones, so that the
-    shorter need not wait for the longer. Each is started for its first body, and again if it was
-    lost. A body that takes too long, or too much memory, ends its process.
+    shorter need not wait for the longer. The clients that wait for one have turns. Each is started
+    for its first body, and again if it was lost. A body that takes too long, or too much memory,
+    ends its process.
     """
 
     def __init__(
@@ -68,11 +71,11 @@ class TaskParser:
         self._limits = limits
         self._actors = dict(actors)
         self._bounds = bounds
-        self._medium, self._long = Lock(), Lock()
+        self._medium, self._long = (FairTurns(_MOST_WAITING, _MOST_OF_CLIENT) for _ in range(2))
         self._processes = CapacityLimiter(2)
 
-    async def parse(self, source: TaskSource) -> Task:
-        """Return the task in a body.
+    async def parse(self, source: TaskSource, client: str = "") -> Task:
+        """Return the task in a body of a client.
 
         Raises:
             Refusal: The body is malformed, too complex or over a limit, or no actor serves it.
@@ -84,7 +87,7 @@ class TaskParser:
         if short and source.body.count(b'"') <= _FEW_QUOTES:
             return parse_task(source, self._limits, self._actors)
         self._check(source.body)
-        return await self._in_turn(parse_task, source, length)
+        return await self._in_turn(parse_task, source, length, client)
 
     def check_replan(self, body: bytes) -> None:
         """Raise a refusal if a short body is not a request to replan; others are parsed later."""
@@ -94,12 +97,12 @@ class TaskParser:
         else:
             self._check(body)
 
-    async def replan(self, source: ReplanSource, length: int) -> Task:
+    async def replan(self, source: ReplanSource, length: int, client: str = "") -> Task:
         """Return the rest of the way of a checked request; `length` is the bytes to parse."""
         quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
         if length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
-        return await self._in_turn(parse_replan, source, length)
+        return await self._in_turn(parse_replan, source, length, client)
 
     def _check(self, body: bytes) -> None:
         """Raise a refusal where a body is too complex or, unless it is long, nested too deeply.
@@ -110,33 +113,24 @@ class TaskParser:
         if len(body) <= _MEDIUM:
             check_depth(body)
 
-    async def read_files(self, upload: Upload) -> bytes:
+    async def read_files(self, upload: Upload, client: str = "") -> bytes:
         """Return the request that files describe, as JSON. Files are always read in a process.
 
         Raises:
             Refusal: They cannot be read, or hold too much.
             QueueFull: Too many bodies wait to be parsed.
         """
-        return await self._in_turn(read_upload, upload, upload.length)
+        return await self._in_turn(read_upload, upload, upload.weight, client)
 
-    async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
-        """Parse a body in the process for its length, once those that came before it are parsed.
+    async def _in_turn(self, parse: _Parse[S, T], source: S, length: int, client: str) -> T:
+        """Parse a body in the process for its length, once it is the turn of its client.
 
         Raises:
             QueueFull: Too many bodies wait, or they take too long.
         """
-        turn = self._medium if length <= _MEDIUM else self._long
-        if turn.statistics().tasks_waiting >= _MOST_WAITING:
-            raise QueueFull
-        try:
-            async with asyncio.timeout(self._bounds.seconds):
-                await turn.acquire()
-        except TimeoutError:
-            raise QueueFull from None
-        try:
+        turns = self._medium if length <= _MEDIUM else self._long
+        async with turns.turn(client, self._bounds.seconds):
             return await self._parse_in_process(parse, source)
-        finally:
-            turn.release()
 
     async def _parse_in_process(self, parse: _Parse[S, T], source: S) -> T:
         seconds = self._bounds.seconds

@@ -41,12 +41,19 @@ def with_chosen(files: Sequence[NamedFile], part: bytes) -> list[NamedFile]:
         place = "/".join(["columns", *map(str, fault["loc"])])
         raise Refusal("invalid-parts", reason=f"{place}: {fault['msg']}") from None
     names = [printable(file.name) for file in files]
+    sheets: dict[str, dict[str, str]] = {}
     for at, column in enumerate(columns):
-        if column.file not in names:
+        if column.file.endswith("]") and column.file.startswith(tuple(f"{n} [" for n in names)):
+            sheets.setdefault(column.file, {})[column.name] = column.taken_for
+        elif column.file not in names:
             demand = f"columns/{at}/file must be the name of a file"
             raise Refusal("invalid-parts", reason=f"{demand}, got {quoted(column.file)}")
     return [
-        replace(file, chosen={c.name: c.taken_for for c in columns if c.file == name})
+        replace(
+            file,
+            chosen={c.name: c.taken_for for c in columns if c.file == name},
+            chosen_in=sheets,
+        )
         for file, name in zip(files, names, strict=True)
     ]
 

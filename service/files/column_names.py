@@ -98,7 +98,7 @@ NAMES_OF_VEHICLES = {
 _PLACES = ("longitude", "latitude", "x", "y")
 _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
-_UNIT = re.compile(r"[\[(](.*?)[\])]")
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 _HOURS_OF = (["working"], ["work"])  # whose hours are times of day
 _MINUTES = ("min", "mins", "minute", "minutes")
 SECONDS = {  # by the names of units
@@ -174,12 +174,15 @@ def best_fields(
     Of two columns for a field that comes once, the one whose name comes first in `names` gets it,
     and the other one gets None.
     """
-    ranks = [_rank(plain_name(name), names) for name in heading]
+    known = _by_name(names)
+    ranks = [_rank(plain_name(name), known) for name in heading]
     taken = [*chosen] or [None] * len(heading)
+    given = {*taken}
     for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):
         field = ranks[at][0]
-        if taken[at] is None and (field in _SEVERAL or field not in taken):
+        if taken[at] is None and field and (field in _SEVERAL or field not in given):
             taken[at] = field
+            given.add(field)
     return taken
 
 
@@ -197,13 +200,22 @@ def unit_of_times(name: str, field: str | None) -> int | None:
     return None if is_of_day and unit == SECONDS["h"] else unit
 
 
-def _rank(plain: str, names: Mapping[str, str]) -> tuple[str | None, int]:
-    for field, words in names.items():
-        known = words.split()
-        for name in (plain, _AFTER.sub("", _BEFORE.sub("", plain))):
-            if name in known and (name == plain or field in _PLACES):
-                return field, known.index(name)
-    return None, 0
+def _by_name(names: Mapping[str, str]) -> dict[str, tuple[int, str, int]]:
+    """Return the first field of each known name: its number, itself, and the place of the name."""
+    known: dict[str, tuple[int, str, int]] = {}
+    for number, (field, words) in enumerate(names.items()):
+        for place, name in enumerate(words.split()):
+            known.setdefault(name, (number, field, place))
+    return known
+
+
+def _rank(plain: str, known: Mapping[str, tuple[int, str, int]]) -> tuple[str | None, int]:
+    """Return the field of a name, and the place of the name among those of the field."""
+    found = known.get(plain)
+    of_place = known.get(_AFTER.sub("", _BEFORE.sub("", plain)))
+    if of_place and of_place[1] in _PLACES and (not found or of_place < found):
+        found = of_place
+    return found[1:] if found else (None, 0)
 
 
 def plain_name(name: str) -> str:

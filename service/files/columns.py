@@ -17,7 +17,7 @@ from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quote
 from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
 
 Read = TypeVar("Read")
-_DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
+_DEGREES = r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
     rf"(?:SRID=4326;)?\s*POINT\s*Z?M?\s*\(\s*{_DEGREES}\s+{_DEGREES}(?:\s+{_DEGREES}){{0,2}}\s*\)",
     re.ASCII | re.IGNORECASE,
@@ -30,6 +30,7 @@ _TOTAL = re.compile(
     r"|suma|soma|totaal|yhteensä",
     re.IGNORECASE,
 )
+_MOST_TOTALS = 4  # rows
 _MOST_OF_TOTAL = 2  # fields, if its name does not say what it is
 _ROUNDING = 1e-6
 _UNUSED = (DETAIL, IGNORED)
@@ -219,7 +220,7 @@ def _without_totals(
 ) -> Table:
     """Return a table without rows of totals at its end, with a note on each."""
     rows = list(table.rows)
-    while len(rows) > 1 and is_total(rows):
+    while len(rows) > max(1, len(table.rows) - _MOST_TOTALS) and is_total(rows):
         number, texts = rows.pop()
         came = quoted(" ".join(filter(None, texts)))
         source.note("total", f"Row {number}, {came}, was taken for a total and left out.")
@@ -263,8 +264,10 @@ def _place_column(columns: Columns, at: int) -> str | None:
     texts = [row[at] for _, row in columns.table.rows]
     if all(map(_POINT.fullmatch, texts)):
         return "place"
+    if columns.fields[at] != "place":
+        return None
     located = {"longitude", "latitude"} <= set(columns.fields)
-    paired = columns.fields[at] == "place" and all("." in text for text in texts)
+    paired = all("." in text for text in texts)
     if located or not paired or not all(map(_PAIR.fullmatch, texts)):
         return None
     name = quoted(columns.names[at])

@@ -32,6 +32,7 @@ def read_octile(source: Source) -> list[list[int]]:
             says, or other characters.
     """
     text = text_of(source)
+    source.spend_on_lines(text, 1)
     header = _HEADER.match(text[:_LONGEST_HEADER])
     assert header is not None
     height, width = int(header[1]), int(header[2])
@@ -39,7 +40,7 @@ def read_octile(source: Source) -> list[list[int]]:
     if not 0 < height * width <= most:
         came = f"{height} x {width}"
         raise FileTooLarge(f"{source.name}: must have 1 to {most} cells, got {came}")
-    rows = text[header.end() :].splitlines()
+    rows = text[header.end() :].split("\n")
     while rows and not rows[-1].strip():
         rows.pop()
     if len(rows) != height:

@@ -21,14 +21,16 @@ from service.files.reading import (
     choices_of,
     reading_of_several,
 )
-from service.files.spreadsheets import is_spreadsheet, rows_of
+from service.files.spreadsheets import is_spreadsheet, sheets_of
 from service.files.stop_tables import Part, part_of, reading_of
-from service.files.tables import Table, table_of, table_of_csv
+from service.files.tables import Table, table_of_csv, table_of_rows
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
 from service.files.vehicle_tables import has_vehicles, read_fleet
+from service.files.work import LINE_OF_TEXT, UNITS, Work
 from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
+_UNITS_OF_STOP = 16  # of work, where there may be more stops than usual
 _BINARY = {
     b"%PDF": "a PDF",
     b"\xd0\xcf\x11\xe0": "an old spreadsheet (.xls): save it as .xlsx or CSV",
@@ -56,13 +58,20 @@ def read_files(
     Raises:
         UnreadableFile: A file is not of a known format, or is wrong; the message names it.
     """
-    sources = [Source(file, bounds) for file in files]
+    work = Work(max(UNITS, _UNITS_OF_STOP * bounds.cities))
+    sources = [Source(file, bounds, work) for file in files]
     try:
+        sources = [sheet for each in sources for sheet in _sheets(each, several=len(files) > 1)]
         return _read_cells(sources, wanted, unrounded)
     except UnreadableFile as error:
         error.columns = [column for source in sources for column in source.supposed]
         error.choices = choices_of(sources)
         raise
+
+
+def _sheets(source: Source, *, several: bool) -> list[Source]:
+    """Return a file, or in place of a spreadsheet those of its sheets that are read."""
+    return sheets_of(source, several=several) if is_spreadsheet(source.file.data) else [source]
 
 
 def _read_cells(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
@@ -143,7 +152,7 @@ def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
     Raises:
         UnreadableFile: The file is not a table; the message names it.
     """
-    source = Source(file, bounds)
+    [source] = _sheets(Source(file, bounds), several=True)
     return source, _table(source)
 
 
@@ -156,14 +165,15 @@ def _table(source: Source) -> Table:
 
 def _content(source: Source) -> Table | TsplibFile | str:
     """Return a table, a file of TSPLIB, or the text of JSON or of customers with windows."""
-    if is_spreadsheet(source.file.data):
-        return table_of(source, rows_of(source))
+    if source.rows is not None:
+        return table_of_rows(source, source.rows)
     for begin, named in _BINARY.items():
         if source.file.data.startswith(begin):
             raise source.refusal(f"must be a file of stops, got {named}")
     text = text_of(source)
     if looks_like_json(text):
         return text
+    source.spend_on_lines(text, LINE_OF_TEXT)
     if is_tsplib(text):
         return split_tsplib(source, text)
     if is_customers(text) or source.name.casefold().endswith((".json", ".geojson")):

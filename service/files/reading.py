@@ -1,7 +1,7 @@
 """A file that is being read, its bounds and errors; and the result: a request with notes."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -38,12 +38,14 @@ class Bounds:
 class NamedFile:
     """A file: its name, without folders, and its content.
 
-    `chosen` are fields by the names of columns, which a person has chosen for them.
+    `chosen` are fields by the names of columns, which a person has chosen for them; `chosen_in` are
+    those of further sheets of a spreadsheet, by `FILE [SHEET]`.
     """
 
     name: str
     data: bytes
     chosen: Mapping[str, str] = field(default_factory=dict)
+    chosen_in: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def is_picture(self) -> bool:
@@ -151,6 +153,7 @@ class Source:
     file: NamedFile
     bounds: Bounds
     work: Work = field(default_factory=Work)
+    rows: list[tuple[int, list[str]]] | None = None  # of a sheet that was read
     notes: list[Note] = field(default_factory=list)
     columns: list[Column] = field(default_factory=list)
     choices: list[str] = field(default_factory=list)  # fields that its columns may be taken for
@@ -197,6 +200,18 @@ class Source:
         if actual > limit:
             raise FileTooLarge(f"{self.name}: must have at most {limit} {noun}, got {actual}")
 
+    def of_sheet(self, title: str, rows: list[tuple[int, list[str]]]) -> "Source":
+        """Return the source of the rows of a sheet; without a title, with the same name."""
+        if not title:
+            return replace(self, rows=rows)
+        name = f"{self.file.name} [{title}]"
+        file = NamedFile(name, b"", self.file.chosen_in.get(printable(name), {}))
+        return Source(file, self.bounds, self.work, rows)
+
+    def unnoted(self) -> "Source":
+        """Return a source of the same file, whose notes are not told."""
+        return Source(self.file, self.bounds, self.work)
+
     def spend(self, units: int) -> None:
         """Spend work of the budget of all files.
 
@@ -207,6 +222,18 @@ class Source:
             self.work.spend(units)
         except TooMuchWork:
             raise self.too_much_work() from None
+
+    def spend_on_lines(self, text: str, units: float) -> None:
+        """Spend work on the lines of a text, each of these units, before it is split.
+
+        Raises:
+            FileTooLarge: Less is left.
+        """
+        lines = text.count("\n")
+        try:
+            self.work.spend(int(lines * units))
+        except TooMuchWork:
+            raise FileTooLarge(f"{self.name}: must have fewer lines, got {lines + 1}") from None
 
     def spend_on_xml(self, piece: bytes) -> None:
         """Spend work on bytes of XML that were unpacked.

@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import NamedTuple
 
+from service.files.headings import joined_heading
 from service.files.plain_text import with_whole_names, without_lines
-from service.files.reading import Source, quoted
+from service.files.reading import LONGEST_NAME, Source, quoted
+from service.files.work import LINE_OF_TABLE
 
 Row = tuple[int, list[str]]  # the number of a row, as a spreadsheet counts, and its fields
 # In the order in which they are tried.
@@ -23,8 +25,10 @@ _SEPARATORS = {
 }
 _SAMPLE = 2**16  # characters by which the separator is recognised
 _SAMPLE_ROWS = 50
+_MOST_COLUMNS = 2**14  # as of spreadsheets
+_LONG = 40  # characters of a field; white space in a longer one may be long as well
 _LARGEST = 1e150  # the same limit as in requests
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _PLAIN = re.compile(r"[-+0-9.eE ]+", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
@@ -83,6 +87,7 @@ def table_of_csv(source: Source, text: str) -> Table:
     Raises:
         UnreadableFile: It is not CSV, or has too many fields.
     """
+    source.spend_on_lines(text, LINE_OF_TABLE)
     first, _, rest = text.partition("\n")
     declared = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
     body = without_lines(rest if declared else text)
@@ -105,25 +110,39 @@ def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) ->
     Raises:
         UnreadableFile: It has no rows, rows of different lengths, or too many fields.
     """
+    return table_of_rows(source, enumerate(fields, first))
+
+
+def table_of_rows(source: Source, fields: Iterable[tuple[int, Sequence[str]]]) -> Table:
+    """Return the table with these rows, each with its number. See `table_of`."""
     rows: list[Row] = []
-    count, empty = 0, 0
-    for number, row in enumerate(fields, first):
-        stripped = [field.strip() for field in row]
+    count, empty, widest = 0, 0, 0
+    for number, row in fields:
+        stripped = [_stripped(field) for field in row]
         count += 1 + len(stripped)
+        widest = max(widest, len(stripped))
         source.check_count("fields and rows", source.bounds.cells, count)
         if any(stripped):
             rows.append((number, stripped))
         else:
             empty += bool(stripped)
+    source.check_count("columns", _MOST_COLUMNS, widest)
     if empty:
         source.note("empty-rows", f"{_counted(empty)} left out.")
     if not rows:
         raise source.refusal("must have a row for each stop, got none")
     _take_titles(source, rows)
     heading = _take_heading(source, rows)
+    if heading is not None:
+        heading = joined_heading(source, heading, rows)
     if not rows:
         raise source.refusal("must have a row for each stop below its heading, got none")
     return Table(heading, _squared(source, heading, rows))
+
+
+def _stripped(field: str) -> str:
+    """Return a field without white space around it; if it is long, with single spaces in it."""
+    return field.strip() if len(field) <= _LONG else " ".join(field.split())
 
 
 def _counted(count: int) -> str:
@@ -154,7 +173,7 @@ def _spaced_rows(text: str) -> Iterable[list[str]]:
     They are texts, such as addresses, if each is in quotation marks, or if their numbers of words
     differ and few have two numbers.
     """
-    lines = text.splitlines()
+    lines = text.split("\n")
     rows = [line.split() for line in lines]
     below = [row for row in rows if row][1:]
     tabular = [row for row in below if sum(number_in(word) is not None for word in row) > 1]
@@ -165,6 +184,8 @@ def _spaced_rows(text: str) -> Iterable[list[str]]:
 
 
 def _csv_rows(source: Source, text: str, separator: str) -> Iterator[list[str]]:
+    # The parser keeps a whole row before it is counted.
+    source.check_count("fields", source.bounds.cells, text.count(separator))
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         yield from reader
@@ -199,7 +220,7 @@ def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
         source.note("heading", "The first row counts the columns, so it is taken for a heading.")
     elif not _is_heading(fields, rows):
         return None
-    return rows.pop(0)[1]
+    return [name[:LONGEST_NAME] for name in rows.pop(0)[1]]
 
 
 def _counts_up(fields: Sequence[str]) -> bool:
@@ -225,6 +246,7 @@ def _squared(source: Source, heading: list[str] | None, rows: list[Row]) -> list
     Any row may have more fields that are empty. Under a heading, rows may lack their last fields.
     """
     width = len(rows[0][1] if heading is None else heading)
+    source.check_count("fields", source.bounds.cells, width * len(rows))
     if heading is not None and all(len(row) == width + 1 for _, row in rows):
         heading.insert(0, "")  # R writes named rows like this
         width += 1

@@ -140,7 +140,7 @@ def split_tsplib(source: Source, text: str) -> TsplibFile:
 def _fill(file: TsplibFile, text: str) -> None:
     """Read the lines of a text into the keywords and sections of a file."""
     lines: list[list[str]] | None = None  # the words in each line of the current section
-    for line in map(str.strip, text.splitlines()):
+    for line in map(str.strip, text.split("\n")):
         keyword = _KEYWORD.fullmatch(line)
         if lines is None and keyword is None:
             keyword = _IN_HEAD.fullmatch(line)

@@ -7,6 +7,8 @@ from service.files.fleets import Stop, Vehicle, in_shifts
 from service.files.reading import UnreadableFile, quoted
 from service.files.visits import seconds_in, texts_in
 
+_PER_UNIT = 8  # vehicles whose skills are compared for one unit of work
+
 
 def add_skills(columns: Columns, vehicles: list[Vehicle]) -> None:
     """Add what vehicles are able to do."""
@@ -30,6 +32,7 @@ def check_servers(
     _check_pinned(visits, stops, by_id, columns.source.name)
     if (at := visits.find("skills")) is not None:
         for row in visits.filled(at):
+            visits.source.spend(len(vehicles) // _PER_UNIT)
             name = stops[row].get("vehicle")
             able = [each for each in vehicles if name in (None, each["id"])]
             if able and not _any_has(able, stops[row]["skills"]):

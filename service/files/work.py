@@ -1,7 +1,8 @@
 """The work that reading the files of one request may take, counted while they are read."""
 
 UNITS = 2**20  # of about half a microsecond: half a second
-LINE = 4  # units of a line of a table in text
+LINE_OF_TEXT = 0.5  # units of a line in which keywords are looked for
+LINE_OF_TABLE = 4  # units of a line of a table, more than of the text that it is in
 _BYTES = 64  # that are unpacked or parsed for one unit
 
 

@@ -83,19 +83,21 @@ class Limits:
 
 
 def check_structure(body: bytes, limits: Limits) -> None:
-    """Raise a refusal where a body has more strings or arrays than any request under the limits.
+    """Raise a refusal where a body has more of anything than any request under the limits.
 
-    A parser spends a hundred bytes or more on each. They are counted by their first characters,
-    before parsing.
+    A parser spends a hundred bytes or more on each string, array and object. They are counted by
+    their first characters, before parsing.
 
     Raises:
         Refusal: There are more.
     """
     strings = (body.count(b'"') + 1) // 2
-    arrays = body.count(b"[")
+    arrays, objects = body.count(b"["), body.count(b"{")
     most_strings = 1000 + (8 + _TOURS_BY_ID) * limits.cities
     most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + limits.cells // 8
+    most_objects = 1000 + 8 * limits.cities + 2 * limits.size
     for name, limit, actual in (
+        ("objects", most_objects, objects),
         ("strings", most_strings, strings),
         ("arrays", most_arrays, arrays),
     ):

@@ -16,6 +16,8 @@ import pytest
 from service.actor_info import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
 from service.errors import QueueFull, Refusal
+from service.files.reading import NamedFile
+from service.files.upload import Upload
 from service.instance import Kind
 from service.requests.task import Task, TaskSource
 from tests.helpers.serving import ACTORS, LIMITS
@@ -142,6 +144,23 @@ def test_an_honest_body_does_not_wait_for_longer_ones() -> None:
     waited, task = asyncio.run(scenario())
     assert task.actor == "pa-one-matrix"
     assert not waited
+
+
+def test_a_client_of_a_short_file_is_served_before_the_next_file_of_another() -> None:
+    rows = b"".join(b"s%d,60.%d,24.5\n" % (at, at) for at in range(1000))
+    long = Upload([NamedFile("long.csv", b"id,lat,lon\n" + rows)], None)
+    short = Upload([NamedFile("short.csv", b"id,lat,lon\na,60,24\nb,61,25\n")], None)
+
+    async def scenario() -> int:
+        parsing = parser()
+        crowd = [asyncio.create_task(parsing.read_files(long, "a")) for _ in range(8)]
+        await asyncio.sleep(0)
+        await parsing.read_files(short, "b")
+        done = sum(each.done() for each in crowd)
+        await asyncio.gather(*crowd)
+        return done
+
+    assert asyncio.run(scenario()) <= 2
 
 
 def test_a_process_that_parses_gives_way_to_the_event_loop() -> None:

@@ -29,7 +29,7 @@ def read_customers(source: Source, text: str) -> Reading:
     """
     rows = [
         (at, [number_in(word) or 0.0 for word in line.split()])
-        for at, line in enumerate(text.splitlines(), 1)
+        for at, line in enumerate(text.split("\n"), 1)
         if line.strip() and _numeric(line.split())
     ]
     if len(rows) < 2 or len(rows[0][1]) not in (2, 3):

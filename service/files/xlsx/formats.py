@@ -64,7 +64,7 @@ def _number(text: str, number: float) -> str:
         return text
     if number.is_integer() and abs(number) < _WHOLE:
         return str(int(number))
-    return repr(number)
+    return repr(float(f"{number:.{MOST_DIGITS}g}"))
 
 
 def _time(days: float, shown: Format, from_1904: bool) -> str | None:

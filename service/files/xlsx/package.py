@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 from xml.parsers import expat
 
-from service.files.reading import Source
+from service.files.reading import Source, UnreadableFile
 
 _MOST_PARTS = 2000
 _ENTRY = b"PK\x01\x02"  # of each part, in the list at the end of a zip file
@@ -53,7 +53,7 @@ class Package:
         """Return the name of the part that lists the sheets."""
         roots = [target for _, kind, target in self.relations("") if kind == "officeDocument"]
         found = next((each for each in [*roots, _ROOT] if _plain(each) in self._parts), None)
-        if found is not None and _plain(found).endswith(".xml") and not _plain(found)[:4] == "word":
+        if found is not None and _plain(found).endswith(".xml") and _plain(found)[:4] != "word":
             return found
         named = (what for part, what in _OTHERS.items() if part in self._parts)
         raise self.source.refusal(
@@ -96,6 +96,8 @@ class Package:
         try:
             with self._zip.open(info) as file:
                 self._feed(parser, file)
+        except UnreadableFile:  # which is a ValueError
+            raise
         except (zipfile.BadZipFile, OSError, EOFError, RuntimeError, ValueError) as error:
             raise self.source.refusal(f"must be XLSX: {error}") from None
         except Exception as error:

@@ -1,6 +1,8 @@
 """Read the cells of a sheet of XLSX: their texts, what is hidden, and formulas without results."""
 
 import re
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
@@ -12,7 +14,6 @@ MOST_COLUMNS = 16384  # of a spreadsheet
 _MOST_ROWS = 2**20
 _FIELD = 8  # units of work that a field earns: its tags, and some bytes
 _TEXT = 8  # units that a text earns which several cells may share
-_KNOWN = {"row", "c", "v", "t", "f", "col", "rPh"}
 _TRUE = ("1", "true")
 _BOOLEANS = {"0": "False", "1": "True"}
 _FEW = 1000  # cells that are told at most
@@ -65,11 +66,18 @@ def _column_of(letters: str) -> int:
     return column
 
 
-def read_sheet(package: Package, part: str, title: str, styles: "Styles") -> Sheet:
-    """Return the cells of the sheet in a part."""
-    reader = _SheetReader(package.source, Sheet(title), styles)
-    package.feed(part, reader.parser)
+def read_sheet(
+    package: Package, part: str, title: str, styles: "Styles", most_rows: int = _MOST_ROWS
+) -> Sheet:
+    """Return the cells of the sheet in a part; only those of its first rows, if there are more."""
+    reader = _SheetReader(package.source, Sheet(title), styles, most_rows)
+    with suppress(_EnoughError):
+        package.feed(part, reader.parser)
     return reader.sheet
+
+
+class _EnoughError(Exception):
+    """Enough rows are read."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +91,8 @@ class Styles:
 class _SheetReader:
     """The handlers of the tags of a sheet."""
 
-    def __init__(self, source: Source, sheet: Sheet, styles: Styles) -> None:
+    def __init__(self, source: Source, sheet: Sheet, styles: Styles, most_rows: int) -> None:
+        self._rows_left = most_rows
         self.sheet = sheet
         self._source = source
         self._formats, self._from_1904 = styles.formats, styles.from_1904
@@ -91,6 +100,15 @@ class _SheetReader:
         parser.buffer_text = True
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
+        self._begins: dict[str, Callable[[dict[str, str]], None]] = {
+            "c": self._begin_cell,
+            "v": self._begin_text,
+            "t": self._begin_text,
+            "row": self._begin_row,
+            "f": self._begin_formula,
+            "rPh": self._begin_phonetic,
+            "col": self._begin_columns,
+        }
         self._texts: list[str] = []
         self._row, self._column = 0, 0
         self._cells: dict[int, Cell] = {}
@@ -101,28 +119,12 @@ class _SheetReader:
         self._columns: dict[str, int] = {}
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        name = tag if tag in _KNOWN else local(tag)
-        if name == "c":
-            self._cell = attributes
-            self._is_formula = False
-            self._texts.clear()
-            self._place(attributes.get("r"))
-        elif name in ("v", "t"):
-            if not self._phonetic:
-                self.parser.CharacterDataHandler = self._texts.append
-        elif name == "row":
-            self._begin_row(attributes)
-        elif name == "f":
-            self._is_formula = True
-        elif name == "rPh":
-            self._phonetic += 1
-        elif name == "col" and attributes.get("hidden") in _TRUE:
-            span = (attributes.get("min", ""), attributes.get("max", ""))
-            if all(map(str.isdecimal, span)) and len(self.sheet.hidden_columns) < _FEW:
-                self.sheet.hidden_columns.append((int(span[0]), int(span[1])))
+        begin = self._begins.get(tag) or self._begins.get(local(tag))
+        if begin:
+            begin(attributes)
 
     def _end(self, tag: str) -> None:
-        name = tag if tag in _KNOWN else local(tag)
+        name = local(tag)
         if name in ("v", "t"):
             self.parser.CharacterDataHandler = None
         elif name == "c":
@@ -130,8 +132,33 @@ class _SheetReader:
         elif name == "rPh":
             self._phonetic -= 1
 
+    def _begin_cell(self, attributes: dict[str, str]) -> None:
+        self._cell = attributes
+        self._is_formula = False
+        self._texts.clear()
+        self._place(attributes.get("r"))
+
+    def _begin_text(self, _: dict[str, str]) -> None:
+        if not self._phonetic:
+            self.parser.CharacterDataHandler = self._texts.append
+
+    def _begin_formula(self, _: dict[str, str]) -> None:
+        self._is_formula = True
+
+    def _begin_phonetic(self, _: dict[str, str]) -> None:
+        self._phonetic += 1
+
+    def _begin_columns(self, attributes: dict[str, str]) -> None:
+        span = (attributes.get("min", ""), attributes.get("max", ""))
+        hidden = attributes.get("hidden") in _TRUE and all(map(str.isdecimal, span))
+        if hidden and len(self.sheet.hidden_columns) < _FEW:
+            self.sheet.hidden_columns.append((int(span[0]), int(span[1])))
+
     def _begin_row(self, attributes: dict[str, str]) -> None:
         self._source.spend(1)
+        self._rows_left -= 1
+        if self._rows_left < 0:
+            raise _EnoughError
         number = attributes.get("r", "")
         self._row = int(number) if number.isdecimal() and len(number) < 8 else self._row + 1
         self._column = 0
@@ -162,7 +189,7 @@ class _SheetReader:
         if cell == "":
             return
         self._count += 1
-        self._source.check_count("fields", self._source.bounds.cells, self._count)
+        self._source.check_count("fields", self._source.bounds.cells // 2, self._count)
         self._source.work.earn(_FIELD + (_TEXT if kind == "s" else 0))
         if not self._cells:
             self.sheet.rows[self._row] = self._cells

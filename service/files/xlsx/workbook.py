@@ -1,14 +1,14 @@
 """Open a workbook of XLSX: its visible sheets, the formats of its cells, and its shared texts."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
-from xml.parsers import expat
 
 from service.files.reading import Source
-from service.files.xlsx.formats import GENERAL, format_of
-from service.files.xlsx.package import Package, local, relation_in
+from service.files.xlsx.formats import GENERAL, Format, format_of
+from service.files.xlsx.package import Package, relation_in
 from service.files.xlsx.sheet import Cell, Sheet, Styles, read_sheet
+from service.files.xlsx.texts import TextsReader
 
+_FIRST_ROWS = 200  # by which a sheet is recognised
 _TRUE = ("1", "true")
 
 
@@ -32,7 +32,7 @@ class Workbook:
     """
 
     def __init__(self, source: Source) -> None:
-        self._source = source
+        self.source = source
         self._package = Package(source)
         related = self._package.relations(self._package.root)
         self._parts = {name: part for name, _, part in related}
@@ -53,7 +53,7 @@ class Workbook:
         elif tag == "calcPr":
             self.recalculates = attributes.get("fullCalcOnLoad") in _TRUE
 
-    def _formats(self) -> list:
+    def _formats(self) -> list[Format]:
         codes: dict[int, str] = {}
         numbers: list[int] = []
         inside: list[str] = []
@@ -74,10 +74,10 @@ class Workbook:
         known = {each: format_of(each, codes.get(each)) for each in set(numbers)}
         return [known.get(each, GENERAL) for each in numbers]
 
-    def read(self, listed: Listed) -> Sheet:
-        """Return the cells of a sheet."""
-        self._source.spend(1)
-        return read_sheet(self._package, listed.part, listed.title, self._styles)
+    def read(self, listed: Listed, *, first: bool = False) -> Sheet:
+        """Return the cells of a sheet, or of its first rows alone."""
+        most = {"most_rows": _FIRST_ROWS} if first else {}
+        return read_sheet(self._package, listed.part, listed.title, self._styles, **most)
 
     def text(self, cell: Cell) -> str:
         """Return the text of a cell."""
@@ -88,36 +88,9 @@ class Workbook:
         return self._texts[cell] if cell < len(self._texts) else ""
 
     def _shared_texts(self) -> list[str]:
-        """Return the texts that cells share, each of one or several runs."""
-        parser = expat.ParserCreate()
-        parser.buffer_text = True
-        texts: list[str] = []
-        pieces: list[str] = []
-        phonetic = 0
-
-        def start(tag: str, _: dict[str, str]) -> None:
-            nonlocal phonetic
-            name = local(tag)
-            if name == "si":
-                pieces.clear()
-            elif name == "rPh":
-                phonetic += 1
-            elif name == "t" and not phonetic:
-                parser.CharacterDataHandler = pieces.append
-
-        def end(tag: str) -> None:
-            nonlocal phonetic
-            name = local(tag)
-            if name == "t":
-                parser.CharacterDataHandler = None
-            elif name == "rPh":
-                phonetic -= 1
-            elif name == "si":
-                texts.append("".join(pieces))
-
-        parser.StartElementHandler, parser.EndElementHandler = start, end
-        self._package.feed(self._by_kind.get("sharedStrings", ""), parser)
-        return texts
+        reader = TextsReader()
+        self._package.feed(self._by_kind.get("sharedStrings", ""), reader.parser)
+        return reader.texts
 
 
 def _whole(text: str | None) -> int:
