@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
     " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
-    " stop ref reference code key name stopname customer kunde node city label site no nr number"
+    " stop ref reference code key name stopname ordername alias customer kunde node label site no nr number"
     " commande numerocommande ordine numeroordine pedido numeropedido bestelling tilaus"
     " tilausnumero arret fermata parada halte client cliente klant asiakas nom nome nombre naam"
-    " nimi",
+    " nimi city",
     "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond"
     " longitudine lengtegraad pituusaste",
     "latitude": "latitude lat latitud breitengrad breite latd latitudine breedtegraad leveysaste",
@@ -23,21 +23,30 @@ _NAMES = {
     "demand": "demand qty quantity load amount pallets parcels packages pieces cartons crates boxes"
     " items weight volume menge"
     " bedarf gewicht demanda cantidad kg quantite poids colis quantita peso colli carico"
-    " bultos paquetes carga quantidade volumes hoeveelheid paketten maara paino",
+    " bultos paquetes carga quantidade volumes hoeveelheid paketten maara paino cube units",
     "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
-    " twstart twfrom twopen readytime ready earliest open opens opening from begin von start"
+    " twstart twfrom twopen timewindowopen readytime ready earliest earliesttime earlieststart"
+    " earlieststarttime earliestarrival earliestarrivaltime earliestdelivery earliestdeliverytime"
+    " notbefore noearlierthan arriveafter deliverafter completeafter open opens opening opentime"
+    " openingtime from begin von start"
     " heuredebut debut ouverture orainizio inizio apertura horainicio inicio desde abertura"
     " begintijd starttijd alkaa alku",
     "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
-    " duedate duetime latest close closes closing to until end bis"
+    " timewindowclose duedate duetime latest latesttime latestend latestendtime latestarrival"
+    " latestarrivaltime lateststart latestdelivery latestdeliverytime notafter nolaterthan"
+    " arrivebefore completebefore close closes closing closetime closingtime to until end bis"
     " heurefin fin fermeture orafine chiusura horafin hasta cierre horafim fim fechamento"
     " eindtijd paattyy loppu",
     "window": "window timewindow tw deliverywindow zeitfenster windows timewindows deliverywindows"
+    " businesshours deliveryhours receivinghours"
     " creneau creneauhoraire fenetre fasciaoraria finestra finestraoraria ventana ventanahoraria"
     " franjahoraria janela janelahoraria janeladetempo tijdvenster tijdslot aikaikkuna",
     "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
     " timeatstop timeonsite visittime visitduration unloadingtime unloadtime loadingtime"
-    " jobduration taskduration minutes mins minutesonsite minutesatstop minutesperstop"
+    " jobduration taskduration stopduration orderduration deliveryduration"
+    " estimatedtimeatstop averagetimeatstop timeatlocation timeatcustomer onsitetime"
+    " dwelltime estimateddeliverytime minutes mins minutesonsite minutesatstop"
+    " minutesperstop"
     " servicezeit standzeit entladezeit tempsservice tempsdeservice duree temposervizio"
     " tempodiservizio durata"
     " tiemposervicio tiempodeservicio duracion temposervico tempodeservico duracao servicetijd"
@@ -45,7 +54,8 @@ _NAMES = {
     "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
     "release": "release releasetime releasedate availablefrom readyatdepot",
     "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
-    " qualifications qualification",
+    " qualifications qualification"
+    " vehiclefeatures driverskills",
     "vehicle": "vehicle vehicleid vehiclename van vanid driver driverid drivername truck truckid"
     " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer vehicule camion"
     " chauffeur veicolo furgone autista vehiculo conductor veiculo motorista voertuig ajoneuvo"
@@ -53,13 +63,21 @@ _NAMES = {
     "prize": "prize",
     "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
 }
+_AMOUNT = f"({'|'.join(sorted(_NAMES['demand'].split(), key=len, reverse=True))})"
+# Amounts with words around them, as `Order Weight`, `Load #1` or `Max load 1`; not of money.
+_OF_ORDERS = re.compile(
+    "(?!total|order)(?:net|gross|delivery|shipment|lineitem|parcel|cargo)?"
+    rf"{_AMOUNT}(\d?)|(?:order|total)(?!amount){_AMOUNT}(\d?)"
+)
+_OF_CAPACITY = re.compile(rf"(?:max|maximum|capacity|initial|vehicle)?{_AMOUNT}(?:capacity)?(\d?)")
+_LAST = 1000  # the rank of names that are not listed
 _OF_WINDOWS = ("window_from", "window_to", "window")
 WINDOWS = ("window", "window_2", "window_3")  # the windows that a table may have
 _AMOUNTS = _NAMES["demand"].split()
 _OF_VEHICLES_ONLY = {
     "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
     " fahrer",
-    "capacity": "capacity vehiclecapacity maxcapacity payload kapazitaet kapazitat nutzlast "
+    "capacity": "capacity capacity1 capacity2 capacity3 vehiclecapacity maxcapacity payload kapazitaet kapazitat nutzlast "
     + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
     "shift_from": "shiftstart shiftfrom shiftbegin workstart schichtbeginn",
     "shift_to": "shiftend shiftto workend schichtende",
@@ -99,13 +117,20 @@ _PLACES = ("longitude", "latitude", "x", "y")
 _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]")
-_HOURS_OF = (["working"], ["work"])  # whose hours are times of day
-_MINUTES = ("min", "mins", "minute", "minutes")
-SECONDS = {  # by the names of units
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")  # between the words of serviceTimeSeconds
+# Whose hours are times of day.
+_HOURS_OF = [[word] for word in ("working work business delivery receiving".split())]
+_MINUTES = ("min", "mins", "minute", "minutes", "minuten", "minuti", "minutos", "minuuttia")
+SECONDS: Mapping[str, float] = {  # by the names of units
+    **dict.fromkeys(("ms", "msec", "msecs", "millis", "millisecond", "milliseconds"), 0.001),
     **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1),
+    **dict.fromkeys(("sek", "sekunden", "secondes", "secondi", "segundos", "seconden"), 1),
     **dict.fromkeys(_MINUTES, 60),
     **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), 3600),
+    **dict.fromkeys(("std", "stunden", "heures", "ore", "horas", "uren", "tuntia"), 3600),
 }
+# Headings of visits that route planners write. What they hold is in minutes.
+_USUALLY_MINUTES = frozenset(_NAMES["service"].split()) - {"service"}
 # Fields that a table may have several times.
 _SEVERAL = ("demand", "capacity", "initial_load", "cost")
 _NAMED_WINDOW = re.compile(r"^(timewindow|deliverywindow|window|tw)(?!s?$)")
@@ -146,14 +171,15 @@ def is_about_vehicles(heading: Sequence[str]) -> bool:
 def amount_of(name: str) -> str:
     """Return the amount that a column of demands or capacities is about, as `weight`, or ""."""
     plain = plain_name(name)
-    forms = ("{}", "max{}", "capacity{}", "{}capacity", "initial{}")
-    return next((each for each in _AMOUNTS for form in forms if form.format(each) == plain), "")
+    found = _OF_ORDERS.fullmatch(plain) or _OF_CAPACITY.fullmatch(plain)
+    return "".join(filter(None, found.groups())) if found else ""
 
 
 def fields_of(heading: Sequence[str], chosen: Sequence[str | None] = ()) -> list[str | None]:
     """Return the field of stops that each column may be, or None; only some come several times.
 
-    A column `due` beside the begin of a window is its end, if no other column is.
+    A column `due` beside the begin of a window is its end, if no other column is. `Opening hours`
+    without closing ones are windows.
 
     Args:
         heading: The names of the columns.
@@ -162,8 +188,15 @@ def fields_of(heading: Sequence[str], chosen: Sequence[str | None] = ()) -> list
     taken = best_fields(heading, NAMES_OF_STOPS, chosen)
     if "window_from" in taken and "window_to" not in taken and "due" not in chosen:
         pairs = zip(heading, taken, strict=True)
-        return ["window_to" if plain_name(name) == "due" else each for name, each in pairs]
+        if "due" in map(plain_name, heading):
+            return ["window_to" if plain_name(name) == "due" else each for name, each in pairs]
+        if not any(chosen):
+            return ["window" if _are_hours(name, each) else each for name, each in pairs]
     return taken
+
+
+def _are_hours(name: str, field: str | None) -> bool:
+    return field == "window_from" and name.casefold().strip().endswith("hours")
 
 
 def best_fields(
@@ -175,7 +208,7 @@ def best_fields(
     and the other one gets None.
     """
     known = _by_name(names)
-    ranks = [_rank(plain_name(name), known) for name in heading]
+    ranks = [_rank(plain_name(name), known, names) for name in heading]
     taken = [*chosen] or [None] * len(heading)
     given = {*taken}
     for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):
@@ -186,14 +219,22 @@ def best_fields(
     return taken
 
 
-def seconds_of(name: str) -> int | None:
+def seconds_of(name: str) -> float | None:
     """Return the seconds of the unit in a heading, as in `service [min]`; None without a unit."""
-    unit = _UNIT.search(name)
-    words = [unit[1].strip().casefold()] if unit else re.split(r"[\s_]", name.casefold())
+    for unit in _UNIT.findall(name):
+        words = re.split(r"[\s_.]+", unit.strip(" .").casefold())
+        if found := next((SECONDS[word] for word in reversed(words) if word in SECONDS), None):
+            return found
+    words = re.split(r"[\s_.,]+", _CAMEL.sub(" ", _UNIT.sub("", name)).casefold().strip(" ._"))
     return SECONDS.get(words[-1], 60 if words[0] in _MINUTES else None)
 
 
-def unit_of_times(name: str, field: str | None) -> int | None:
+def are_usually_minutes(name: str) -> bool:
+    """Return whether a heading is one of route planners for how long visits take, in minutes."""
+    return plain_name(name) in _USUALLY_MINUTES
+
+
+def unit_of_times(name: str, field: str | None) -> float | None:
     """Return the seconds of the unit of times of day; None for `working hours` or without one."""
     is_of_day = not _UNIT.search(name) and str(field).startswith(("window", "shift"))
     unit = seconds_of(name)
@@ -209,18 +250,26 @@ def _by_name(names: Mapping[str, str]) -> dict[str, tuple[int, str, int]]:
     return known
 
 
-def _rank(plain: str, known: Mapping[str, tuple[int, str, int]]) -> tuple[str | None, int]:
+def _rank(
+    plain: str, known: Mapping[str, tuple[int, str, int]], fields: Mapping[str, str]
+) -> tuple[str | None, int]:
     """Return the field of a name, and the place of the name among those of the field."""
     found = known.get(plain)
     of_place = known.get(_AFTER.sub("", _BEFORE.sub("", plain)))
     if of_place and of_place[1] in _PLACES and (not found or of_place < found):
         found = of_place
-    return found[1:] if found else (None, 0)
+    if found:
+        return found[1:]
+    for field, pattern in (("capacity", _OF_CAPACITY), ("demand", _OF_ORDERS)):
+        if field in fields and pattern.fullmatch(plain):
+            return field, _LAST
+    return None, 0
 
 
 def plain_name(name: str) -> str:
     """Return a heading without its unit, reduced to small letters and digits."""
-    decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
+    spaced = _CAMEL.sub(" ", _UNIT.sub("", name))
+    decomposed = unicodedata.normalize("NFKD", spaced.casefold()[:200])
     words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
     of_a_day = words[-1:] == ["hours"] and words[:1] in _HOURS_OF
     kept = words[:-1] if len(words) > 1 and words[-1] in SECONDS and not of_a_day else words

@@ -12,8 +12,10 @@ from service.files.column_names import (
     NAMES_OF_VEHICLES,
     best_fields,
     fields_of,
+    is_about_vehicles,
 )
 from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
+from service.files.signs import decimals_of, is_numeric, with_plain_numbers
 from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
 
 Read = TypeVar("Read")
@@ -122,6 +124,20 @@ class Columns:
             raise self.refuse(row, column, demand, self.text(row, column))
         return int(number)
 
+    def read_signs(self, columns: Sequence[int] = ()) -> None:
+        """Rewrite numbers with decimal points and without thousands signs.
+
+        Args:
+            columns: Columns of numbers whose fields do not say that they are.
+
+        Raises:
+            UnreadableFile: The numbers of a column allow two readings.
+        """
+        fields = [field or ("x" if at in columns else None) for at, field in enumerate(self.fields)]
+        self.source.signs.own |= decimals_of(self.table, fields)
+        numeric = [at for at, field in enumerate(fields) if is_numeric(field)]
+        self.table = with_plain_numbers(self.source, self.table, fields, numeric)
+
     def numbers(self, columns: list[int]) -> list[list[float]]:
         """Return the numbers of columns, row by row; 0 in place of wrong ones."""
         return [
@@ -201,6 +217,7 @@ def columns_of(source: Source, table: Table) -> Columns:
         table = _without_totals(source, table, lambda rows: _is_total(rows, fields))
     columns = Columns(source, table, names, fields)
     source.supposed.extend(columns.listed())
+    columns.read_signs()
     for at in range(table.width):
         if chosen[at] == "place":
             _check_places(columns, at)
@@ -331,4 +348,16 @@ def columns_of_vehicles(source: Source, table: Table) -> Columns:
     fields = best_fields(names, NAMES_OF_VEHICLES, chosen_fields(source.file, names))
     columns = Columns(source, table, names, fields, of_stops=False)
     source.supposed.extend(columns.listed())
+    columns.read_signs()
     return columns
+
+
+def share_signs(tables: Sequence[tuple[Source, Table]]) -> None:
+    """Let the decimal signs of each table of a request be known to all of them."""
+    for source, table in tables:
+        heading = table.heading or [""] * table.width
+        names = NAMES_OF_VEHICLES if is_about_vehicles(heading) else NAMES_OF_STOPS
+        source.signs.own |= decimals_of(table, best_fields(heading, names))
+    known = {sign for source, _ in tables for sign in source.signs.own}
+    for source, _ in tables:
+        source.signs.of_request |= known

@@ -6,6 +6,7 @@ from itertools import chain
 from service.files.benchmarks.customers import is_customers, read_customers
 from service.files.benchmarks.cvrp import read_cvrp
 from service.files.benchmarks.keywords import check_costs, is_fleet
+from service.files.columns import share_signs
 from service.files.json_files import looks_like_json, read_json
 from service.files.octile import is_octile
 from service.files.reading import (
@@ -116,6 +117,7 @@ def _read_several(sources: Sequence[Source], wanted: Kind | None, unrounded: boo
     """Return the request in a file for each objective, or in one of stops and one of vehicles."""
     contents = [(source, _content(source)) for source in sources]
     tables = [(source, each) for source, each in contents if isinstance(each, Table)]
+    share_signs(tables)
     if wanted == "fleet" and not len(tables) == len(sources) == 2:
         raise UnreadableFile("the files of a fleet must be a table of stops and one of vehicles")
     if len(tables) == len(sources) == 2 and (

@@ -143,6 +143,21 @@ class Reading:
         return {**members, **columns, **details, **planes, **unknown, "name": self.name}
 
 
+@dataclass
+class Signs:
+    """What is known of the decimal signs of a table.
+
+    Args:
+        separator: What separates its fields; None for white space, XLSX and JSON.
+        own: The decimal signs that its numbers have for certain.
+        of_request: Those of all files of the request.
+    """
+
+    separator: str | None = None
+    own: set[str] = field(default_factory=set)
+    of_request: set[str] = field(default_factory=set)
+
+
 @dataclass(frozen=True)
 class Source:
     """A file that is being read, and the notes and columns found so far.
@@ -162,6 +177,7 @@ class Source:
     details: list[tuple[str, Mapping[str, str]]] = field(default_factory=list)
     # The sentences on cells that cannot be read, by the numbers of their rows and columns.
     wrong: dict[tuple[int, int], str] = field(default_factory=dict)
+    signs: Signs = field(default_factory=Signs)
 
     @property
     def name(self) -> str:

@@ -267,6 +267,7 @@ def part_of(source: Source, table: Table) -> Part:
         rows = "1 row" if count == 1 else f"{count} rows"
         wide = "1 column" if len(free) == 1 else f"{len(free)} columns"
         raise source.refusal(f"{demand}; got {rows} of {wide if free else 'ids alone'}")
+    columns.read_signs(free)
     ids = ids_of(columns) if "id" in columns.fields else None
     if len(free) == 2 != count:
         return Part(name, count, ids, {"coordinates": columns.numbers(free)})
@@ -303,4 +304,5 @@ def numbers_of(source: Source, table: Table) -> list[list[float]]:
     columns = Columns(
         source, table, [f"{at}" for at in range(1, table.width + 1)], [None] * table.width
     )
+    columns.read_signs(range(table.width))
     return columns.numbers(list(range(table.width)))

@@ -92,6 +92,7 @@ def table_of_csv(source: Source, text: str) -> Table:
     declared = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
     body = without_lines(rest if declared else text)
     separator = declared[1] if declared else _separator(body)
+    source.signs.separator = separator
     if separator not in (",", None):
         named = _SEPARATORS.get(separator, quoted(separator))
         source.note("separator", f"Fields are separated by {named}.")
