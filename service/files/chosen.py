@@ -69,9 +69,8 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     Raises:
         UnreadableFile: A chosen column does not exist, is chosen for no field, or none is left.
     """
-    heading = table.heading or []
-    if heading:
-        source.choices.extend([*fields, IGNORED])
+    heading = table.heading or [f"{number}" for number in range(1, table.width + 1)]
+    source.choices.extend([*fields, IGNORED])
     known = [each[:LONGEST_NAME] for each in heading]
     for name, field in source.file.chosen.items():
         if name not in known:
@@ -91,7 +90,7 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     if not kept:
         raise source.refusal("must have a column that is not ignored")
     return Table(
-        [heading[at] for at in kept],
+        [heading[at] for at in kept] if table.heading else None,
         [(number, [row[at] for at in kept]) for number, row in table.rows],
         left_out,
     )

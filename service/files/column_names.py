@@ -4,12 +4,15 @@ import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 
+from service.objectives import NTH
+
 # By field, the names that people give it, the best names first; without accents, units and signs.
 # English and German, then French, Italian, Spanish, Portuguese, Dutch and Finnish.
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
     " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
-    " stop ref reference code key name stopname ordername alias customer kunde node label site no nr number"
+    " stop ref reference code key name stopname ordername alias customer kunde node label site no"
+    " nr number"
     " commande numerocommande ordine numeroordine pedido numeropedido bestelling tilaus"
     " tilausnumero arret fermata parada halte client cliente klant asiakas nom nome nombre naam"
     " nimi city",
@@ -71,13 +74,16 @@ _OF_ORDERS = re.compile(
 )
 _OF_CAPACITY = re.compile(rf"(?:max|maximum|capacity|initial|vehicle)?{_AMOUNT}(?:capacity)?(\d?)")
 _LAST = 1000  # the rank of names that are not listed
+# The coordinates of each plane, as fields that columns may be chosen for.
+PLANES = ("x", "y", *(f"{nth} {axis}" for nth in NTH[1:] for axis in "xy"))
 _OF_WINDOWS = ("window_from", "window_to", "window")
 WINDOWS = ("window", "window_2", "window_3")  # the windows that a table may have
 _AMOUNTS = _NAMES["demand"].split()
 _OF_VEHICLES_ONLY = {
     "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
     " fahrer",
-    "capacity": "capacity capacity1 capacity2 capacity3 vehiclecapacity maxcapacity payload kapazitaet kapazitat nutzlast "
+    "capacity": "capacity capacity1 capacity2 capacity3 vehiclecapacity maxcapacity payload"
+    " kapazitaet kapazitat nutzlast "
     + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
     "shift_from": "shiftstart shiftfrom shiftbegin workstart schichtbeginn",
     "shift_to": "shiftend shiftto workend schichtende",
@@ -119,7 +125,7 @@ _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")  # between the words of serviceTimeSeconds
 # Whose hours are times of day.
-_HOURS_OF = [[word] for word in ("working work business delivery receiving".split())]
+_HOURS_OF = (["working"], ["work"], ["business"], ["delivery"], ["receiving"])
 _MINUTES = ("min", "mins", "minute", "minutes", "minuten", "minuti", "minutos", "minuuttia")
 SECONDS: Mapping[str, float] = {  # by the names of units
     **dict.fromkeys(("ms", "msec", "msecs", "millis", "millisecond", "milliseconds"), 0.001),

@@ -1,7 +1,7 @@
 """The columns of a table, and the fields of stops or vehicles that they are taken for."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -10,12 +10,13 @@ from service.files.chosen import DETAIL, IGNORED, chosen_fields, without_unused
 from service.files.column_names import (
     NAMES_OF_STOPS,
     NAMES_OF_VEHICLES,
+    PLANES,
     best_fields,
     fields_of,
     is_about_vehicles,
 )
 from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
-from service.files.signs import decimals_of, is_numeric, with_plain_numbers
+from service.files.signs import decimals_of, is_number, is_numeric, with_plain_numbers
 from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
 
 Read = TypeVar("Read")
@@ -150,10 +151,12 @@ class Columns:
         """Return whether all fields of a column are numbers."""
         return all(number_in(row[column]) is not None for _, row in self.table.rows)
 
+    def have_numbers(self, column: int) -> bool:
+        """Return whether any field of a column is a number, with any signs."""
+        return any(is_number(row[column]) for _, row in self.table.rows)
+
     def listed(self) -> list[Column]:
-        """Return what each column in the file is taken for; none without a heading."""
-        if self.table.heading is None:
-            return []
+        """Return what each column in the file is taken for."""
         return [Column(self.source.name, n[:LONGEST_NAME], field) for n, field, _ in self._placed()]
 
     def _placed(self) -> list[LeftOut]:
@@ -179,9 +182,20 @@ class Columns:
     def _texts(self, column: int) -> list[str]:
         return [row[column] for _, row in self.table.rows]
 
+    @property
+    def are_any_chosen(self) -> bool:
+        """Return whether a person has chosen a field for any column."""
+        return bool(self.source.file.chosen)
+
+    def leave_free(self, columns: Collection[int]) -> None:
+        """Take no column but these for a field, apart from that of ids."""
+        for at, taken_for in enumerate(self.fields):
+            if at not in columns and taken_for != "id":
+                self.fields[at] = None
+
     def report(self) -> None:
-        """If there is a heading, note what each column is taken for."""
-        if self.table.heading is None:
+        """Note what each column is taken for, unless none has a name and all are used."""
+        if self.table.heading is None and None not in self.fields and not self.are_any_chosen:
             return
         self.source.columns.extend(self.listed())
         self._report_details()
@@ -205,13 +219,15 @@ class Columns:
 def columns_of(source: Source, table: Table) -> Columns:
     """Return the columns of a table, as chosen, or recognised by its heading or their contents.
 
+    Without a heading, columns are called by their numbers from 1.
+
     Raises:
         UnreadableFile: The columns cannot be taken for what was chosen.
     """
-    table = without_unused(source, table, (*NAMES_OF_STOPS, DETAIL))
-    names = table.heading or [f"{number}" for number in range(1, table.width + 1)]
+    table = without_unused(source, table, (*NAMES_OF_STOPS, *PLANES[2:], DETAIL))
+    names = table.heading or table.numbered
     chosen = chosen_fields(source.file, names)
-    fields: list[str | None] = [None] * table.width
+    fields: list[str | None] = [*chosen]
     if table.heading:
         fields = fields_of(names, chosen)
         table = _without_totals(source, table, lambda rows: _is_total(rows, fields))

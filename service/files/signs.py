@@ -18,10 +18,11 @@ _MOST_DEGREES = 180
 _DEGREES = ("longitude", "latitude")
 _OF_PROGRAMS = (",", "|", None)  # separators beside which a decimal sign is a point
 # Fields whose cells are numbers. Numbers of windows may be hours, as 8,30.
-_FIELDS = frozenset(
-    "longitude latitude x y demand service prize cost capacity count longest_time longest_distance"
-    " fixed max_stops max_trips max_overtime initial_load per_km".split()
-)
+_FIELDS = {
+    *("longitude", "latitude", "x", "y", "demand", "service", "prize", "cost", "capacity", "count"),
+    *("longest_time", "longest_distance", "fixed", "max_stops", "max_trips", "max_overtime"),
+    *("initial_load", "per_km"),
+}
 
 
 def _pattern(decimal: str) -> re.Pattern[str]:
@@ -45,6 +46,11 @@ _GROUPING = re.compile(r"[ '\u2019]")
 _DIGITS_AND_POINTS = re.compile(r"[-+0-9.\n]*", re.ASCII)
 _TWO_POINTS = re.compile(r"\.\d*\.")
 _SURELY_DECIMAL = re.compile(r"\.(?!\d{3}(?!\d))|(?<!\d)0?\.|\d{4}\.", re.ASCII)
+
+
+def is_number(text: str) -> bool:
+    """Return whether a text is a number, with any signs."""
+    return bool(_readings_of(text, is_degrees=False))
 
 
 def is_numeric(field: str | None) -> bool:

@@ -3,22 +3,29 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.files.column_names import FLEET
+from service.files.column_names import FLEET, PLANES
 from service.files.columns import Columns, columns_of, ids_of, place_in
 from service.files.fleets import Stop, measured, planar, timed, with_vehicles
 from service.files.places import note_places, out_of_range, weighted
+from service.files.planes import (
+    called_planes,
+    is_nameless,
+    pasted_planes,
+    question,
+    recognise_pasted,
+)
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
-from service.objectives import MOST_OBJECTIVES, NTH
+from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
 Array = NDArray[np.float64]
-_IN_PLANES = ("x", "y", *(f"{nth} {axis}" for nth in NTH[1:] for axis in "xy"))
 _NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none", "x", "∞"}
 
 
@@ -41,6 +48,7 @@ def reading_of(source: Source, table: Table) -> Reading:
         UnreadableFile: A field does not fit its column, or columns are missing.
     """
     columns = columns_of(source, table)
+    recognise_pasted(columns)
     if any(each in FLEET for each in columns.fields):
         return _fleet(columns)
     return _located(columns) if _is_located(columns) else _in_planes(columns)
@@ -57,7 +65,7 @@ def _degrees(columns: Columns) -> bool:
     x, y = columns.find("x"), columns.find("y")
     if x is None or y is None or columns.is_chosen(x) or columns.is_chosen(y):
         return False
-    if any("x" in each or "y" in each for each in _others(columns)):
+    if len(called_planes(columns)) > 1:
         return False
     rows = [row for _, row in columns.table.rows]
     exact = all(re.search(r"[.,]\d{3}", row[at]) for row in rows for at in (x, y))
@@ -71,38 +79,33 @@ def _degrees(columns: Columns) -> bool:
     return True
 
 
-def _others(columns: Columns) -> list[str]:
-    """Return the names of the unused columns of numbers, in small letters."""
-    pairs = enumerate(zip(columns.names, columns.fields, strict=True))
-    return [
-        name.casefold() for at, (name, each) in pairs if each is None and columns.are_numbers(at)
-    ]
-
-
 def _in_planes(columns: Columns) -> Reading:
-    """Return the request of four, six or eight columns of numbers: x and y in each plane."""
-    source, table = columns.source, columns.table
+    """Return the request of columns that are called x and y of planes, or pasted as such."""
+    source = columns.source
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
-    if table.heading and len(free) > 4:
-        free = [at for at in free if columns.are_numbers(at)]
-    named = [columns.fields[at] for at in free]
-    planes = len(free) in (4, 6, 8) and set(named) <= {None, "x", "y"}
-    # More than four columns under other names may be anything.
-    if planes and ({"x", "y"} <= set(named) or (table.heading and len(free) > 4)):
-        planes = all(re.match("[xy]|[uv]$|x?lon|y?lat", name) for name in _others(columns))
-    if not planes:
+    planes = called_planes(columns)
+    if len(planes) < OBJECTIVES and is_nameless(columns):
+        columns.read_signs(free)
+        planes = pasted_planes(columns, free) or planes
+    if not OBJECTIVES <= len(planes) <= MOST_OBJECTIVES:
+        numeric = [at for at in free if columns.are_numbers(at)]
+        is_plane = len(numeric) == 2 and (planes or is_nameless(columns))
+        if len(numeric) > 1 and not is_plane:
+            raise question(columns, numeric)
         raise source.refusal(_no_places(columns, free))
-    for at, name in zip(free, _IN_PLANES, strict=False):
-        columns.fields[at] = name
-    rows = columns.numbers(free)
+    columns.read_signs([at for plane in planes for at in plane])
+    columns.leave_free([at for plane in planes for at in plane])
+    for plane, names in zip(planes, zip(PLANES[::2], PLANES[1::2], strict=True), strict=False):
+        columns.fields[plane[0]], columns.fields[plane[1]] = names
+    found = [columns.numbers(list(plane)) for plane in planes]
     ids = ids_of(columns) if "id" in columns.fields else None
     columns.report()
     if ids is None:
+        rows = [list(chain.from_iterable(each)) for each in zip(*found, strict=True)]
         return source.reading("front", {"coordinates": rows})
-    planes_of = [[row[at : at + 2] for row in rows] for at in range(0, len(free), 2)]
     objectives = [
         {"name": f"{nth} length", "coordinates": plane}
-        for nth, plane in zip(NTH, planes_of, strict=False)
+        for nth, plane in zip(NTH, found, strict=False)
     ]
     stops = [{"id": each} for each in ids]
     return source.reading("front", {"stops": stops, "objectives": objectives})
@@ -112,7 +115,7 @@ def _no_places(columns: Columns, free: list[int]) -> str:
     """Return the sentence on a table without places: what is needed, what was found, what to do."""
     needed = (
         "must say where each stop is: in columns named lat and lon,"
-        " or in 4, 6 or 8 columns of numbers, x and y of each plane"
+        " or in 4, 6 or 8 columns of numbers named x1, y1, x2, y2, x and y of each plane"
     )
     table, names = columns.table, columns.names[:8]
     words = not all(map(columns.are_numbers, free))

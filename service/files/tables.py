@@ -58,6 +58,12 @@ class Table:
         """The number of fields in each row."""
         return len(self.rows[0][1])
 
+    @property
+    def numbered(self) -> list[str]:
+        """The numbers of columns in the file, from 1, as their names."""
+        numbers = range(self.width + len(self.left_out))
+        return [f"{at + 1}" for at in numbers if at not in self.left_out]
+
 
 def number_in(field: str) -> float | None:
     """Return the number in a field, with a decimal point or comma; None if it is not a number."""

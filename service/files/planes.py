@@ -1,0 +1,137 @@
+"""Take columns of numbers for x and y of planes: as they are called, or chosen, or pasted alone."""
+
+import re
+from collections.abc import Sequence
+
+from service.files.column_names import PLANES
+from service.files.columns import Columns
+from service.files.reading import UnreadableFile, quoted
+from service.files.tables import number_in
+
+_MOST_ALIKE = 10  # how much wider the widest column of pasted planes may be than the narrowest
+_LEAST_DIGITS = 3  # behind the decimal sign of half the degrees of a pasted place
+_DIGITS = re.compile(r"[.,](\d+)")
+
+
+def called_planes(columns: Columns) -> list[tuple[int, int]]:
+    """Return the columns of x and y of each plane, by what they are called or chosen to be."""
+    fields = columns.fields
+    pairs = [
+        (fields.index(x), fields.index(y))
+        for x, y in zip(PLANES[::2], PLANES[1::2], strict=True)
+        if x in fields and y in fields
+    ]
+    used = {at for pair in pairs for at in pair}
+    free = [at for at, each in enumerate(fields) if each is None and at not in used]
+    names = {_folded(columns.names[at]): at for at in free}
+    for name, at in names.items():
+        other = next((names[each] for each in _partners(name) if each in names), None)
+        if other is not None and columns.have_numbers(at) and columns.have_numbers(other):
+            pairs.append((at, other))
+    chosen = [pair for pair in pairs if columns.is_chosen(pair[0])]
+    return chosen + sorted(pair for pair in pairs if pair not in chosen)
+
+
+def _folded(name: str) -> str:
+    return re.sub(r"\s+", "", name.casefold())
+
+
+def _partners(name: str) -> list[str]:
+    """Return the names that a column of y has beside this one of x."""
+    named = [f"{name[:at]}y{name[at + 1 :]}" for at, each in enumerate(name) if each == "x"]
+    return ["v", *named] if name == "u" else named
+
+
+def pasted_planes(columns: Columns, free: Sequence[int]) -> list[tuple[int, int]]:
+    """Return x and y of planes in four, six or eight columns without names, if they are alike.
+
+    They are not if the first one counts rows, two are degrees, or one is far wider than another:
+    then they may be anything else.
+    """
+    if len(free) not in (4, 6, 8) or not is_nameless(columns) or columns.are_any_chosen:
+        return []
+    counted = [at for at, field in enumerate(columns.fields) if field == "id"] + [free[0]]
+    if any(count_rows(columns, at) for at in counted) or degrees_in(columns, free):
+        return []
+    cells = columns.table.rows
+    widths = []
+    for at in free:
+        numbers = [each for _, row in cells if (each := number_in(row[at])) is not None]
+        widths.append(max(numbers) - min(numbers) if numbers else 0.0)
+    if len(cells) > 1 and max(widths) > _MOST_ALIKE * min(widths):
+        return []
+    count = len(free) // 2
+    columns.source.note(
+        "planes", f"{len(free)} columns without names were taken for x and y of {count} planes."
+    )
+    return list(zip(free[::2], free[1::2], strict=True))
+
+
+def is_nameless(columns: Columns) -> bool:
+    """Return whether columns have no names, or numbers for names, apart from that of ids."""
+    heading = columns.table.heading
+    pairs = zip(columns.names, columns.fields, strict=True)
+    return heading is None or all(
+        number_in(name) is not None for name, field in pairs if field != "id"
+    )
+
+
+def recognise_pasted(columns: Columns) -> None:
+    """Take columns without names for an id that counts, and a place that is all else they have."""
+    if not is_nameless(columns) or columns.are_any_chosen:
+        return
+    free = [at for at, field in enumerate(columns.fields) if field != "id"]
+    if len(free) == columns.table.width > 2 and count_rows(columns, 0):
+        columns.fields[0] = "id"
+        del free[0]
+    numeric = [at for at in free if columns.have_numbers(at)]
+    if len(numeric) != 2:
+        return
+    columns.read_signs(numeric)
+    if found := degrees_in(columns, numeric):
+        columns.fields[found[0]], columns.fields[found[1]] = "longitude", "latitude"
+        order = "longitude, then latitude" if found[0] < found[1] else "latitude, then longitude"
+        columns.source.note("place", f"Two columns without names were taken for {order}.")
+
+
+def count_rows(columns: Columns, at: int) -> bool:
+    """Return whether a column counts the rows, in whole numbers."""
+    texts = [row[at] for _, row in columns.table.rows]
+    if len(texts) < 2 or not texts[0].isdecimal():
+        return False
+    first = int(texts[0])
+    return texts == [str(first + row) for row in range(len(texts))]
+
+
+def degrees_in(columns: Columns, free: Sequence[int]) -> tuple[int, int] | None:
+    """Return the columns of longitude and latitude in the first two of numbers, if they are."""
+    if len(free) < 2:
+        return None
+    first, second = free[:2]
+    numbers = [[number_in(row[at]) for _, row in columns.table.rows] for at in (first, second)]
+    if any(each is None for column in numbers for each in column):
+        return None
+    texts = [row[at] for _, row in columns.table.rows for at in (first, second)]
+    exact = [len(found[1]) >= _LEAST_DIGITS for each in texts if (found := _DIGITS.search(each))]
+    least, most = (max(abs(each or 0.0) for each in column) for column in numbers)
+    if len(exact) < len(texts) / 2 or sum(exact) < len(texts) / 2 or max(least, most) <= 1:
+        return None
+    if least <= 90 and most <= 180:
+        return second, first
+    return (first, second) if least <= 180 and most <= 90 else None
+
+
+def question(columns: Columns, free: Sequence[int]) -> UnreadableFile:
+    """Return the refusal of columns of numbers that may be anything.
+
+    What its columns are supposed to be says what is likely: an id that counts, and degrees.
+    """
+    if is_nameless(columns) and (found := degrees_in(columns, free)):
+        columns.fields[found[0]], columns.fields[found[1]] = "longitude", "latitude"
+    columns.source.supposed[:] = columns.listed()
+    names = ", ".join(quoted(columns.names[at]) for at in free[:8])
+    return columns.source.refusal(
+        "must say where each stop is: in columns named lat and lon, or in 4, 6 or 8 columns of"
+        f" numbers named x1, y1, x2, y2, x and y of each plane; got columns of numbers, {names},"
+        " which may be anything. What is each of them? Name it, or choose it"
+    )
