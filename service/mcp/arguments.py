@@ -118,6 +118,18 @@ class PlanFront(Arguments):
     time_limit: float | None = _TIME_LIMIT
 
 
+class ChosenColumn(BaseModel):
+    """A column of a table, and what it is taken for."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(description="its heading; without headings its number, from 1")
+    taken_for: str = Field(
+        description="id, latitude, longitude, demand, service, x, y, second x, second y, ignored or"
+        " another one of the choices that an error lists"
+    )
+
+
 class PlanFile(Arguments):
     """The text of a file, and its name."""
 
@@ -126,6 +138,11 @@ class PlanFile(Arguments):
         description="CSV, GeoJSON, JSON, TSPLIB, CVRPLIB, Solomon, Li and Lim or VROOM",
     )
     name: str = Field(default="stops.csv", max_length=100, description="such as orders.csv")
+    columns: list[ChosenColumn] | None = Field(
+        default=None,
+        max_length=1000,
+        description="what the columns of a table are taken for, if their names do not say it",
+    )
     time_limit: float | None = _TIME_LIMIT
 
 

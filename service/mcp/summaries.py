@@ -6,14 +6,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from paretour import FleetFront, Front, FrontOfAnyKind
+from paretour import FleetFront, Front, FrontOfAnyKind, Refused
 from paretour.display import shown
 
 from service.objectives import OBJECTIVES
 
 MOST_BYTES = 8000  # of a text
 _SLACKS = (0.01, 0.05, 0.1)  # what a trade-off may cost, as shares of the least length
-_MOST_NOTES, _LONGEST_NOTE = 5, 200  # notes about a file, and characters of one
+_MOST_NOTES, _LONGEST_NOTE = 12, 300  # notes about a file, and characters of one
+_MOST_COLUMNS = 20  # of a file that cannot be read
 _NEAR = 0.5  # share of the way from the knee to an end of a front, where another tour is shown
 
 Named = Mapping[str, Any]
@@ -35,6 +36,16 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
     knee = _knee(front)
     hint = "choose_tour gives the stops of another one; explain_front says what is traded"
     return _with_stops({**document, "hint": hint, "stops_of": knee}, front, knee, 0)
+
+
+def unreadable_text(error: Refused) -> str:
+    """Return the text of a file that cannot be read, with what its columns may be taken for."""
+    columns = error.document.get("columns") or ()
+    if not columns:
+        return str(error)
+    taken = {each["name"]: each["taken_for"] for each in columns[:_MOST_COLUMNS]}
+    choices = next(iter(error.document.get("choices", {}).values()), [])
+    return _text({"error": str(error), "columns": taken, "choices": choices})
 
 
 def explanation(front: FrontOfAnyKind, link: str | None) -> str:

@@ -9,6 +9,7 @@ from paretour import (
     AsyncClient,
     FrontOfAnyKind,
     Plan,
+    Refused,
     fleet_plan,
     front_plan,
     replan_plan,
@@ -24,7 +25,7 @@ from service.mcp.arguments import (
     Replan,
     StoredFront,
 )
-from service.mcp.summaries import explanation, front_text, tour_text
+from service.mcp.summaries import explanation, front_text, tour_text, unreadable_text
 from service.requests.validation import refusal_of
 
 # A front is parsed in the event loop of the service. For this number of stops that takes 50 ms.
@@ -100,7 +101,11 @@ async def _plan_fleet(planner: Planner, asked: PlanFleet) -> str:
 
 
 async def _plan_file(planner: Planner, asked: PlanFile) -> str:
-    found = await planner.client.read_files({asked.name: asked.text.encode()})
+    columns = [{"file": asked.name, **each.model_dump()} for each in asked.columns or ()]
+    try:
+        found = await planner.client.read_files({asked.name: asked.text.encode()}, columns)
+    except Refused as error:
+        raise ValueError(unreadable_text(error)) from None
     request = dict(found["request"])
     if asked.time_limit is not None:
         request["time_limit"] = asked.time_limit

@@ -123,8 +123,14 @@ def test_an_agent_plans_a_fleet_and_a_file(url: str) -> None:
             assert {route["vehicle"] for route in fleet["routes"]} == {"van"}
             assert await call(client, "choose_tour", front=fleet["front"], knee=True)
             table = "\n".join(f"{i},{i * i % 7},{i * 3 % 5},{i}" for i in range(9))
-            file = await call(client, "plan_file", text=table, name="cities.csv", time_limit=0.1)
+            planes = [
+                {"name": f"{at}", "taken_for": field}
+                for at, field in enumerate(("x", "y", "second x", "second y"), 1)
+            ]
+            asked = {"text": table, "name": "cities.csv", "time_limit": 0.1}
+            file = await call(client, "plan_file", **asked, columns=planes)
             assert sorted(file["stops"]) == list(range(9))
+            assert any("'3' (second x)" in note for note in file["assumed"])
 
     asyncio.run(talk())
 
@@ -167,6 +173,7 @@ def test_a_long_tour_is_read_in_parts_of_bounded_size(url: str) -> None:
         ("plan_front", {"stopps": []}, "stopps is not a field that this request has; did you"),
         ("plan_front", {"coordinates": [[1, 2]]}, "(invalid-"),
         ("plan_file", {"text": "?"}, "stops.csv"),
+        ("plan_file", {"text": "1 40 50 0\n2 45 68 10\n"}, '"columns": {"1": "id", "2": "detail"'),
         ("dispatch", {}, "tool must be one of plan_front, "),
     ],
 )

@@ -5,7 +5,8 @@ The methods of both clients are these calls; one client waits for the responses,
 them.
 """
 
-from collections.abc import Callable, Generator, Mapping
+import json
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import wraps
 from inspect import Signature, signature
@@ -275,13 +276,20 @@ class Calls:
             raise unexpected("answer/type", "FeatureCollection", kind)
         return dict(answer.document)
 
-    def read_files(self, files: Mapping[str, bytes]) -> Call[Mapping[str, Any]]:
+    def read_files(
+        self, files: Mapping[str, bytes], columns: Sequence[Mapping[str, str]] = ()
+    ) -> Call[Mapping[str, Any]]:
         """Return the request that files describe, by their names, with its kind and notes.
 
         Args:
             files: The content of one file; of one for each objective; or of stops and vehicles.
+            columns: What columns are taken for: each with `file`, `name` and `taken_for`. By
+                default their names say it.
         """
-        content = {"files": [("file", named) for named in files.items()]}
+        parts: list[tuple[str, Any]] = [("file", named) for named in files.items()]
+        if columns:
+            parts.append(("columns", (None, json.dumps([dict(each) for each in columns]))))
+        content = {"files": parts}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
         answer = _answer((yield from self._send(request)))
         answer.read("kind", text)
