@@ -87,11 +87,11 @@ def recognise_pasted(columns: Columns) -> None:
     numeric = [at for at in free if columns.have_numbers(at)]
     if len(numeric) != 2:
         return
-    columns.read_signs(numeric)
     if found := degrees_in(columns, numeric):
         columns.fields[found[0]], columns.fields[found[1]] = "longitude", "latitude"
         order = "longitude, then latitude" if found[0] < found[1] else "latitude, then longitude"
         columns.source.note("place", f"Two columns without names were taken for {order}.")
+        columns.read_signs()
 
 
 def count_rows(columns: Columns, at: int) -> bool:

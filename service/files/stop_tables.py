@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from service.files.column_names import FLEET, PLANES
 from service.files.columns import Columns, columns_of, ids_of, place_in
-from service.files.fleets import Stop, measured, planar, timed, with_vehicles
+from service.files.depots import for_stops
+from service.files.fleets import Stop, fleet_request, have_times, measured, planar, with_measure
 from service.files.places import note_places, out_of_range, weighted
 from service.files.planes import (
     called_planes,
+    degrees_in,
     is_nameless,
     pasted_planes,
     question,
@@ -85,6 +87,8 @@ def _in_planes(columns: Columns) -> Reading:
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
     planes = called_planes(columns)
     if len(planes) < OBJECTIVES and is_nameless(columns):
+        if len(free) > 2 and degrees_in(columns, free):
+            raise question(columns, free)
         columns.read_signs(free)
         planes = pasted_planes(columns, free) or planes
     if not OBJECTIVES <= len(planes) <= MOST_OBJECTIVES:
@@ -151,9 +155,12 @@ def _fleet(columns: Columns) -> Reading:
     source = columns.source
     stops, plane = visits_of(columns)
     add_visits(columns, stops)
+    stops, vehicles = for_stops(columns, stops, plane)
     columns.report()
-    objectives = planar({"coordinates": plane}) if plane else measured(source, timed(stops), stops)
-    return source.reading("fleet", with_vehicles(source, stops, objectives))
+    clock = have_times(stops, vehicles)
+    objectives = planar({"coordinates": plane}) if plane else measured(source, clock, stops)
+    request = with_measure(source, fleet_request(stops, vehicles, objectives))
+    return source.reading("fleet", request)
 
 
 def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:

@@ -4,10 +4,10 @@ import re
 
 from service.files.column_names import fields_of, is_about_vehicles
 from service.files.columns import Columns, columns_of, columns_of_vehicles, ids_of
+from service.files.depots import with_depots
 from service.files.fleets import (
     Stop,
     Vehicle,
-    at_depots,
     fleet_request,
     have_times,
     measured,
@@ -57,7 +57,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     add_skills(columns, vehicles)
     check_servers(visits, stops, columns, vehicles)
     visits.report()
-    stops, vehicles = at_depots(stops, vehicles)
+    stops, vehicles = with_depots(visits, stops, vehicles, plane)
     add_bounds(columns, vehicles)
     clock = have_times(stops, vehicles)
     objectives = planar({"coordinates": plane}) if plane else measured(source, clock, stops)

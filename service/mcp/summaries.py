@@ -44,7 +44,7 @@ def unreadable_text(error: Refused) -> str:
     if not columns:
         return str(error)
     taken = {each["name"]: each["taken_for"] for each in columns[:_MOST_COLUMNS]}
-    choices = next(iter(error.document.get("choices", {}).values()), [])
+    choices: list[str] = next(iter(error.document.get("choices", {}).values()), [])
     return _text({"error": str(error), "columns": taken, "choices": choices})
 
 

@@ -1,0 +1,245 @@
+"""Find where vehicles start: the depot among the rows of orders, which is not visited.
+
+A row is an order if it has a demand, a window, a service, a customer or the like, unless it is
+called a depot. No order becomes a depot: it is visited, and a vehicle that starts there has a stop
+of its own at that place.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from service.files.column_names import NAMES_OF_STOPS, plain_name
+from service.files.columns import Columns
+from service.files.fleets import Stop, Vehicle, all_demand, distinct, in_shifts, listed, numbers
+from service.files.reading import quoted
+
+_DEPOT = re.compile(  # anywhere in a name
+    r"\b(?:depots?|dep[oó]sito|dépôt|warehouse|hub|headquarters|hq|distribution cent(?:re|er)"
+    r"|zentrallager|lager|betriebshof|magazzino|almac[eé]n|entrep[oô]t|armaz[eé]m|magazijn|varasto"
+    r"|terminaali)\b",
+    re.IGNORECASE,
+)
+_HOME = re.compile(  # as the whole name
+    r"(?:base|home|garage|yard|terminal|start|start point|starting point|origin|dc|office|zentrale)"
+    r"[ #-]*\d*",
+    re.IGNORECASE,
+)
+_SHOP = re.compile(r"home depot", re.IGNORECASE)
+_NAMED = {*NAMES_OF_STOPS["id"].split(), "type", "stoptype", "kind", "description", "role"}
+_CUSTOMERS = {
+    *("customer", "customername", "client", "clientname", "recipient", "recipientname", "contact"),
+    *("contactname", "consignee", "company", "phone", "phonenumber", "mobile", "email", "kunde"),
+    *("kundenname", "empfaenger", "empfanger", "cliente", "klant", "asiakas"),
+}
+_TIMES = ("service", "window", "windows", "due", "release")
+_OF_VISITS = ("service", "due", "release", "prize")
+_OF_ORDERS = (*_TIMES, "demand", "prize", "skills", "vehicle")
+
+
+def depot_of(columns: Columns, stops: Sequence[Stop]) -> str | None:
+    """Return the id of the stop from which vehicles start that are not told where; or None.
+
+    It is the first stop, unless that is an order; then the only stop that is called a depot.
+    """
+    if not is_order(columns, stops, 0):
+        return str(stops[0]["id"])
+    called = [row for row in range(1, len(stops)) if _is_called_depot(columns, row)]
+    named = [row for row in called if not _is_loaded(stops[row])]
+    return str(stops[named[0]]["id"]) if len(named) == 1 else None
+
+
+def is_order(columns: Columns, stops: Sequence[Stop], row: int) -> bool:
+    """Return whether a row is an order, and not a depot."""
+    stop = stops[row]
+    if _is_loaded(stop):
+        return True
+    if _is_called_depot(columns, row):
+        return False
+    if _has_customer(columns, row):
+        return True
+    return any(stop.get(name) for name in _OF_ORDERS) and not _is_horizon(stops, row)
+
+
+def _is_loaded(stop: Mapping[str, Any]) -> bool:
+    return any(stop.get("demand", ())) or any(stop.get(name) for name in ("skills", "vehicle"))
+
+
+def _is_called_depot(columns: Columns, row: int) -> bool:
+    """Return whether the name of a row, or what kind of stop it is, says that it is a depot."""
+    cells = [
+        (columns.names[at], text)
+        for at, (text, field) in enumerate(
+            zip(columns.table.rows[row][1], columns.fields, strict=True)
+        )
+        if field in ("id", None)
+    ]
+    cells += [(each.name, each.texts[row]) for each in columns.table.left_out.values()]
+    texts = [text.replace("_", " ") for name, text in cells if plain_name(name) in _NAMED]
+    if columns.table.heading is None and "id" in columns.fields:
+        texts.append(columns.text(row, columns.fields.index("id")))
+    return any(
+        (_DEPOT.search(text) and not _SHOP.search(text)) or _HOME.fullmatch(text) for text in texts
+    )
+
+
+def _is_horizon(stops: Sequence[Stop], row: int) -> bool:
+    """Return whether a row alone has no demand, and no visit: its window is that of the depot."""
+    others = [stop for at, stop in enumerate(stops) if at != row]
+    alone = bool(others) and all(any(each.get("demand", ())) for each in others)
+    return alone and not any(stops[row].get(each) for each in _OF_VISITS)
+
+
+def _has_customer(columns: Columns, row: int) -> bool:
+    """Return whether a row has a text in a column of customers that is not planned."""
+    return any(
+        field is None and plain_name(name) in _CUSTOMERS and columns.text(row, at)
+        for at, (name, field) in enumerate(zip(columns.names, columns.fields, strict=True))
+    )
+
+
+def with_depots(
+    columns: Columns,
+    stops: Sequence[Stop],
+    vehicles: Sequence[Vehicle],
+    plane: list[list[float]] | None,
+) -> tuple[list[Stop], list[Vehicle]]:
+    """Return stops and vehicles; fill in places and shifts that vehicles do not name.
+
+    The shift of a vehicle without one is the window of the depot where it starts.
+
+    Args:
+        columns: The table of the stops. The first stops are its rows.
+        stops: All stops.
+        vehicles: The vehicles.
+        plane: The points of the stops in the plane, if they are not on the earth. Those of stops
+            that are added for vehicles are added here too.
+    """
+    are_free = [not each.keys() & {"start", "end"} for each in vehicles]
+    home = depot_of(columns, stops) if any(are_free) else None
+    if any(are_free) and home is None:
+        _note_anywhere(columns, stops[0])
+    ends = {} if home is None else dict.fromkeys(("start", "end"), home)
+    placed = [
+        each | ends if is_free else each for each, is_free in zip(vehicles, are_free, strict=True)
+    ]
+    named = {stop for each in placed for stop in _depots_of(each)}
+    rows = {stops[row]["id"]: row for row in range(len(columns.table.rows))}
+    orders = {each for each in named & rows.keys() if is_order(columns, stops, rows[each])}
+    stops, moved = _with_stops_for(columns, stops, sorted(orders), plane)
+    by_id = {stop["id"]: stop for stop in stops}
+    made = []
+    for each in placed:
+        shift = {} if in_shifts([each]) else _shift_of(by_id.get(each.get("start"), {}), orders)
+        made.append({**each, **shift, **_moved(each, moved)})
+    used = {str(each.get("start")) for each, old in zip(made, placed, strict=True) if each != old}
+    return _without_orders(columns, stops, named - orders, used), made
+
+
+def _depots_of(vehicle: Vehicle) -> list[str]:
+    ends = [vehicle[end] for end in ("start", "end") if vehicle.get(end) is not None]
+    return [*ends, *vehicle.get("reload", ())]
+
+
+def _with_stops_for(
+    columns: Columns, stops: Sequence[Stop], orders: Sequence[str], plane: list[list[float]] | None
+) -> tuple[list[Stop], dict[str, str]]:
+    """Return stops with one more for each order at which vehicles start, end or load again."""
+    ids = {stop["id"] for stop in stops}
+    added: list[Stop] = []
+    moved = {}
+    for order in orders:
+        at = next(at for at, stop in enumerate(stops) if stop["id"] == order)
+        name = next(each for each in _free_names(order) if each not in ids)
+        place = {"location": stops[at]["location"]} if "location" in stops[at] else {}
+        added.append({"id": name, **place})
+        if plane is not None:
+            plane.append(plane[at])
+        moved[order] = name
+    if moved:
+        text = f"Vehicles start, end or load at {listed([*moved])}, which are orders as well: "
+        text += f"{listed([*moved.values()])} was added at the same place."
+        columns.source.note("depot", text)
+    return [*stops, *added], moved
+
+
+def _free_names(name: str) -> list[str]:
+    return [f"{name} (depot)", *(f"{name} (depot {number})" for number in range(2, 100))]
+
+
+def _moved(vehicle: Vehicle, moved: Mapping[str, str]) -> Vehicle:
+    """Return the members of a vehicle that name stops, with the stops that were added."""
+    ends: Vehicle = {
+        end: moved.get(vehicle[end], vehicle[end]) for end in ("start", "end") if end in vehicle
+    }
+    if "reload" in vehicle:
+        ends["reload"] = [moved.get(each, each) for each in vehicle["reload"]]
+    return ends
+
+
+def _shift_of(depot: Stop, orders: set[str]) -> Vehicle:
+    """Return the windows of a depot as shifts of a vehicle; those of an order are none."""
+    if depot.get("id") in orders:
+        return {}
+    return {
+        shift: depot[window]
+        for shift, window in (("shift", "window"), ("shifts", "windows"))
+        if window in depot
+    }
+
+
+def _without_orders(
+    columns: Columns, stops: Sequence[Stop], depots: set[str], used: set[str]
+) -> list[Stop]:
+    """Return stops, whose depots have nothing that orders have; note what is lost but windows.
+
+    `used` are the depots whose windows have become shifts.
+    """
+    kept = []
+    for stop in stops:
+        if stop["id"] not in depots:
+            kept.append(stop)
+            continue
+        kept.append({name: value for name, value in stop.items() if name not in _OF_ORDERS})
+        lost = [name for name in _OF_ORDERS if stop.get(name) and name != "demand"]
+        if lost := [name for name in lost if name[:6] != "window" or stop["id"] not in used]:
+            text = f"{quoted(stop['id'])} is a depot, so its {' and '.join(lost)} was not used."
+            columns.source.note("depot", text)
+    return kept
+
+
+def _note_anywhere(columns: Columns, first: Stop) -> None:
+    """Note that no row is a depot, so that vehicles start and end at any stop."""
+    columns.source.note(
+        "depot",
+        f"No row is called a depot, and the first one, {quoted(first['id'])}, is an order: vehicles"
+        " start and end at any stop. Where do they start? Add a row named depot, or a column start"
+        " to a table of vehicles.",
+    )
+
+
+def for_stops(
+    columns: Columns, stops: list[Stop], plane: list[list[float]] | None
+) -> tuple[list[Stop], list[Vehicle]]:
+    """Return stops, and the vehicles that they name, or one if they name none.
+
+    Each vehicle starts at the depot, holds all demand and has all skills.
+    """
+    demands = all_demand(stops)
+    named = distinct(stop["vehicle"] for stop in stops if "vehicle" in stop)
+    skills = distinct(skill for stop in stops for skill in stop.get("skills", ()))
+    held = ({"capacity": demands} if demands else {}) | ({"skills": skills} if skills else {})
+    free = [{"id": name, **held} for name in named or ["vehicle"]]
+    stops, vehicles = with_depots(columns, stops, free, plane)
+    home = vehicles[0].get("start")
+    where = "from any stop to any"
+    if home is not None:
+        first = "the first stop, " if home == stops[0]["id"] else ""
+        where = f"from and to {first}{quoted(home)}"
+    holds = f", and holds all demand, {numbers(demands)}" if demands else ""
+    able = f", and has all skills, {listed(skills)}" if skills else ""
+    added = "The file names no vehicles, so one was added. It"
+    if named:
+        added = f"One vehicle was added for each that stops name, {listed(named)}. Each"
+    columns.source.note("vehicle", f"{added} drives {where}{holds}{able}.")
+    return stops, vehicles
