@@ -279,17 +279,13 @@ class Calls:
     def read_files(
         self, files: Mapping[str, bytes], columns: Sequence[Mapping[str, str]] = ()
     ) -> Call[Mapping[str, Any]]:
-        """Return the request that files describe, by their names, with its kind and notes.
+        """Return the request in files by their names, with its kind and notes.
 
-        Args:
-            files: The content of one file; of one for each objective; or of stops and vehicles.
-            columns: What columns are taken for: each with `file`, `name` and `taken_for`. By
-                default their names say it.
+        There is one file, one for each objective, or one of stops and one of vehicles. `columns`
+        are what columns are taken for, each with `file`, `name` and `taken_for`.
         """
-        parts: list[tuple[str, Any]] = [("file", named) for named in files.items()]
-        if columns:
-            parts.append(("columns", (None, json.dumps([dict(each) for each in columns]))))
-        content = {"files": parts}
+        chosen = [("columns", (None, json.dumps([*map(dict, columns)])))] if columns else []
+        content = {"files": [*(("file", named) for named in files.items()), *chosen]}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
         answer = _answer((yield from self._send(request)))
         answer.read("kind", text)
