@@ -281,8 +281,7 @@ class Calls:
     ) -> Call[Mapping[str, Any]]:
         """Return the request in files by their names, with its kind and notes.
 
-        There is one file, one for each objective, or one of stops and one of vehicles. `columns`
-        are what columns are taken for, each with `file`, `name` and `taken_for`.
+        `columns` say what columns are taken for, each with `file`, `name` and `taken_for`.
         """
         chosen = [("columns", (None, json.dumps([*map(dict, columns)])))] if columns else []
         content = {"files": [*(("file", named) for named in files.items()), *chosen]}
