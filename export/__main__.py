@@ -73,7 +73,9 @@ def main(arguments: list[str] | None = None) -> None:
     progress.begin(f"writing {out}, {kilobytes:.0f} kB, and {out.with_suffix('.md').name}")
     out.write_bytes(content)
     metadata = {entry.key: entry.value for entry in model.metadata_props}
-    out.with_suffix(".md").write_text(card(name, str(options.checkpoint), trained, metadata))
+    out.with_suffix(".md").write_text(
+        card(name, str(options.checkpoint), trained, metadata), encoding="utf-8"
+    )
     progress.begin(f"done: hypervolume {metadata['figures']} by number of cities")
 
 
@@ -132,7 +134,11 @@ def _hypervolumes(model: ModelProto, trained: Trained) -> dict[str, float]:
 
 def _commit() -> str:
     described = subprocess.run(
-        ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=True
+        ["git", "describe", "--always", "--dirty"],
+        capture_output=True,
+        text=True,
+        check=True,
+        encoding="utf-8",
     )
     return described.stdout.strip()
 

@@ -45,7 +45,7 @@ class ProgressLog:
     def append(self, line: Mapping[str, object]) -> None:
         """Append a line to `log.csv`, of values by column; the first brings the header."""
         new = not self.path.exists()
-        with self.path.open("a", newline="") as file:
+        with self.path.open("a", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, list(line))
             if new:
                 writer.writeheader()
@@ -57,7 +57,9 @@ class TrainingLog(ProgressLog):
 
     def __init__(self, out: Path, run: Run, steps: int) -> None:
         super().__init__(out, steps, run.step)
-        (out / "config.json").write_text(json.dumps(as_plain(run.config), indent=2) + "\n")
+        (out / "config.json").write_text(
+            json.dumps(as_plain(run.config), indent=2) + "\n", encoding="utf-8"
+        )
         self._out, self._run = out, run
         self._steps: list[StepMeans] = []
         self._hypervolumes = ""
@@ -82,7 +84,7 @@ class TrainingLog(ProgressLog):
         self._draw_curve()
 
     def _draw_curve(self) -> None:
-        with self.path.open(newline="") as file:
+        with self.path.open(newline="", encoding="utf-8") as file:
             lines = list(csv.DictReader(file))
         names = [name for name in lines[0] if name.startswith("hypervolume_")]
         figure, panels = plt.subplots(len(names), sharex=True, figsize=(7, 3 * len(names)))

@@ -1,8 +1,10 @@
 """The command `paretour`, also `python -m service`."""
 
+import codecs
 import os
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 
 from service.own_code import keep_for_children
 
@@ -12,6 +14,7 @@ _INTERRUPTED = 130
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command; Ctrl-C while it loads ends it as it does later."""
     arguments = sys.argv[1:] if arguments is None else arguments
+    _let_print_any_name()
     try:
         keep_for_children()
         if arguments[:1] == ["serve"]:
@@ -20,6 +23,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         sys.exit(_INTERRUPTED)
     app(args=arguments, prog_name="paretour")
+
+
+def _let_print_any_name() -> None:
+    """Let stdout take every character: as UTF-8 in place of ASCII, else escaped if it must be."""
+    if not isinstance(sys.stdout, TextIOWrapper):
+        return
+    if codecs.lookup(sys.stdout.encoding).name == "ascii":
+        sys.stdout.reconfigure(encoding="utf-8")
+    sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _start_fork_server() -> None:

@@ -92,6 +92,37 @@ def test_every_released_actor_has_a_model_card_and_a_checkpoint() -> None:
         assert (ROOT / f"models/checkpoints/{actor.stem}.pt").exists()
 
 
+def opens_text(call: ast.Call) -> bool:
+    """Whether a call reads or writes text in the encoding of the locale."""
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+    given = [each.value for each in call.args if isinstance(each, ast.Constant)]
+    named = {each.arg: each.value for each in call.keywords}
+    if "encoding" in named or None in named:
+        return False
+    if name in ("run", "Popen", "check_output"):
+        return "text" in named or "universal_newlines" in named
+    modes = [
+        each for each in given if isinstance(each, str) and re.fullmatch("[rwaxtb+]{1,3}", each)
+    ]
+    if name == "open" and isinstance(call.func, ast.Attribute):  # of a path, if it has a mode
+        return bool(modes or "newline" in named) and "b" not in "".join(modes)
+    if name in ("open", "fdopen", "TextIOWrapper"):
+        return "b" not in "".join(modes)
+    return (name == "read_text" and not call.args) or (name == "write_text" and len(call.args) == 1)
+
+
+def test_every_text_is_read_and_written_in_an_encoding_that_is_said() -> None:
+    """Else that of the locale is taken, which is ASCII where it is POSIX."""
+    commands = [Path(path) for path in tracked() if path.startswith("tests/benchmarks/")]
+    found = [
+        f"{path}:{node.lineno}"
+        for path in [*modules(".py"), *(each for each in commands if each.suffix == ".py")]
+        for node in ast.walk(ast.parse((ROOT / path).read_bytes()))
+        if isinstance(node, ast.Call) and opens_text(node)
+    ]
+    assert found == []
+
+
 def test_no_chain_of_imports_is_long() -> None:
     """What a module imports when it is loaded, and what that imports in turn."""
     names = {".".join(path.with_suffix("").parts): path for path in modules(".py")}

@@ -198,7 +198,7 @@ def _bound_process(memory: int) -> None:
     if bound == resource.RLIM_INFINITY:
         os.nice(_NICENESS)
         # Pages of data and stack, the sixth number (proc(5)).
-        pages = int(Path("/proc/self/statm").read_text().split()[5])
+        pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[5])
         limit = pages * resource.getpagesize() + memory
         resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
 

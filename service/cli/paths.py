@@ -42,7 +42,7 @@ def write_path(path: MapPath | None, file: Path) -> None:
     Raises:
         UsageError: There is no path, or no origin of its map.
     """
-    file.write_text(_WRITERS[file.suffix](_located(path)), newline="")
+    file.write_text(_WRITERS[file.suffix](_located(path)), newline="", encoding="utf-8")
 
 
 def write_paths(front: FrontOfAnyKind, folder: Path) -> None:
@@ -55,7 +55,7 @@ def write_paths(front: FrontOfAnyKind, folder: Path) -> None:
     for name, path in _named_paths(front):
         located = _located(path)
         for suffix, written in _WRITERS.items():
-            (folder / f"{name}{suffix}").write_text(written(located), newline="")
+            (folder / f"{name}{suffix}").write_text(written(located), newline="", encoding="utf-8")
 
 
 def _named_paths(front: FrontOfAnyKind) -> Iterator[tuple[str, MapPath | None]]:

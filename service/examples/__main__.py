@@ -36,7 +36,9 @@ def write(directory: Path, router_url: str | None) -> None:
     }
     if router_url is None:
         sys.stderr.write(_NO_ROUTER)
-        one_van = json.loads((Path(__file__).parent / "helsinki-deliveries.json").read_text())
+        one_van = json.loads(
+            (Path(__file__).parent / "helsinki-deliveries.json").read_text(encoding="utf-8")
+        )
     else:
         one_van, lines = helsinki(router_url)
         places = np.array([stop["location"] for stop in one_van["stops"]])
@@ -48,7 +50,7 @@ def write(directory: Path, router_url: str | None) -> None:
     files["helsinki-vans"] = vans(one_van)
     files["helsinki-rush-hour"] = rush_hour(one_van)
     for name, content in files.items():
-        (directory / f"{name}.json").write_text(_formatted(content))
+        (directory / f"{name}.json").write_text(_formatted(content), encoding="utf-8")
 
 
 def _formatted(content: dict[str, Any]) -> str:

@@ -142,7 +142,7 @@ def _work(lock: str) -> None:
 
         @contextmanager
         def loading(self) -> Iterator[Callable[[str], None]]:
-            with open(lock) as file:
+            with open(lock, "rb") as file:
                 fcntl.flock(file, fcntl.LOCK_EX)
                 yield lambda _: None
 

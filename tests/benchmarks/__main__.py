@@ -104,7 +104,7 @@ def _run(name: str, arguments: list[str]) -> None:
             print(json.dumps(unstored.rows, indent=2))
             print(f"{unstored_name} is not stored: {unstored.reason}", file=sys.stderr)
     if provenance.RUN.stores:
-        render.PAGE.write_text(render.page())
+        render.PAGE.write_text(render.page(), encoding="utf-8")
     else:
         _print_measured()
     if unmet:

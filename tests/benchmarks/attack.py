@@ -140,7 +140,7 @@ class Memory:
 def _pages(pid: int) -> int:
     """Return the bytes of a process's pages, shared ones in equal parts; 0 where it has ended."""
     try:
-        rollup = Path(f"/proc/{pid}/smaps_rollup").read_text()
+        rollup = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="utf-8")
     except (FileNotFoundError, ProcessLookupError):
         return 0
     found = re.search(r"^Pss:\s+(\d+) kB", rollup, re.M)

@@ -50,7 +50,7 @@ def main(arguments: list[str]) -> None:
 
 def rounded_distances(path: Path) -> Array:
     """Distances, shape (n, n), of a TSPLIB file of kind EUC_2D: Euclidean, to the nearest whole."""
-    lines = [line.strip() for line in path.read_text().splitlines()]
+    lines = [line.strip() for line in path.read_text(encoding="utf-8").splitlines()]
     if "EDGE_WEIGHT_TYPE:EUC_2D" not in {line.replace(" ", "") for line in lines}:
         raise ValueError(f"{path} must be of kind EUC_2D")
     first = lines.index("NODE_COORD_SECTION") + 1

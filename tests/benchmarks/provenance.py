@@ -66,7 +66,7 @@ def changed_files() -> list[str]:
 def load(name: str) -> dict[str, Any]:
     """Return the results of a benchmark in the run's folder, an empty dictionary without any."""
     path = RUN.folder / f"{name}.json"
-    stored: dict[str, Any] = json.loads(path.read_text()) if path.exists() else {}
+    stored: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     return stored
 
 
@@ -109,7 +109,7 @@ def store(name: str, results: dict[str, Any], partial: str = "") -> None:
         return
     UNSTORED.pop(name, None)
     RUN.folder.mkdir(parents=True, exist_ok=True)
-    (RUN.folder / f"{name}.json").write_text(json.dumps(results, indent=2) + "\n")
+    (RUN.folder / f"{name}.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
 
 
 def _reason(stored: dict[str, Any], results: dict[str, Any], partial: str) -> str:
@@ -144,12 +144,14 @@ def _lacking(stored: Any, new: Any, place: str = "") -> Iterator[str]:
 
 def _git(*arguments: str) -> str:
     """Return what git prints in this repository; an empty string where there is none."""
-    ended = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True)
+    ended = subprocess.run(
+        ["git", *arguments], cwd=ROOT, capture_output=True, text=True, encoding="utf-8"
+    )
     return ended.stdout.strip()
 
 
 def _cpu() -> str:
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
+    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
         if line.startswith("model name"):
             return line.partition(":")[2].strip()
     return platform.processor()

@@ -94,7 +94,9 @@ def draw_stops(shape: str, n: int, changed: int, generator: Generator) -> Stops:
 
 def _road_stops(n: int, changed: int, generator: Generator) -> Stops:
     """Return stops of the example of Helsinki, with the matrices that are committed with it."""
-    text = files("service.examples").joinpath("helsinki-deliveries.json").read_text()
+    text = (
+        files("service.examples").joinpath("helsinki-deliveries.json").read_text(encoding="utf-8")
+    )
     matrices = np.array([each["matrix"] for each in json.loads(text)["objectives"]], np.float64)
     chosen = generator.permutation(matrices.shape[1])[: n + changed]
     return Stops(n, matrices=matrices[:, chosen][:, :, chosen])

@@ -17,7 +17,9 @@ def anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the tracked files, and the folder of what is measured and not stored."""
     tracked = tmp_path / "tracked"
     tracked.mkdir()
-    (tracked / "concave.json").write_text((RESULTS / "concave.json").read_text())
+    (tracked / "concave.json").write_text(
+        (RESULTS / "concave.json").read_text(encoding="utf-8"), encoding="utf-8"
+    )
     monkeypatch.setattr(provenance, "RESULTS", tracked)
     monkeypatch.setattr(concave, "RESULTS", tracked)
     monkeypatch.setattr(provenance, "ROOT", tmp_path)
@@ -85,7 +87,7 @@ def test_a_run_that_is_told_to_store_writes_tracked_files(monkeypatch: pytest.Mo
 
 def test_every_benchmark_has_help_of_its_own() -> None:
     command = [sys.executable, "-m", "tests.benchmarks", "actors", "--help"]
-    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
     assert ended.returncode == 0
     assert "usage: python -m tests.benchmarks actors" in ended.stdout
     assert "--threads" in ended.stdout

@@ -88,21 +88,23 @@ def test_a_run_of_code_that_is_no_commit_is_not_stored(monkeypatch: pytest.Monke
 def test_results_themselves_do_not_make_the_code_another(tmp_path: Path, monkeypatch: Any) -> None:
     for folder in ("tests/benchmarks/results", "service"):
         (tmp_path / folder).mkdir(parents=True)
-        (tmp_path / folder / "a.json").write_text("{}")
+        (tmp_path / folder / "a.json").write_text("{}", encoding="utf-8")
     git = ["git", "-c", "user.name=a", "-c", "user.email=a@b", "-C", str(tmp_path)]
     for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "All"]):
         subprocess.run([*git, *command], check=True)
     monkeypatch.setattr(provenance, "ROOT", tmp_path)
-    (tmp_path / "tests/benchmarks/results/a.json").write_text("{1}")
+    (tmp_path / "tests/benchmarks/results/a.json").write_text("{1}", encoding="utf-8")
     assert provenance.changed_files() == []
-    (tmp_path / "service/a.json").write_text("{1}")
+    (tmp_path / "service/a.json").write_text("{1}", encoding="utf-8")
     assert provenance.changed_files() == ["service/a.json"]
 
 
 def test_stored_results_name_commits_that_there_are() -> None:
     def git(*arguments: str) -> str:
         command = ["git", *arguments]
-        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True).stdout.strip()
+        return subprocess.run(
+            command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8"
+        ).stdout.strip()
 
     if git("rev-parse", "--is-shallow-repository") != "false":
         pytest.skip("not all commits are here")
@@ -110,7 +112,7 @@ def test_stored_results_name_commits_that_there_are() -> None:
     named = {
         commit
         for path in RESULTS.glob("*.json")
-        for commit in re.findall(r'"commit": "([^"-]*)', path.read_text())
+        for commit in re.findall(r'"commit": "([^"-]*)', path.read_text(encoding="utf-8"))
     }
     assert len(named) > 20
     missing = [name for name in named if not any(commit.startswith(name) for commit in commits)]
@@ -119,4 +121,4 @@ def test_stored_results_name_commits_that_there_are() -> None:
 
 def test_every_result_is_json() -> None:
     for path in RESULTS.glob("*.json"):
-        assert isinstance(json.loads(path.read_text()), dict)
+        assert isinstance(json.loads(path.read_text(encoding="utf-8")), dict)

@@ -103,6 +103,7 @@ def test_distances_of_tsplib_files_are_rounded_to_the_nearest(tmp_path: Path) ->
     path = tmp_path / "three.tsp"
     path.write_text(
         "NAME: three\nEDGE_WEIGHT_TYPE : EUC_2D\nNODE_COORD_SECTION\n"
-        "1 0 0\n2 1 1\n3 2.5 0.0e0\nEOF\n"
+        "1 0 0\n2 1 1\n3 2.5 0.0e0\nEOF\n",
+        encoding="utf-8",
     )
     assert rounded_distances(path).tolist() == [[0, 1, 3], [1, 0, 2], [3, 2, 0]]

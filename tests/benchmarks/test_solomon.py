@@ -31,8 +31,8 @@ def test_a_front_of_an_instance_is_stored_and_printed(
     monkeypatch.setattr(provenance, "RESULTS", tmp_path / "results")
     monkeypatch.setattr(provenance, "changed_files", list)
     monkeypatch.setattr(solomon, "SECONDS", 0.5)
-    (tmp_path / "T1.txt").write_text(INSTANCE)
-    (tmp_path / "T1.sol").write_text("Route #1: 1 2\nRoute #2: 3\nCost 22.8\n")
+    (tmp_path / "T1.txt").write_text(INSTANCE, encoding="utf-8")
+    (tmp_path / "T1.sol").write_text("Route #1: 1 2\nRoute #2: 3\nCost 22.8\n", encoding="utf-8")
     solomon.main(["--data", str(tmp_path)])
     stored = provenance.load("solomon")
     assert set(stored) == {"T1, paretour", "T1, plain PyVRP sweep"}

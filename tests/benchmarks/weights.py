@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> None:
 
 def example() -> Instance:
     """The instance: matrices of seconds and of people met."""
-    request = json.loads(EXAMPLE.read_text())
+    request = json.loads(EXAMPLE.read_text(encoding="utf-8"))
     return Instance(matrices=np.array([each["matrix"] for each in request["objectives"]], float))
 
 

@@ -53,8 +53,8 @@ class Guide:
         self._folder = folder
         names = {path.stem for path in folder.glob("*.md")}
         self.pages = {name: self._render(name, names) for name in sorted(names)}
-        self._entries = _GROUP.findall((folder / "index.md").read_text())
-        self._template = Template((folder / "site/template.html").read_text())
+        self._entries = _GROUP.findall((folder / "index.md").read_text(encoding="utf-8"))
+        self._template = Template((folder / "site/template.html").read_text(encoding="utf-8"))
 
     def document(self, name: str) -> str:
         """Return a page as a document of HTML."""
@@ -96,7 +96,7 @@ class Guide:
         return "\n".join([*lines, ""])
 
     def _render(self, name: str, names: set[str]) -> Page:
-        text = (self._folder / f"{name}.md").read_text()
+        text = (self._folder / f"{name}.md").read_text(encoding="utf-8")
         return render(text, lambda target: _resolved(target, names))
 
     def _navigation(self, current: str) -> str:

@@ -77,7 +77,7 @@ class _Page:
     async def index(self, request: Request) -> Response:
         """Answer with `index.html`, in which the addresses of files have the present version."""
         self._version = _version()
-        document = (_PAGE / "index.html").read_text()
+        document = (_PAGE / "index.html").read_text(encoding="utf-8")
         headers = {**REVALIDATE, "ETag": f'"{self._version}"'}
         if headers["ETag"] in request.headers.get("If-None-Match", ""):
             return Response(status_code=304, headers=headers)
@@ -110,7 +110,9 @@ class _PageFiles(StaticFiles):
         media_type = _COMMENTED.get(path.suffix)
         if found.status_code != 200 or media_type is None or path.is_relative_to(_VENDORED):
             return found
-        lines = _COMMENT.sub(lambda comment: "\n" * comment[0].count("\n"), path.read_text())
+        lines = _COMMENT.sub(
+            lambda comment: "\n" * comment[0].count("\n"), path.read_text(encoding="utf-8")
+        )
         kept = {name: found.headers[name] for name in ("etag", "last-modified")}
         return Response(lines, headers=kept, media_type=media_type)
 
