@@ -77,7 +77,8 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
     """Return the application of the service, which shuts down if no worker gets ready.
 
     Raises:
-        ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
+        ValueError: There are no actors, the store cannot be opened, Redis does not answer, or an
+            extra is not installed.
     """
     if settings.mcp:
         check_mcp()
@@ -207,12 +208,15 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     """Return a function that runs a worker of the cluster and returns its exit status.
 
     Raises:
-        ValueError: PARETOUR_REDIS_URL is not set, or the extra is not installed.
+        ValueError: PARETOUR_REDIS_URL is not set, Redis does not answer, or the extra is not
+            installed.
     """
     redis_url = _redis_url(settings)
     from service.cluster.celery_app import make_celery
+    from service.cluster.script import wait_for_redis
     from service.cluster.worker import CeleryWorker, RecordWorker
 
+    wait_for_redis(redis_url)
     actors = _checked_actors(settings)
     configure_logging()
     worker = CeleryWorker(
@@ -285,7 +289,9 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     """Return the store and the engine of a cluster."""
     redis_url = _redis_url(settings)
     from service.cluster.redis_engine import connect
+    from service.cluster.script import wait_for_redis
 
+    wait_for_redis(redis_url)
     return connect(
         redis_url,
         entries=settings.store_entries,

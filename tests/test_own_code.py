@@ -71,18 +71,33 @@ def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
 # Run by each Python that starts with this folder on its path: in workers one import fails.
 BROKEN_WORKERS = """
 import sys
+
+class Broken:
+    def find_spec(name, path=None, target=None):
+        if name == "{package}":
+            raise {error}("no {package}")
+
 if any("forkserver" in argument for argument in sys.orig_argv):
-    sys.modules["onnxruntime"] = None
+    sys.meta_path.insert(0, Broken)
 """
 
 
-def test_a_service_whose_workers_cannot_load_says_why_and_ends(tmp_path: Path) -> None:
-    (tmp_path / "sitecustomize.py").write_text(BROKEN_WORKERS)
+@pytest.mark.parametrize(
+    ("package", "error"),
+    [
+        ("onnxruntime", "ImportError"),  # which each worker imports
+        ("numba", "ValueError"),  # which the process imports that forks them
+    ],
+)
+def test_a_service_whose_workers_cannot_load_says_why_and_ends(
+    package: str, error: str, tmp_path: Path
+) -> None:
+    code = BROKEN_WORKERS.format(package=package, error=error)
+    (tmp_path / "sitecustomize.py").write_text(code, encoding="utf-8")
     with served(tmp_path, PYTHONPATH=str(tmp_path)) as (process, _):
         assert process.wait(PATIENCE) == 3
     log = log_of(tmp_path).read_bytes()
-    assert b"import of onnxruntime halted" in log
-    assert b"the service cannot start" in log
+    assert f"the service cannot start: {error}('no {package}')".encode() in log
 
 
 def connections(process: psutil.Process) -> set[str]:

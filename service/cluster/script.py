@@ -5,9 +5,11 @@ import logging
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from time import time
+from time import sleep, time
 from typing import Any
+from urllib.parse import urlsplit
 
+from redis import Redis as BlockingRedis
 from redis import exceptions
 from redis.asyncio import Redis
 from redis.backoff import NoBackoff
@@ -20,7 +22,8 @@ from service.errors.printable import printable
 from service.jobs.store import UnreadableRecord, log_dropped
 
 SCRIPT = "".join(
-    (Path(__file__).parent / name).read_text() for name in ("stored_records.lua", "records.lua")
+    (Path(__file__).parent / name).read_text(encoding="utf-8")
+    for name in ("stored_records.lua", "records.lua")
 )
 LEASE = 5.0  # seconds without a sign of life after which a worker is lost
 CHANNEL = "paretour:told"  # where the script publishes "id:status" after each change
@@ -36,6 +39,8 @@ _REFUSES_WRITES = ("MISCONF", "NOREPLICAS")
 # The script's error where a key holds foreign data, with the name of that key in JSON.
 _DAMAGED = re.compile(r'damaged ("(?:[^"\\]|\\.)*")')
 _SECONDS = 2.0  # the longest that one reply of Redis may take
+_PATIENCE = 10.0  # seconds in which Redis must answer at the start
+_PAUSE = 0.2  # seconds between two tries
 
 
 def connect_redis(url: str) -> Redis:
@@ -43,6 +48,36 @@ def connect_redis(url: str) -> Redis:
     # Tried once more, because the connection may be to a Redis that was restarted.
     retry = Retry(NoBackoff(), 1)
     return Redis.from_url(url, retry=retry, socket_timeout=_SECONDS, socket_keepalive=True)
+
+
+def wait_for_redis(url: str, seconds: float = _PATIENCE) -> None:
+    """Wait until Redis answers: it may be starting too.
+
+    Raises:
+        ValueError: It does not answer in time, or refuses the password.
+    """
+    ends = time() + seconds
+    redis = BlockingRedis.from_url(url, socket_timeout=_SECONDS, socket_connect_timeout=_SECONDS)
+    with redis:
+        while True:
+            try:
+                redis.ping()
+            except (exceptions.AuthenticationError, ResponseError) as error:
+                raise _unusable(url, "must accept us", error) from None
+            except exceptions.BusyLoadingError:
+                return  # it is there, and soon ready
+            except UNAVAILABLE as error:
+                if time() > ends:
+                    raise _unusable(url, f"must answer in {seconds:g} s", error) from None
+            else:
+                return
+            sleep(_PAUSE)
+
+
+def _unusable(url: str, demand: str, error: Exception) -> ValueError:
+    parts = urlsplit(url)
+    where = f"{parts.hostname}:{parts.port or 6379}"
+    return ValueError(f"PARETOUR_REDIS_URL: the Redis at {where} {demand}: {error}")
 
 
 class RecordScript:

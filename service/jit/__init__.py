@@ -1,10 +1,12 @@
 """Compile functions with numba, and cache them: the one place that configures numba."""
 
+from service.jit.before_numba import IGNORED
 from service.jit.cache import CACHED, PRECOMPILED, folder, locked
 from service.jit.kernels import allocating, compiled, inlined, standalone
 
 __all__ = [
     "CACHED",
+    "IGNORED",
     "PRECOMPILED",
     "allocating",
     "compiled",

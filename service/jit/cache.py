@@ -17,11 +17,13 @@ processes it is, and others do not look into it: they use numba's own cache.
 """
 
 import fcntl
+import logging
 import os
 import secrets
 import sys
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from hashlib import sha256
 from itertools import count
 from pathlib import Path
@@ -38,6 +40,7 @@ from service.jit.processor import compile_for_the_level
 compile_for_the_level()
 
 
+_LOG = logging.getLogger("paretour")
 _Identity: Any = FunctionIdentity
 _identity_of = _Identity.from_function
 _NUMBER = "numbered_by_place"
@@ -106,12 +109,26 @@ class CacheFile(_NumbaCacheFile):  # type: ignore[misc]
     def __init__(self, cache_path: str, filename_base: str, source_stamp: object) -> None:
         super().__init__(cache_path, filename_base, (source_stamp, _DIGEST))
 
+    def load(self, key: Any) -> Any:
+        """Return what was compiled; None where there is nothing, or files are damaged."""
+        with suppress(Exception):  # of pickle, which has no common class for them
+            return super().load(key)
+        return None
+
     def save(self, key: Any, data: Any) -> None:
-        """Keep what was compiled, unless the folder cannot be written."""
+        """Keep what was compiled, unless the folder cannot be written, or its disk is full."""
         if not os.access(self._cache_path, os.W_OK):
             return
+        try:
+            self._save(key, data)
+        except OSError as error:
+            _warn_once(str(error))
+
+    def _save(self, key: Any, data: Any) -> None:
         with locked(self._cache_path):
-            files = self._load_index()
+            files = {}
+            with suppress(Exception):  # as above
+                files = self._load_index()
             if key not in files:
                 files[key] = self._free_name(files.values())
             self._save_data(files[key], data)
@@ -120,6 +137,11 @@ class CacheFile(_NumbaCacheFile):  # type: ignore[misc]
     def _free_name(self, taken: Collection[str]) -> str:
         names = (self._data_name(number) for number in count(1))
         return next(name for name in names if name not in taken)
+
+
+@cache
+def _warn_once(reason: str) -> None:
+    _LOG.warning("compiled code cannot be kept, so each start compiles it: %s", reason)
 
 
 caching.IndexDataCacheFile = CacheFile  # type: ignore[misc]

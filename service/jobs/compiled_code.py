@@ -11,10 +11,13 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from threading import get_ident
 
-from numba import config
-from numba.core.event import Event, Listener, install_listener
-
 from service import jit
+from service.jit.compilations import (
+    Event,
+    Listener,
+    following_compilations,
+    is_switched_off,
+)
 from service.jobs import compilers
 from service.jobs.parts import Compiling, Part
 from service.jobs.pieces import PIECES, WORK
@@ -67,7 +70,7 @@ def warm_up(
             _load(part)
             tell(part)
             missing.remove(part)
-    with install_listener("numba:compile", compilers.Count(progress.count)):
+    with following_compilations(compilers.Count(progress.count)):
         for part in missing:
             _load(part)
             tell(part)
@@ -78,7 +81,7 @@ def load_from_cache(part: Part) -> bool:
     if is_loaded(part):
         return True
     try:
-        with uncollected(), install_listener("numba:compile", _RefuseCompilation()):
+        with uncollected(), following_compilations(_RefuseCompilation()):
             _load(part)
     except _NotCached:
         return False
@@ -87,7 +90,7 @@ def load_from_cache(part: Part) -> bool:
 
 def is_loaded(part: Part) -> bool:
     """Return whether this process has loaded a part, or needs none as numba is switched off."""
-    return config.DISABLE_JIT or part in _loaded  # type: ignore[attr-defined]  # set from outside
+    return is_switched_off() or part in _loaded
 
 
 def _load(part: Part) -> None:

@@ -20,11 +20,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from threading import Thread
 from typing import NoReturn
 
-from llvmlite.binding import ffi
-from numba.core.event import Event, Listener, install_listener
-from numba.core.registry import cpu_target
-
 from service import own_code
+from service.jit.compilations import Event, Listener, following_compilations, import_compiler
 from service.jobs.parts import Part
 from service.jobs.pieces import PIECES
 
@@ -109,15 +106,15 @@ def _compile_and_exit(queue: int, done: int, end: int, processes: int) -> NoRetu
         _compile_pieces(queue, done)
         _wait_for(children)
     except BaseException:
-        traceback.print_exc()
+        with suppress(OSError):
+            traceback.print_exc()
         os._exit(1)
     os._exit(0)
 
 
 def _fork_compilers(number: int) -> Collection[int]:
     """Continue as this process and others, which share what was imported; return the others."""
-    cpu_target.target_context.refresh()  # imports what numba compiles with
-    ffi.lib._lock._cblist.clear()  # noqa: SLF001  # nobody asks how long numba calls LLVM
+    import_compiler()
     gc.freeze()
     children = []
     for _ in range(number):
@@ -147,7 +144,7 @@ def _compile_pieces(queue: int, done: int) -> None:
     """
     gc.enable()  # it may have been forked while none was collected
     gc.set_threshold(20_000)
-    with install_listener("numba:compile", Count(lambda: os.write(done, bytes([FUNCTION])))):
+    with following_compilations(Count(lambda: os.write(done, bytes([FUNCTION])))):
         while number := os.read(queue, 1):
             _, compile_piece = PIECES[number[0]]
             compile_piece()

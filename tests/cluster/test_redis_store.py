@@ -10,12 +10,13 @@ import redis as redis_client
 from redis.asyncio import Redis as AsyncRedis
 
 from service.cluster.redis_engine import connect
-from service.cluster.script import connect_redis
+from service.cluster.script import connect_redis, wait_for_redis
 from service.cluster.worker_store import WorkerStore
 from service.errors import Expired, StoreUnavailable
 from service.front import Progress
 from service.requests.task import TaskSource
-from tests.helpers.redis_server import Redis, redis_server
+from tests.helpers.ports import free_port
+from tests.helpers.redis_server import FORGETFUL, Redis, redis_server
 from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS
 from tests.helpers.stores import FullRedisStore, Worker, job, record, redis_store
 
@@ -214,3 +215,17 @@ def test_a_worker_counts_as_alive_for_five_seconds_after_its_last_sign(redis: Re
             return [(await store.call("standing"))[3] for _ in range(2)]
 
     assert asyncio.run(count()) == [1, 0]
+
+
+def test_a_redis_that_is_not_there_is_named_at_the_start_without_its_password(
+    redis: Redis, tmp_path: Path
+) -> None:
+    wait_for_redis(redis.url)
+    url = f"redis://:sesame@127.0.0.1:{free_port()}/0"
+    with pytest.raises(ValueError, match=r"the Redis at 127\.0\.0\.1:\d+ must answer") as absent:
+        wait_for_redis(url, seconds=0.1)
+    assert "sesame" not in str(absent.value)
+    with redis_server(tmp_path, (*FORGETFUL, "--requirepass", "right")) as locked:
+        with pytest.raises(ValueError, match="must accept us"):
+            wait_for_redis(locked.url.replace("//", "//:wrong@"))
+        wait_for_redis(locked.url.replace("//", "//:right@"))

@@ -125,3 +125,25 @@ def test_all_compiled_code_lies_where_a_change_is_noticed() -> None:
     ]
     folders = {path.relative_to(package).parts[0] for path in users}
     assert folders <= {"coverage", "fleet", "over_the_day", "replanning", "search"}
+
+
+def test_code_that_cannot_be_kept_is_used_all_the_same_and_said_once(tmp_path: Path) -> None:
+    """As where the disk is full. A damaged file is of no use, and is written anew."""
+    (tmp_path / "kernel.py").write_text(KERNEL)
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": f"{tmp_path}:."}
+    full = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)); "
+
+    def run(code: str) -> tuple[str, str]:
+        command = [sys.executable, "-c", code, "0"]
+        ran = subprocess.run(command, env=environment, capture_output=True, text=True)
+        return ran.stdout, ran.stderr
+
+    use = "from kernel import half; print(half(3), half(3.0), half.stats.cache_misses.total())"
+    printed, warned = run(full + use)
+    assert printed == "1.5 1.5 2\n"
+    assert warned.count("compiled code cannot be kept") == 1
+    assert run(use) == ("1.5 1.5 2\n", "")
+    for file in tmp_path.rglob("*.nb?"):
+        file.write_bytes(b"")
+    assert run(use) == ("1.5 1.5 2\n", "")
+    assert run(use) == ("1.5 1.5 0\n", "")

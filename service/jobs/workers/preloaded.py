@@ -12,11 +12,14 @@ threads.
 """
 
 import gc
+from contextlib import suppress
 from importlib import import_module
 
 from service.jobs.uncollected import uncollected
 
-with uncollected():
+# An error here would end this process, and nobody would be told why. Without it each worker imports
+# the modules again, meets the error again, and tells the service.
+with uncollected(), suppress(Exception):
     from service.jobs.compiled_code import load_or_begin
 
     load_or_begin()  # before the other modules, as it lasts longest

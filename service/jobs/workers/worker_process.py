@@ -169,7 +169,8 @@ class _WorkerLoop:
         except (EOFError, OSError):
             os._exit(0)
         except BaseException:
-            traceback.print_exc()
+            with suppress(OSError):
+                traceback.print_exc()
             os._exit(1)
 
     def _set_running(self, number: int | None) -> None:
@@ -206,9 +207,10 @@ class _WorkerLoop:
             while True:
                 self._runner.warm_up(self._to_warm_up.get().parts, self._tell)
         except Exception as error:
-            traceback.print_exc()
             with suppress(OSError):
                 self._send(Unable(repr(error)))
+            with suppress(OSError):  # as where standard error is a file on a full disk
+                traceback.print_exc()
             os._exit(1)
 
     def _tell(self, told: Part | Compiling) -> None:

@@ -137,14 +137,20 @@ class WorkerSet:
         if not self._failing:
             _LOG.error("a worker cannot run, and is tried again", exc_info=error)
         self._failing, self._reason = True, repr(error)
+        if not self.compiled:
+            self._count_failure()
 
     def _fail(self, reason: str) -> None:
-        """Count a process that was lost before any was ready; the last failure ends the start."""
+        """Log and count a process that was lost before any was ready."""
         self._failing, self._reason = True, reason
-        self._failures += 1
         _LOG.error("no worker is ready, and the last was lost: %s", reason)
+        self._count_failure()
+
+    def _count_failure(self) -> None:
+        """Count a process that was of no use before any was ready; the last ends the start."""
+        self._failures += 1
         if self._failures == _MOST_TRIES * self._size:
-            self._on_failed(reason)
+            self._on_failed(self._reason)
 
     def _handle(self, worker: Worker, message: object) -> None:
         match message:
