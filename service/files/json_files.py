@@ -15,6 +15,7 @@ _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordin
 _OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives", "cost_layers"}
 _ROWS = {"coordinates", "grid", "cost_layer"}
 _WINDOWS = ("window", "windows", "time_window", "time_windows")
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 _LONGEST_CRS = 200  # characters of its name
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
 
@@ -72,9 +73,15 @@ def _parsed(source: Source, text: str) -> Any:
     try:
         # Some programs write Infinity where there is no way. It is not JSON; requests use null for
         # it.
-        return json.loads(text, parse_constant=lambda _: None)
+        value = json.loads(text, parse_constant=lambda _: None)
+        if _SURROGATE.search(text):  # half of a pair cannot be written as UTF-8 again
+            json.dumps(value, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        half = ascii(error.object[error.start])[1:-1]
+        raise source.refusal(f"must be text, got {half}, which is half a character") from None
     except (ValueError, RecursionError) as error:
         raise source.refusal(f"must be JSON: {str(error)[:200]}") from None
+    return value
 
 
 def _kind_of(request: dict[str, Any]) -> Kind | None:

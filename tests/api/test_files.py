@@ -9,6 +9,7 @@ from typing import Any
 
 import httpx
 import openpyxl
+import paretour
 import pytest
 
 from service.errors import MOST_FAULTS
@@ -258,3 +259,16 @@ def test_a_map_says_which_cells_are_unknown_and_takes_pictures_of_costs(address:
     assert planned.json()["objectives"][1]["name"] == "dust"
     known = sent(address, ("known.pgm", b"P2 2 1 255  254 0\n")).json()
     assert "unknown_cells" not in known
+
+
+def test_half_a_character_in_json_is_refused(address: str) -> None:
+    data = b'[{"id":"\\ud800","lat":60,"lon":24},{"id":"b","lat":61,"lon":24}]'
+    refused = problem(sent(address, ("a.json", data)), 422, "unreadable-file")
+    assert "half a character" in refused["detail"]
+
+
+def test_the_client_sends_a_file_whose_name_is_no_text(address: str) -> None:
+    rows = b"id,lat,lon\na,60,24\nb,61,24\n"
+    with paretour.Client(address) as client:
+        answer = client.read_files({"caf\udce9.csv": rows})
+    assert answer["name"] == "caf?.csv"

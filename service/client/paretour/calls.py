@@ -283,8 +283,10 @@ class Calls:
 
         `columns` say what columns are taken for, each with `file`, `name` and `taken_for`.
         """
+        # The name of a file on a disk may be no text.
+        named = [(name.encode(errors="replace").decode(), data) for name, data in files.items()]
         chosen = [("columns", (None, json.dumps([*map(dict, columns)])))] if columns else []
-        content = {"files": [*(("file", named) for named in files.items()), *chosen]}
+        content = {"files": [*(("file", each) for each in named), *chosen]}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
         answer = _answer((yield from self._send(request)))
         answer.read("kind", text)
