@@ -38,6 +38,7 @@ from paretour.requests import (
     fleet_plan,
     front_path,
     front_plan,
+    parts_of,
     replan_plan,
 )
 from paretour.values import (
@@ -283,10 +284,8 @@ class Calls:
 
         `columns` say what columns are taken for, each with `file`, `name` and `taken_for`.
         """
-        # The name of a file on a disk may be no text.
-        named = [(name.encode(errors="replace").decode(), data) for name, data in files.items()]
         chosen = [("columns", (None, json.dumps([*map(dict, columns)])))] if columns else []
-        content = {"files": [*(("file", each) for each in named), *chosen]}
+        content = {"files": [*parts_of(files), *chosen]}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
         answer = _answer((yield from self._send(request)))
         answer.read("kind", text)

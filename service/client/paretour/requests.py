@@ -36,6 +36,12 @@ class File:
     content: bytes
 
 
+def parts_of(files: Mapping[str, bytes]) -> list[tuple[str, tuple[str, bytes]]]:
+    """Return files as parts of a form. The name of a file on a disk may be no text."""
+    named = [(name.encode(errors="replace").decode(), data) for name, data in files.items()]
+    return [("file", each) for each in named]
+
+
 @dataclass(frozen=True)
 class Plan:
     """A request to plan: the path to post to, its JSON members, and maybe a file."""
