@@ -5,7 +5,6 @@ The methods of both clients are these calls; one client waits for the responses,
 them.
 """
 
-import json
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import wraps
@@ -284,8 +283,7 @@ class Calls:
 
         `columns` say what columns are taken for, each with `file`, `name` and `taken_for`.
         """
-        chosen = [("columns", (None, json.dumps([*map(dict, columns)])))] if columns else []
-        content = {"files": [*parts_of(files), *chosen]}
+        content = {"files": parts_of(files, columns)}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
         answer = _answer((yield from self._send(request)))
         answer.read("kind", text)

@@ -36,10 +36,14 @@ class File:
     content: bytes
 
 
-def parts_of(files: Mapping[str, bytes]) -> list[tuple[str, tuple[str, bytes]]]:
-    """Return files as parts of a form. The name of a file on a disk may be no text."""
+def parts_of(
+    files: Mapping[str, bytes], columns: Sequence[Mapping[str, str]]
+) -> list[tuple[str, tuple[str | None, str | bytes]]]:
+    """Return the parts of a form: files, and what their columns are taken for, if that is given."""
+    chosen = [("columns", (None, json.dumps([*map(dict, columns)])))] if columns else []
+    # The name of a file on a disk may be no text.
     named = [(name.encode(errors="replace").decode(), data) for name, data in files.items()]
-    return [("file", each) for each in named]
+    return [*(("file", each) for each in named), *chosen]
 
 
 @dataclass(frozen=True)
