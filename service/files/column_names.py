@@ -279,4 +279,4 @@ def plain_name(name: str) -> str:
     words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
     of_a_day = words[-1:] == ["hours"] and words[:1] in _HOURS_OF
     kept = words[:-1] if len(words) > 1 and words[-1] in SECONDS and not of_a_day else words
-    return "".join(kept)
+    return "".join(kept[:-1] if len(kept) > 1 and kept != words and kept[-1] == "in" else kept)

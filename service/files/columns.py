@@ -15,6 +15,7 @@ from service.files.column_names import (
     fields_of,
     is_about_vehicles,
 )
+from service.files.dates import Calendar
 from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
 from service.files.signs import decimals_of, is_number, is_numeric, with_plain_numbers
 from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
@@ -47,7 +48,9 @@ class Columns:
     """The columns of a table, with the field that each is taken for.
 
     `hours` are the columns of times whose numbers are hours of the day, as 8 or 8.30; each with
-    whether decimals are parts of an hour, as in 8.5, and not minutes.
+    whether decimals are parts of an hour, as in 8.5, and not minutes. `units` are the seconds of
+    the usual unit of columns whose headings have none. `on_earth` says that the places of the
+    stops are, so that times are seconds.
     """
 
     source: Source
@@ -55,6 +58,9 @@ class Columns:
     names: list[str]
     fields: list[str | None]
     hours: dict[int, bool] = field(default_factory=dict)
+    units: dict[int, float] = field(default_factory=dict)
+    calendar: Calendar = field(default_factory=Calendar)
+    on_earth: bool = False
     of_stops: bool = True
 
     def find(self, field: str) -> int | None:
@@ -80,6 +86,10 @@ class Columns:
         """
         sentence = f"{self.where(row, column)} {demand}"
         return self.source.refuse_cell(self.table.rows[row][0], column, sentence, *came)
+
+    def are_whole_days(self, column: int) -> bool:
+        """Return whether all dates of a column are at midnight, so that they have no times."""
+        return (self.source.name, self.names[column]) in self.calendar.whole_days
 
     def tried(self, instead: Read, read: Callable[..., Read], *arguments: object) -> Read:
         """Return what a function reads from fields, or `instead` if one of them is wrong."""

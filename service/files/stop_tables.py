@@ -24,6 +24,7 @@ from service.files.planes import (
 )
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
+from service.files.times import read_calendar
 from service.files.visits import add_visits
 from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
@@ -154,6 +155,7 @@ def _fleet(columns: Columns) -> Reading:
     """Return the request for a fleet whose vehicles have no table."""
     source = columns.source
     stops, plane = visits_of(columns)
+    read_calendar([columns])
     add_visits(columns, stops)
     stops, vehicles = for_stops(columns, stops, plane)
     columns.report()

@@ -5,6 +5,7 @@ import re
 from service.files.column_names import fields_of, is_about_vehicles
 from service.files.columns import Columns, columns_of, columns_of_vehicles, ids_of
 from service.files.depots import with_depots
+from service.files.durations import read_units
 from service.files.fleets import (
     Stop,
     Vehicle,
@@ -18,16 +19,16 @@ from service.files.fleets import (
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
-from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
-from service.files.vehicle_loads import add_loads
-from service.files.visits import (
-    add_visits,
+from service.files.times import (
     is_time,
+    read_calendar,
     recognise_hours,
     seconds_in,
     spans_in,
-    texts_in,
 )
+from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
+from service.files.vehicle_loads import add_loads
+from service.files.visits import add_visits, texts_in
 
 _ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # members by column
 _KILOMETRE = 1000.0
@@ -48,10 +49,12 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     source, other = of_stops[0], of_vehicles[0]
     visits = columns_of(*of_stops)
     stops, plane = visits_of(visits)
-    units = add_visits(visits, stops)
     columns = _columns_of_vehicles(other, of_vehicles[1], stops)
+    read_calendar([visits, columns])
+    units = add_visits(visits, stops)
     if plane is None:
         recognise_hours(columns)
+        read_units(columns)
     vehicles = _Vehicles(columns, stops, located=plane is None).read()
     add_loads(columns, vehicles, visits, stops, units)
     add_skills(columns, vehicles)

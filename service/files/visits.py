@@ -1,47 +1,20 @@
 """Read the columns of a table that are about visits: demands, times, skills, vehicles, prizes."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from service.files.column_names import SECONDS, WINDOWS, seconds_of, unit_of_times
+from service.files.column_names import WINDOWS
 from service.files.columns import Columns
+from service.files.durations import read_units
 from service.files.fleets import Stop, spans
-from service.files.reading import WrongCell, quoted
-from service.files.tables import number_in
+from service.files.times import recognise_hours, seconds_in, spans_in
 
-_TIME = re.compile(
-    r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?(?:Z|[-+]\d\d:\d\d)?",
-    re.ASCII,
-)
-_SPOKEN = re.compile(  # 8h30, 8 Uhr, 8.30 Uhr, 8 am, 1:30 p.m., 8:30h
-    r"(\d{1,2})(?:\s?h\s?([0-5]\d)(?:\s?min)?|:([0-5]\d)\s?h(?:rs?)?"
-    r"|(?:[.:h]([0-5]\d))?\s?(?:uhr|o'clock|([ap])\.?m\.?))",
-    re.ASCII | re.IGNORECASE,
-)
-_HOURS = re.compile(  # 8, 8.30, 0800, 8 h
-    r"(\d{1,4})(?:[.,](\d\d?|0+))?(?:\s*(?:h|hrs?|hours?)\.?)?", re.ASCII | re.IGNORECASE
-)
-_HALF_OF_DAY = re.compile(r"\s?([ap])\.?m\.?", re.IGNORECASE)
-_UNIT_BEHIND = re.compile(r"(?<=\d)\s*[a-z][a-z.']*", re.IGNORECASE)
-_OF_TWELVE = re.compile(r"(?:0?\d|1[0-2])(?:[.:h][0-5]\d)?", re.ASCII | re.IGNORECASE)
-_DECIMALS = re.compile(r"\d[.,]\d")
-_MINUTE, _HOUR, _DAY = 60, 3600, 86400  # seconds
-_LEAST_SECONDS = 100  # beside hours of the day
-_PARTS, _ALSO_PARTS = {"25", "5", "75"}, {"50"}  # decimals of parts of an hour
-_LASTING = re.compile(r"(.*\d)\s*([a-z]+)\.?", re.IGNORECASE)  # with its unit, as 5 min
-_BRIEF = 60  # seconds; a service that takes less may be meant in minutes
-_OR = re.compile(r"\s*(?:[;|,&]|\band\b|\bund\b)\s*", re.IGNORECASE)  # between two windows
 _SEPARATOR = re.compile(r"[;|,]")  # between skills or ids
-_AROUND_SPAN = " []()"
 _AROUND_TEXT = " []{}\"'"  # as Python and JSON write lists
-_ENDS = 2  # of a window
-_BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
-_IF_WRONG = [[0.0, 1.0]]  # in place of wrong windows or shifts: overtime needs a shift
 _MOST = 1e6  # the largest demand
 _ROUNDING = 1e-6
 _MOST_DECIMALS = 3  # of a demand, which becomes a whole number
@@ -55,6 +28,7 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
     """
     if any("location" in stop for stop in stops):
         recognise_hours(columns)
+        read_units(columns)
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
     readers: Mapping[str, Callable[[int, int], Any]] = {
         "service": partial(seconds_in, columns),
@@ -70,165 +44,9 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
                 value = columns.tried(None, read, row, at)
                 if value is not None:
                     stops[row][name] = value
-    _note_brief_service(columns, stops)
     for row, stop in enumerate(stops):
         stop |= spans("window", spans_in(columns, row, WINDOWS))
     return _add_demands(columns, demands, stops) if demands else 1
-
-
-def _note_brief_service(columns: Columns, stops: list[Stop]) -> None:
-    """Note that service on the earth is in seconds, if it has no unit and may be in minutes."""
-    at = columns.find("service")
-    if at is None or columns.find("latitude") is None or seconds_of(columns.names[at]):
-        return
-    rows = columns.filled(at)
-    longest = max((stops[row].get("service", 0) for row in rows), default=0)
-    if 0 < longest < _BRIEF and all(number_in(columns.text(row, at)) is not None for row in rows):
-        name = columns.names[at]
-        columns.source.note(
-            "service",
-            f"{quoted(name)} is in seconds, {longest:g} at most. For minutes, write 5 min or name"
-            f" it {quoted(f'{name} (min)')}.",
-        )
-
-
-def is_time(text: str) -> bool:
-    """Return whether a text is a time of day, as 10:30 or 8 am."""
-    return _TIME.fullmatch(text) is not None or _spoken(text) is not None
-
-
-def recognise_hours(columns: Columns) -> None:
-    """Decide in which columns numbers are hours of the day, such as 8 or 0800, and note it.
-
-    For files whose places are on the earth: in a plane, numbers are in the unit of distances.
-    Numbers are hours if all in a column can be, or if others in the column are times, as 8:00.
-    """
-    for group in _columns_of_times(columns):
-        cells = [(row, at) for at in group for row in columns.filled(at)]
-        texts = [text for row, at in cells for text in _times_in(columns, row, at)]
-        numbers = [text for text in texts if number_in(text) is not None]
-        in_parts = _are_in_parts(texts)
-        hours = [_hours(text, in_parts) is not None for text in numbers]
-        if all(hours) or any(is_time(text) or _has_unit_of_hours(text) for text in texts):
-            columns.hours |= dict.fromkeys(group, in_parts)
-            _note_hours(columns, group, cells)
-        else:
-            _note_brief_times(columns, group, numbers)
-
-
-def _columns_of_times(columns: Columns) -> list[list[int]]:
-    """Return the columns of times of day whose numbers have no unit; begin and end together."""
-    fields = [
-        *([window] for window in (*WINDOWS, "shift")),
-        *([f"{window}_from", f"{window}_to"] for window in (*WINDOWS, "shift")),
-        *(["due"], ["release"]),
-    ]
-    found = [[at for name in each if (at := columns.find(name)) is not None] for each in fields]
-    return [
-        group
-        for group in found
-        if group and not any(unit_of_times(columns.names[at], columns.fields[at]) for at in group)
-    ]
-
-
-def _times_in(columns: Columns, row: int, at: int) -> list[str]:
-    """Return the texts of the times in a field; none of a window that cannot be read."""
-    if columns.fields[at] in (*WINDOWS, "shift"):
-        windows = columns.tried(None, _bounds_in, columns, row, at)
-        return [text for bounds in windows or () for text in bounds]
-    return [columns.text(row, at)]
-
-
-def _are_in_parts(texts: Iterable[str]) -> bool:
-    """Return whether the decimals of hours are parts of an hour, as in 8.5, and not minutes."""
-    found = [_HOURS.fullmatch(text) for text in texts]
-    decimals = {each[2] for each in found if each and int(each[2] or 0)}
-    return bool(decimals & _PARTS) and decimals <= _PARTS | _ALSO_PARTS
-
-
-def _has_unit_of_hours(text: str) -> bool:
-    return number_in(text) is None and _HOURS.fullmatch(text) is not None
-
-
-def _hours(text: str, in_parts: bool) -> float | None:
-    """Return the seconds at an hour of the day, as 8, 8.30 or 0800; None for any other text."""
-    found = _HOURS.fullmatch(text)
-    if not found:
-        return None
-    whole, decimals = found[1], found[2] if int(found[2] or 0) else ""
-    if len(whole) > 2:
-        whole, minutes = whole[:-2], float(whole[-2:]) if not decimals else _MINUTE
-    elif in_parts and decimals:
-        minutes = _MINUTE * float(f"0.{decimals}")
-    else:
-        minutes = float(decimals.ljust(2, "0")) if decimals else 0.0
-    seconds = _HOUR * int(whole) + _MINUTE * minutes
-    return seconds if minutes < _MINUTE and seconds <= _DAY else None
-
-
-def _note_hours(columns: Columns, group: list[int], cells: Iterable[tuple[int, int]]) -> None:
-    """Note how numbers are read as hours, by the first one; best by one with decimals."""
-    found = [
-        cell
-        for cell in cells
-        if any(_is_guess(columns, cell[1], each) for each in _times_in(columns, *cell))
-    ]
-    if not found:
-        return
-    decimal = (cell for cell in found if _DECIMALS.search(columns.text(*cell)))
-    row, at = next(decimal, found[0])
-    times = [
-        _clock(columns.tried(0.0, seconds_in, columns, row, at, text))
-        for text in _times_in(columns, row, at)
-    ]
-    read = "; ".join("-".join(times[at : at + _ENDS]) for at in range(0, len(times), _ENDS))
-    columns.source.note(
-        "times",
-        f"{_named(columns, group, 'has', 'have')} hours, such as {columns.text(row, at)[:80]},"
-        f" read as {read}.",
-    )
-
-
-def _is_guess(columns: Columns, at: int, text: str) -> bool:
-    """Return whether a text is an hour but 0, without a unit or with decimals."""
-    is_plain = number_in(text) is not None or _DECIMALS.search(text) is not None
-    return is_plain and bool(_hours(text, columns.hours[at]))
-
-
-def _note_brief_times(columns: Columns, group: list[int], numbers: list[str]) -> None:
-    """Note that times are in seconds, if one of them or all may be meant otherwise."""
-    times = [time for each in numbers if (time := number_in(each) or 0) > 0]
-    if times and (min(times) <= _DAY / _HOUR or max(times) < _HOUR):
-        columns.source.note(
-            "times",
-            f"{_named(columns, group, 'is', 'are')} in seconds, such as {min(times):g}. Write"
-            " times of day as 8:00.",
-        )
-
-
-def _named(columns: Columns, group: list[int], one: str, several: str) -> str:
-    """Return the subject and verb of a sentence about columns."""
-    names = " and ".join(quoted(columns.names[at]) for at in group)
-    return f"{names} {one if len(group) == 1 else several}"
-
-
-def _clock(seconds: float) -> str:
-    """Return a time of day, as 8:00 or 8:00:30."""
-    minutes, rest = divmod(round(seconds), _MINUTE)
-    return f"{minutes // 60}:{minutes % 60:02}" + (f":{rest:02}" if rest else "")
-
-
-def _spoken(text: str) -> float | None:
-    """Return the seconds at a time of day with a word, as 8h30, 8 Uhr or 8 am; else None."""
-    found = _SPOKEN.fullmatch(text)
-    if not found:
-        return None
-    hour, minute = int(found[1]), int(found[2] or found[3] or found[4] or 0)
-    if half := found[5]:
-        if hour > 12:
-            return None
-        hour = hour % 12 + (12 if half in "pP" else 0)
-    return float(_HOUR * hour + _MINUTE * minute)
 
 
 def texts_in(columns: Columns, row: int, at: int) -> list[str]:
@@ -263,106 +81,3 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
     for stop, amounts in zip(stops, np.rint(finer[decimals]).astype(int).tolist(), strict=True):
         stop["demand"] = amounts
     return 10**decimals
-
-
-def spans_in(columns: Columns, row: int, fields: Iterable[str]) -> list[list[float]]:
-    """Return the windows or shifts of a row in seconds, in order; none if its fields are empty.
-
-    Fields are kept as wrong, and another span is returned, where a window cannot be read, ends
-    before it begins, or begins before the one before has ended.
-    """
-    read = [columns.tried(None, _spans_in, columns, row, field) for field in fields]
-    found = [each for spans in read for each in spans or ()]
-    backward = [(span, at) for span, at in found if span[1] < span[0]]
-    for _, at in backward:
-        demand = f"must have a {_noun(columns, at)} that ends after it begins"
-        hint = " (after midnight, 2:00 is 26:00)" if at in columns.hours else ""
-        columns.refuse(row, at, demand + hint, columns.text(row, at))
-    if backward or None in read:
-        return _IF_WRONG
-    found.sort(key=lambda each: each[0])
-    for (before, _), (span, at) in pairwise(found):
-        if span[0] <= before[1]:
-            came = f"got {span[0]:g} s after {before[1]:g} s"
-            demand = f"must begin after the {_noun(columns, at)} before has ended, {came}"
-            columns.refuse(row, at, demand)
-    return [span for span, _ in found]
-
-
-def _spans_in(columns: Columns, row: int, field: str) -> list[tuple[list[float], int]]:
-    """Return the windows or shifts of one field, each with a column that it is in."""
-    both = columns.find(field)
-    if both is not None:
-        bounds = _bounds_in(columns, row, both)
-        return [([seconds_in(columns, row, both, text) for text in each], both) for each in bounds]
-    earliest, latest = (columns.find(f"{field}_{end}") for end in ("from", "to"))
-    filled = [at for at in (earliest, latest) if at is not None and columns.text(row, at)]
-    if not filled:
-        return []
-    times = [columns.tried(None, seconds_in, columns, row, at) for at in filled]
-    if latest is None or latest not in filled:
-        at = filled[0] if latest is None else latest
-        raise columns.refuse(row, at, f"must say when the {_noun(columns, at)} ends, got none")
-    start, end = [0.0, *times][-_ENDS:]
-    if start is None or end is None:
-        raise WrongCell
-    return [([start, end], latest)]
-
-
-def _bounds_in(columns: Columns, row: int, at: int) -> list[list[str]]:
-    """Return the texts of both bounds of each window in a field."""
-    text = columns.text(row, at).strip(_AROUND_SPAN)
-    several = [_BETWEEN.split(each.strip(_AROUND_SPAN)) for each in _OR.split(text) if each]
-    one = _BETWEEN.split(text)  # whose numbers may have decimal commas
-    for found in (several, [one]):
-        if all(len(bounds) == _ENDS for bounds in found):
-            return [[_with_unit(begin, end), end] for begin, end in found]
-    demand = "must be two times, as 8:00-12:30, or several as 8:00-10:00; 14:00-16:00"
-    raise columns.refuse(row, at, demand, columns.text(row, at))
-
-
-def _with_unit(begin: str, end: str) -> str:
-    """Return the begin of a window with the unit of its end if it has none, as in 8-12 Uhr."""
-    unit = _UNIT_BEHIND.search(end)
-    if not unit or unit.end() < len(end):
-        return begin
-    if half := _HALF_OF_DAY.fullmatch(unit[0]):
-        same, latest = _spoken(f"{begin}{unit[0]}"), _spoken(end)
-        if not _OF_TWELVE.fullmatch(begin) or same is None or latest is None:
-            return begin
-        return f"{begin}{unit[0]}" if same <= latest or half[1] in "aA" else f"{begin} am"
-    known = unit[0].strip().strip(".").casefold() in (*SECONDS, "uhr", "o'clock")
-    return f"{begin}{unit[0]}" if known and number_in(begin) is not None else begin
-
-
-def _noun(columns: Columns, at: int) -> str:
-    """Return `window` or `shift`, by the field of a column."""
-    return str(columns.fields[at]).partition("_")[0]
-
-
-def _time_of_day(columns: Columns, at: int, text: str) -> float | None:
-    """Return the seconds at a time with a word, or at an hour in a column of hours; else None."""
-    if (spoken := _spoken(text)) is not None:
-        return spoken
-    return _hours(text, columns.hours[at]) if at in columns.hours else None
-
-
-def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> float:
-    """Return a time in seconds: hours and minutes, or a number with a unit or in its heading's."""
-    text = columns.text(row, at) if text is None else text.strip()
-    if time := _TIME.fullmatch(text):
-        date, *parts = time.groups()
-        if date and not any(note.code == "dates" for note in columns.source.notes):
-            columns.source.note("dates", f"Dates, as {date}, were not used: only times of day.")
-        hours, minutes, seconds = (int(each or 0) for each in parts)
-        return _HOUR * hours + _MINUTE * minutes + seconds
-    if (spoken := _time_of_day(columns, at, text)) is not None:
-        return spoken
-    lasting = _LASTING.fullmatch(text)
-    own = SECONDS.get(lasting[2].casefold()) if lasting else None
-    number = number_in(lasting[1].strip() if lasting and own else text)
-    unit = own or seconds_of(columns.names[at])
-    is_doubtful = at in columns.hours and not unit and 0 < (number or 0) < _LEAST_SECONDS
-    if number is None or number < 0 or is_doubtful:
-        raise columns.refuse(row, at, "must be seconds, or a time as 10:30 or 5 min", text)
-    return number * (unit or 1)

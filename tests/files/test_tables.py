@@ -260,7 +260,95 @@ DEPOTS: dict[str, tuple[list[str], Becomes | str]] = {
         stops("1 2", window=[None, WINDOWS[0]], request={"vehicles": [{"id": "vehicle", "start": "1", "end": "1", "shift": [21600, 72000]}]}),
     ),
 }  # fmt: skip
-ALL = {**SIGNS, **PLANES, **DEPOTS}
+DUE = f"id,lat,lon,due\n{DEPOT},\na,60.169,24.952,{{}}\nb,60.165,24.933,{{}}\n"
+FROM = f"id,lat,lon,from,to\n{DEPOT},,\na,60.169,24.952,{{}},{{}}\n"
+WINDOW = f"id,lat,lon,window\n{DEPOT},\na,60.169,24.952,{{}}\n"
+DATES: dict[str, tuple[list[str], Becomes | str]] = {
+    "a day to be due on": (
+        [DUE.format("2026-11-30", "2026-11-30")],
+        stops("depot a b", "'due' has dates without times: 2026-11-30 is the end of that day", due=[None, 86400, 86400]),
+    ),
+    "days to be due on": (
+        [DUE.format("2026-11-30", "2026-12-02")],
+        stops("depot a b", "Times count from 2026-11-30 0:00, the first date: 2026-12-02 0:00 is 48:00", due=[None, 86400, 259200]),
+    ),
+    "midnights of a spreadsheet": (
+        [DUE.format("2026-11-30 00:00:00", "2026-12-01 00:00")],
+        stops("depot a b", "is the end of that day", due=[None, 86400, 172800]),
+    ),
+    "a midnight beside another time": (
+        [DUE.format("2026-11-30 00:00", "2026-11-30 10:00")],
+        stops("depot a b", "Dates, as 2026-11-30, were not used", due=[None, 0, 36000]),
+    ),
+    "German dates": (
+        [DUE.format("30.11.2026 10:00", "1.12.2026 9:30")],
+        stops("depot a b", "2026-12-01 0:00 is 24:00", due=[None, 36000, 120600]),
+    ),
+    "American dates": (
+        [DUE.format("11/30/2026 8:00 AM", "12/1/2026 1:30:00 PM")],
+        stops("depot a b", "Times count from 2026-11-30", due=[None, 28800, 135000]),
+    ),
+    "dates of either order": (
+        [DUE.format("01/02/2026", "03/02/2026")],
+        "column 'due' has dates such as '01/02/2026', which may be 2026-02-01 or 2026-01-02",
+    ),
+    "no date": ([DUE.format("2026-02-30", "2026-02-01")], "must have dates of the calendar, got '2026-02-30'"),
+    "one time zone": (
+        [DUE.format("2026-11-30T10:00:00+02:00", "2026-11-30T11:00:00+02:00")],
+        stops("depot a b", "Times are those of UTC+02:00", due=[None, 36000, 39600]),
+    ),
+    "two time zones": (
+        [DUE.format("2026-11-30T10:00:00Z", "2026-11-30T11:00:00+02:00")],
+        stops("depot a b", "Times are those of UTC", due=[None, 36000, 32400]),
+    ),
+    "a time zone beside none": (
+        [DUE.format("2026-11-30T10:00:00Z", "2026-11-30T11:00:00")],
+        "column 'due' has a time with a time zone, '2026-11-30T10:00:00Z', beside one without",
+    ),
+    "a time zone in one file alone": (
+        [DUE.format("2026-11-30T10:00Z", "2026-11-30T11:00Z"), "vehicle,shift start,shift end\nvan,8:00,16:00\n"],
+        "beside one without, '8:00' in column 'shift start'",
+    ),
+    "after midnight": ([DUE.format("25:00", "26:30")], stops("depot a b", due=[None, 90000, 95400])),
+    "after midnight, as planners write it": ([DUE.format("1:30 am (+1)", "23:00")], stops("depot a b", due=[None, 91800, 82800])),
+    "no minute": ([DUE.format("10:75", "9:00")], "column 'due' must be seconds, or a time as 10:30"),
+    "milliseconds": ([DUE.format("36000000", "39600000")], "not milliseconds or Unix time, got '36000000'"),
+    "Unix time": ([DUE.format("1796032800", "1796036400")], "not milliseconds or Unix time, got '1796032800'"),
+    "a window over midnight": (
+        [FROM.format("2026-11-30 22:00", "2026-12-01 02:00")],
+        stops("depot a", "Times count from 2026-11-30", window=[None, [79200, 93600]]),
+    ),
+    "a window of whole days": (
+        [FROM.format("2026-11-30", "2026-12-01")],
+        stops("depot a", "2026-11-30 is the begin", "2026-12-01 is the end", window=[None, [0, 172800]]),
+    ),
+    "a window with dates in one cell": (
+        [WINDOW.format("2026-11-30 08:00 - 2026-11-30 12:00")],
+        stops("depot a", window=[None, [28800, 43200]]),
+    ),
+    "an interval as programs write it": (
+        [WINDOW.format("2026-11-30T08:00:00Z/2026-11-30T12:00:00Z")],
+        stops("depot a", "UTC", window=[None, [28800, 43200]]),
+    ),
+    "a window with its date once": (
+        [WINDOW.format("30.11.2026 08:00 - 12:00")],
+        stops("depot a", window=[None, [28800, 43200]]),
+    ),
+    "a window is no time with a time zone": ([DUE.format("10:30-11:00", "9:00")], "column 'due' must be seconds"),
+    "a shift and orders of two days": (
+        [DUE.format("2026-11-30 10:00", "2026-12-01 10:00"), "van,shift start,shift end\nv,2026-11-30 8:00,2026-12-01 16:00\n"],
+        stops("depot a b", due=[None, 36000, 122400], request={"vehicles": [{"id": "v", "shift": [28800, 144000], "start": "depot", "end": "depot"}]}),
+    ),
+    "an earliest time alone": (
+        [FROM.format("10:30", "")],
+        stops("depot a", "Windows without an end are open until midnight, as that of row 3", window=[None, [37800, 86400]]),
+    ),
+    "an earliest time without a column of latest ones": (
+        [f"id,lat,lon,Earliest Time\n{DEPOT},\na,60.169,24.952,10:30\n"],
+        stops("depot a", "open until midnight", window=[None, [37800, 86400]]),
+    ),
+}  # fmt: skip
+ALL = {**SIGNS, **PLANES, **DEPOTS, **DATES}
 READ = {name: case for name, case in ALL.items() if isinstance(case[1], Becomes)}
 
 
