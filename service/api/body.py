@@ -7,6 +7,7 @@ from starlette.requests import Request
 
 from service.api.body_budget import BodyAllowance
 from service.errors import Refusal
+from service.requests.byte_order_marks import without_mark
 from service.requests.multipart import Files, split_files, split_parts
 from service.requests.task import TaskKind, TaskSource
 
@@ -30,13 +31,13 @@ async def receive_source(
     content_type = _checked_content_type(request)
     body = await _receive(request, most_bytes, allowance)
     if not content_type.lower().startswith(_MULTIPART):
-        return TaskSource(kind, body)
+        return TaskSource(kind, await _unmarked(body))
     if kind not in _UPLOADS:
         raise Refusal("not-json", came=content_type)
     upload = _UPLOADS[kind]
     # In a thread, beside the event loop: many megabytes take a tenth of a second.
     parts = await asyncio.to_thread(split_parts, content_type, body, ("request", upload))
-    return TaskSource(kind, parts["request"], parts[upload])
+    return TaskSource(kind, await _unmarked(parts["request"]), parts[upload])
 
 
 async def receive_files(request: Request, most_bytes: int, allowance: BodyAllowance) -> Files:
@@ -61,7 +62,14 @@ async def receive_message(request: Request, most_bytes: int, allowance: BodyAllo
     content_type = _checked_content_type(request)
     if content_type.lower().startswith(_MULTIPART):
         raise Refusal("not-json", came=content_type)
-    return await _receive(request, most_bytes, allowance)
+    return await _unmarked(await _receive(request, most_bytes, allowance))
+
+
+async def _unmarked(body: bytes) -> bytes:
+    """Return JSON without a byte order mark; a long one is decoded in a thread."""
+    if len(body) < _LONG_TO_JOIN:
+        return without_mark(body)
+    return await asyncio.to_thread(without_mark, body)
 
 
 def _checked_content_type(request: Request) -> str:

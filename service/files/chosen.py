@@ -10,6 +10,7 @@ from service.errors import Refusal
 from service.errors.printable import printable
 from service.files.reading import LONGEST_NAME, NamedFile, Source, quoted
 from service.files.tables import LeftOut, Table
+from service.requests.byte_order_marks import without_mark
 from service.requests.fields import StrictModel, Text
 
 IGNORED = "ignored"
@@ -35,7 +36,7 @@ def with_chosen(files: Sequence[NamedFile], part: bytes) -> list[NamedFile]:
         Refusal: The part is not a list of columns, or names a file that did not come.
     """
     try:
-        columns = _COLUMNS.validate_json(part)
+        columns = _COLUMNS.validate_json(without_mark(part))
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         place = "/".join(["columns", *map(str, fault["loc"])])

@@ -3,8 +3,12 @@
 import json
 import re
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
+from pydantic_core import from_json
+
+from service.files.planners.others import refuse_others
 from service.files.planners.vroom import is_vroom, read_vroom
 from service.files.reading import Kind, Reading, Source, quoted
 from service.files.stop_tables import reading_of
@@ -15,8 +19,11 @@ _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordin
 _OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives", "cost_layers"}
 _ROWS = {"coordinates", "grid", "cost_layer"}
 _WINDOWS = ("window", "windows", "time_window", "time_windows")
-_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
+_FIRST, _SECOND = r"\\u[dD][89abAB][0-9a-fA-F]{2}", r"\\u[dD][c-fC-F][0-9a-fA-F]{2}"
+_HALF = re.compile(rf"{_FIRST}(?!{_SECOND})|(?<!{_FIRST}){_SECOND}")
 _LONGEST_CRS = 200  # characters of its name
+_NOT_A_NUMBER = re.compile(r"(?<=[\s,:\[])(NaN|-?Infinity)(?=[\s,\]}])")
+_LARGE = re.compile(r"(?<=[\s,:\[])-?\d[\d.]{0,400}[eE]\+?\d{3,}(?=[\s,\]}])")
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
 
 
@@ -43,6 +50,7 @@ def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
         raise source.refusal("must be a request, an object, or its coordinates, a list")
     if value.get("type") in ("FeatureCollection", "Feature"):
         return _read_geojson(source, value)
+    refuse_others(source, value)
     if is_vroom(value):
         return read_vroom(source, value)
     if value.get("type") == "Topology":
@@ -70,18 +78,25 @@ def read_object(source: Source) -> dict[str, Any]:
 
 
 def _parsed(source: Source, text: str) -> Any:
+    """Return a text of JSON as a value, under the rules of bodies of requests."""
     try:
-        # Some programs write Infinity where there is no way. It is not JSON; requests use null for
-        # it.
-        value = json.loads(text, parse_constant=lambda _: None)
-        if _SURROGATE.search(text):  # half of a pair cannot be written as UTF-8 again
-            json.dumps(value, ensure_ascii=False).encode()
-    except UnicodeEncodeError as error:
-        half = ascii(error.object[error.start])[1:-1]
-        raise source.refusal(f"must be text, got {half}, which is half a character") from None
+        value = from_json(text, allow_inf_nan=False)
     except (ValueError, RecursionError) as error:
-        raise source.refusal(f"must be JSON: {str(error)[:200]}") from None
+        _check_characters(source, text)
+        came = _NOT_A_NUMBER.search(text)
+        hint = f". {came[1]} is not JSON: write null where there is no way" if came else ""
+        raise source.refusal(f"must be JSON: {str(error)[:200]}{hint}") from None
+    for found in _LARGE.finditer(text):
+        if not isfinite(float(found[0])):
+            raise source.refusal("must have numbers that are finite", found[0])
     return value
+
+
+def _check_characters(source: Source, text: str) -> None:
+    """Raise UnreadableFile if a text that is no JSON has half of a character of UTF-16."""
+    halves = _HALF.search(text)
+    if halves:
+        raise source.refusal(f"must be text, got {halves[0].lower()}, which is half a character")
 
 
 def _kind_of(request: dict[str, Any]) -> Kind | None:

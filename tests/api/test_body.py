@@ -48,6 +48,26 @@ def test_the_type_may_name_its_charset(client: httpx.Client) -> None:
     assert client.post("/front", content=body, headers=headers).status_code == 200
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-32"])
+def test_a_byte_order_mark_is_taken_as_in_files(client: httpx.Client, encoding: str) -> None:
+    body = json.dumps({"coordinates": CITIES, "time_limit": 0}).encode(encoding)
+    assert client.post("/front", content=body, headers=JSON).status_code == 200
+    stops = [{"id": "a", "location": [24.9, 60.1]}, {"id": "b", "location": [24.8, 60.2]}]
+    parts = {"file": ("a.json", json.dumps(stops).encode(encoding))}
+    chosen = {"columns": (None, "[]".encode(encoding))}
+    assert client.post("/files", files={**parts, **chosen}).status_code == 200
+    matrices = io.BytesIO()
+    np.save(matrices, np.ones((2, 3, 3)))
+    request = {"request": (None, '{"time_limit": 0}'.encode(encoding))}
+    upload = {"matrices": ("m.npy", matrices.getvalue())}
+    assert client.post("/front", files={**request, **upload}).status_code == 200
+
+
+def test_a_body_that_is_not_what_its_mark_says_is_malformed(client: httpx.Client) -> None:
+    answer = client.post("/front", content=b"\xff\xfe[\x00\x00", headers=JSON)
+    problem(answer, 400, "malformed-json")
+
+
 def test_a_body_that_says_it_is_too_long_is_413(client: httpx.Client) -> None:
     body = b" " * (LIMITS.body_bytes + 1)
     document = problem(client.post("/front", content=body, headers=JSON), 413, "body-too-long")
