@@ -113,11 +113,12 @@ def file_router(
     async def read_files(request: Request) -> Response:
         """Read files of stops, fleets or maps, and return the request that they describe.
 
-        A file is CSV with any separator, XLSX, GeoJSON, JSON, TSPLIB, CVRPLIB, in the format of
-        Solomon, of Li and Lim or of VROOM, or a map: a picture, with or without its map.yaml, or in
-        the format of MovingAI. Two to four tables or TSPLIB files are one objective each; a table
-        of stops and one of vehicles are a fleet. The answer also lists what was assumed, and what
-        the unused columns of a table of stops tell drivers: `details`, which are stored nowhere.
+        A file is CSV with any separator, XLSX, GeoJSON, GPX, KML, JSON, TSPLIB, CVRPLIB, in the
+        format of Solomon, of Li and Lim or of VROOM, or a map: a picture, with or without its
+        map.yaml, or in the format of MovingAI. Two to four tables or TSPLIB files are one objective
+        each; a table of stops and one of vehicles are a fleet. The answer also lists what was
+        assumed, and what the unused columns of a table of stops tell drivers: `details`, which are
+        stored nowhere.
         Nothing is planned: the request in the answer is for `POST /front`, `/fleet` or `/coverage`,
         as its `kind` says.
         """

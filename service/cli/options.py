@@ -17,9 +17,9 @@ ANY = "any"  # --start at any city; in a request this is null
 File = Annotated[
     Path,
     Argument(
-        help="JSON: a request, or its coordinates. GeoJSON: stops, as points. CSV or XLSX: stops"
-        " with columns lon and lat, or four to eight numbers for each city: x and y in the plane of"
-        " each objective. With more files: the first objective. - is standard input."
+        help="JSON: a request, or its coordinates. GeoJSON, GPX or KML: stops, as points. CSV or"
+        " XLSX: stops with columns lon and lat, or four to eight numbers for each city: x and y in"
+        " the plane of each objective. With more files: the first objective. - is standard input."
     ),
 ]
 MoreFiles = Annotated[

@@ -1,1 +1,1 @@
-"""Read files that people have (CSV, XLSX, GeoJSON, TSPLIB, VROOM, ROS) as requests."""
+"""Read files that people have (CSV, XLSX, GeoJSON, GPX, KML, TSPLIB, VROOM, ROS) as requests."""

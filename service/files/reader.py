@@ -9,6 +9,7 @@ from service.files.benchmarks.keywords import check_costs, is_fleet
 from service.files.columns import share_signs
 from service.files.json_files import looks_like_json, read_json
 from service.files.octile import is_octile
+from service.files.other_files import named_binary
 from service.files.reading import (
     Bounds,
     FileTooLarge,
@@ -28,17 +29,11 @@ from service.files.tables import Table, table_of_csv, table_of_rows
 from service.files.texts import text_of
 from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
 from service.files.vehicle_tables import has_vehicles, read_fleet
+from service.files.waypoints import is_xml, table_of_xml
 from service.files.work import LINE_OF_TEXT, UNITS, Work
 from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
 _UNITS_OF_STOP = 16  # of work, where there may be more stops than usual
-_BINARY = {
-    b"%PDF": "a PDF",
-    b"\xd0\xcf\x11\xe0": "an old spreadsheet (.xls): save it as .xlsx or CSV",
-    b"\x1f\x8b": "a gzip file: unpack it first",
-    b"PAR1": "a Parquet file: save it as CSV",
-    b"\x93NUMPY": "a NumPy file: send it as the part `matrices` of POST /front",
-}
 
 
 def read_files(
@@ -169,9 +164,10 @@ def _content(source: Source) -> Table | TsplibFile | str:
     """Return a table, a file of TSPLIB, or the text of JSON or of customers with windows."""
     if source.rows is not None:
         return table_of_rows(source, source.rows)
-    for begin, named in _BINARY.items():
-        if source.file.data.startswith(begin):
-            raise source.refusal(f"must be a file of stops, got {named}")
+    if (named := named_binary(source.file.data)) is not None:
+        raise source.refusal(f"must be a file of stops, got {named}")
+    if is_xml(source.file.data):
+        return table_of_xml(source)
     text = text_of(source)
     if looks_like_json(text):
         return text

@@ -135,7 +135,7 @@ class PlanFile(Arguments):
 
     text: str = Field(
         max_length=_MOST_TEXT,
-        description="CSV, GeoJSON, JSON, TSPLIB, CVRPLIB, Solomon, Li and Lim or VROOM",
+        description="CSV, GeoJSON, GPX, KML, JSON, TSPLIB, CVRPLIB, Solomon, Li and Lim or VROOM",
     )
     name: str = Field(default="stops.csv", max_length=100, description="such as orders.csv")
     columns: list[ChosenColumn] | None = Field(

@@ -88,6 +88,7 @@ EARTH = {
     "qgis.geojson": ids("depot shop"),
     "geojson-io.geojson": ids("0 2", notes="ids"),
     "records.json": ids("a b"),
+    "handheld.gpx": ids("depot shop", notes="left-out"),
 }
 OTHERS = {
     "thousands.csv": rows([1234.5, 2, 3, 4], notes="separator thousands"),
@@ -137,6 +138,7 @@ OTHERS = {
     "plane-with-demand.csv": fleet("depot a b", "objectives", vehicles=van(capacity=[3])),
     "first-stop-has-demand.csv": fleet("a b", vehicles=[{"id": "vehicle", "capacity": [5]}]),
     "ogr2ogr-3d.GEOJSON": fleet("7 8", vehicles=[{"id": "vehicle", "capacity": [7]}]),
+    "map-of-mine.kml": fleet("depot shop_&_bar", "left-out", vehicles=van(capacity=[3])),
     "nested-records.json": fleet("a b", vehicles=[{"id": "vehicle", "capacity": [3]}]),
     "orders.xlsx": fleet("depot #1001", "sheet", vehicles=van(shift=[28800, 64800], capacity=[2])),
     "vroom.json": fleet(
