@@ -83,14 +83,21 @@ def _angular_costs(costs: Array) -> Array:
 
     They are the geometric mean of the cost and the sine of half the angle at the depot. The angle
     is that of a triangle whose sides are three costs. Tours of small costs sweep round the depot.
+
+    Costs count as shares of the largest. A stop is as far from the depot as the mean of the ways
+    there and back; without a way it is farthest. Forbidden legs stay forbidden.
     """
-    away = (costs[0] + costs[:, 0]) / 2
+    allowed = np.isfinite(costs)
+    shares = np.where(allowed, costs, 0.0)
+    shares /= shares.max() or 1.0
+    ways = allowed[0].astype(int) + allowed[:, 0]
+    away = np.where(ways > 0, (shares[0] + shares[:, 0]) / np.maximum(ways, 1), 1.0)
     sides = away[:, np.newaxis] * away
     difference = away[:, np.newaxis] - away
-    with np.errstate(divide="ignore", invalid="ignore"):
-        squares = (costs**2 - difference**2) / (4 * sides)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        squares = (shares**2 - difference**2) / (4 * sides)
     sines = np.sqrt(np.where(sides > 0, squares, 1.0).clip(0.0, 1.0))
-    return np.sqrt(costs * sines)
+    return np.where(allowed, np.sqrt(shares * sines), inf)
 
 
 class Cutter:
