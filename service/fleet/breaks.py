@@ -4,7 +4,10 @@ from collections.abc import Sequence
 from math import inf
 from typing import NamedTuple
 
-from service.fleet.vehicles import Break, Span
+from service.fleet.rounding import excess, is_over
+from service.fleet.vehicles import ALWAYS, Break, Span
+
+_ALWAYS = (ALWAYS,)
 
 
 class Stay(NamedTuple):
@@ -24,11 +27,34 @@ class Placed(NamedTuple):
 
 
 class _State(NamedTuple):
-    """The earliest time of a state, and how it was reached."""
+    """A way to be at a place of the route, with some of the breaks taken.
+
+    Attributes:
+        time: The earliest time.
+        lateness: The sum of the times by which visits begin after they are due.
+        work: How long the legs, visits and breaks since the departure take.
+        latest: The latest departure that makes no visit or break so far too late, or later than
+            due.
+        departure: The earliest departure.
+        placed: The breaks taken on the way.
+    """
 
     time: float
+    lateness: float
+    work: float
+    latest: float
     departure: float
     placed: tuple[Placed, ...]
+
+    def dominates(self, other: "_State") -> bool:
+        """Return whether no way to go on from here ends better after the other state."""
+        time = self.time
+        return (
+            time <= other.time
+            and not excess(self.lateness, other.lateness, time)
+            and not excess(self.work, other.work, time)
+            and not excess(other.latest, self.latest, time)
+        )
 
 
 def place_breaks(
@@ -40,12 +66,13 @@ def place_breaks(
 ) -> tuple[float, tuple[Placed, ...]] | None:
     """Return a departure and where breaks are taken so that a route ends as early as possible.
 
-    None if the breaks fit nowhere.
+    Among the ways to end then, it is one of the least lateness; among these, one that allows to
+    leave the latest. None if the breaks fit nowhere.
 
     A vehicle takes its breaks in order, between two visits, and none while it drives. A break that
     can be taken before the departure, or after the end, is not on the way. This is dynamic
-    programming over the places of the route and the breaks taken: to be at a place earlier is never
-    worse. O(m k) for m places and k breaks.
+    programming over the places of the route and the breaks taken, where states are kept that no
+    other one dominates.
 
     Args:
         stays: What is asked for at each of the m places.
@@ -55,52 +82,87 @@ def place_breaks(
         breaks: The k breaks, by ascending time.
     """
     begin, last = span
-    states: list[_State | None] = [None] * (len(breaks) + 1)
-    if begin <= leaves_by:
-        states[0] = _State(begin, begin, ())
-    for number, (opens, _, length) in enumerate(breaks, start=1):
+    states: list[list[_State]] = [_departing(begin, leaves_by)]
+    for opens, _, length in breaks:
         begin = max(begin, opens + length)
-        if begin <= leaves_by:
-            states[number] = _State(begin, begin, ())
+        states.append(_departing(begin, leaves_by))
     for place, (stay, leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
         _rest(states, breaks, place, after=False)
-        states = [_served(state, stay) for state in states]
+        states = [each and _served(each, stay) for each in states]
         _rest(states, breaks, place, after=True)
-        states = [each and each._replace(time=each.time + leg) for each in states]
+        if leg:
+            states = [[_driven(state, leg) for state in each] for each in states]
+    closes = [*(each[1] for each in breaks), last]  # of the next break, which is after the end
     ended = [
         state
-        for number, state in enumerate(states)
-        if state is not None
-        and state.time <= last
-        and (number == len(breaks) or state.time <= breaks[number][1])
+        for next_closes, each in zip(closes, states, strict=True)
+        for state in each
+        if not is_over(state.time, min(last, next_closes))
     ]
     if not ended:
         return None
-    _, departure, placed = min(ended, key=lambda state: state.time)
-    return departure, placed
+    end = min(state.time for state in ended)
+    first = [state for state in ended if not is_over(state.time, end)]
+    lateness = min(state.lateness for state in first)
+    least = [state for state in first if not is_over(state.lateness, lateness, end)]
+    best = max(least, key=lambda state: min(state.latest, end - state.work))
+    return best.departure, best.placed
 
 
-def _rest(states: list[_State | None], breaks: Sequence[Break], place: int, *, after: bool) -> None:
+def _departing(begin: float, leaves_by: float) -> list[_State]:
+    """Return the state of a vehicle that may leave from a time on, if it may leave then."""
+    if is_over(begin, leaves_by):
+        return []
+    return [_State(begin, 0.0, 0.0, leaves_by, begin, ())]
+
+
+def _driven(state: _State, leg: float) -> _State:
+    time, lateness, work, latest, departure, placed = state
+    return _State(time + leg, lateness, work + leg, latest, departure, placed)
+
+
+def _rest(states: list[list[_State]], breaks: Sequence[Break], place: int, *, after: bool) -> None:
     """Let the vehicle take one break after another at a place."""
     for number, (opens, closes, length) in enumerate(breaks):
-        state = states[number]
-        if state is None or state.time > closes:
-            continue
-        ends = max(state.time, opens) + length
-        known = states[number + 1]
-        if known is None or ends < known.time:
-            placed = (*state.placed, Placed(number, place, after))
-            states[number + 1] = _State(ends, state.departure, placed)
+        for time, lateness, work, latest, departure, placed in states[number]:
+            if time > closes and is_over(time, closes):
+                continue
+            ends, until = max(time, opens) + length, closes - work
+            latest = until if until < latest else latest
+            taken = (*placed, Placed(number, place, after))
+            rested = _State(ends, lateness, work + length, latest, departure, taken)
+            _add(rested, states[number + 1])
 
 
-def _served(state: _State | None, stay: Stay) -> _State | None:
-    """Return the state after a visit; None if all of its windows are over."""
-    if state is None:
-        return None
-    window = next((each for each in stay.windows if each[1] >= state.time), None)
-    if window is None:
-        return None
-    return state._replace(time=max(state.time, window[0]) + stay.service)
+def _served(states: list[_State], stay: Stay) -> list[_State]:
+    """Return the states after a visit in any window that is not over."""
+    windows, service, due = stay
+    if not service and due == inf and windows == _ALWAYS:
+        return states
+    found: list[_State] = []
+    for time, lateness, work, latest, departure, placed in states:
+        for opens, closes in windows:
+            if time > closes and is_over(time, closes):
+                continue
+            begin = opens if opens > time else time
+            late, until = lateness, closes
+            if due < inf:
+                late += excess(begin, due)
+                until = min(closes, max(due, begin))
+            until -= work
+            least = until if until < latest else latest
+            served = _State(begin + service, late, work + service, least, departure, placed)
+            _add(served, found)
+    return found
+
+
+def _add(state: _State, states: list[_State]) -> None:
+    """Add a state to others, unless one of them dominates it; drop those that it dominates."""
+    for each in states:
+        if each.dominates(state):
+            return
+    states[:] = [each for each in states if not state.dominates(each)]
+    states.append(state)
 
 
 def with_breaks(

@@ -49,6 +49,45 @@ def is_enumerable(rules: Rules) -> bool:
     return stops <= MOST_STOPS and vehicles <= _MOST_VEHICLES
 
 
+def some_plan(fleet: Fleet, ended: Callable[[], bool]) -> Plan | None:
+    """Return a plan of a fleet of few stops that keeps every rule; None if there is none.
+
+    Also None if `ended`, which is called every few milliseconds, returns True before the end. Only
+    the first route found through the same stops is tried, so this is faster than `exact_plans`.
+    """
+    rules = fleet.rules
+    reached: dict[Stops, Plan] = {frozenset(): Plan(())}
+    try:
+        for index, vehicle in enumerate(rules.vehicles):
+            routes = _first_routes(fleet, index, ended)
+            for _ in range(min(vehicle.count, len(rules.clients))):
+                _reach_more(reached, routes)
+            for plan in reached.values():
+                if not violations(fleet, plan):
+                    return plan
+    except _Ended:
+        pass
+    return None
+
+
+def _reach_more(reached: dict[Stops, Plan], routes: Mapping[Stops, Route]) -> None:
+    """Add a plan for each set of stops that one more route reaches first."""
+    for visited, plan in list(reached.items()):
+        for added, route in routes.items():
+            if not visited & added:
+                reached.setdefault(visited | added, Plan((*plan.routes, route)))
+
+
+def _first_routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> dict[Stops, Route]:
+    """Return a route of a vehicle through each set of stops that it can visit."""
+    found: dict[Stops, Route] = {}
+    for stops, route in _in_order(fleet.rules, vehicle, ended):
+        visited = frozenset(stops)
+        if visited not in found and not any(route_violations(fleet, route)):
+            found[visited] = route
+    return found
+
+
 class _Ended(Exception):
     """The time is over."""
 
@@ -77,16 +116,24 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
     rules = fleet.rules
     fixed = rules.vehicles[vehicle].fixed
     found: dict[Stops, list[_Partial]] = defaultdict(list)
-    for most in range(1, len(rules.clients) + 1):
-        orders = permutations(rules.clients, most)
-        for route in (route for stops in orders for route in _trips(rules, vehicle, stops)):
-            stops = tuple(stop for stop in route.stops if stop not in rules.depots)
-            if ended():
-                raise _Ended
-            if _ships_in_order(rules, stops) and not any(route_violations(fleet, route)):
-                first, *others = _values(fleet, route)
-                found[frozenset(stops)].append(_Partial((first + fixed, *others), (route,)))
+    for stops, route in _in_order(rules, vehicle, ended):
+        if not any(route_violations(fleet, route)):
+            first, *others = _values(fleet, route)
+            found[frozenset(stops)].append(_Partial((first + fixed, *others), (route,)))
     return _undominated(found)
+
+
+def _in_order(
+    rules: Rules, vehicle: int, ended: Callable[[], bool]
+) -> Iterator[tuple[tuple[int, ...], Route]]:
+    """Yield all routes of a vehicle and the stops that each visits, shorter ones first."""
+    for most in range(1, len(rules.clients) + 1):
+        for stops in permutations(rules.clients, most):
+            if _ships_in_order(rules, stops):
+                for route in _trips(rules, vehicle, stops):
+                    if ended():
+                        raise _Ended
+                    yield stops, route
 
 
 def _values(fleet: Fleet, route: Route) -> Iterator[float]:

@@ -13,11 +13,9 @@ import numpy as np
 
 from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route
+from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import Schedule, legs, schedule, trips_of
-
-_TOLERANCE = 1e-9  # of the length of a route: sums of floats depend on their order
-_ROUNDING = 2.0**-52  # relative, for each time of a route
 
 
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
@@ -183,7 +181,7 @@ def load_distance(fleet: Fleet, route: Route) -> float:
 
 def overtime(rules: Rules, route: Route, times: Schedule) -> float:
     """Return how much later than its shift a route ends."""
-    return max(0.0, times.end - rules.vehicles[route.vehicle].shift[1])
+    return excess(times.end, rules.vehicles[route.vehicle].shift[1])
 
 
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
@@ -238,19 +236,20 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:
         return
     yield from _service_broken(rules, route)
     yield from _trips_broken(rules, route)
+    reach = 0.0
     if rules.clock is not None:
         times = schedule(fleet, route)
         if times.late == inf:
             yield Broken("break", "has no time for a break")
             return
-        rounding = 2 * _ROUNDING * len(times.arrivals) * times.end
-        if times.late > _TOLERANCE * times.duration + rounding:
+        if times.late:
             over = times.end - vehicle.way[1] >= times.late
             yield Broken("shift" if over else "window", f"is late by {times.late:g}")
+        reach = times.end
     if vehicle.longest != inf:
         assert rules.limited is not None
         length = cost_length(fleet, route, rules.limited)
-        if length * (1 - _TOLERANCE) > vehicle.longest:
+        if is_over(length, vehicle.longest, reach):
             detail = f"has a route of {length:g}, longer than {vehicle.longest:g}"
             yield Broken("longest", detail)
 

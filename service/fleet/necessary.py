@@ -13,6 +13,7 @@ from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import route_violations
 from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.plans import Route
+from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
 from service.fleet.vehicles import ALWAYS, VehicleType
 
@@ -197,7 +198,7 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
     for each in rules.shipments:
         pickup, delivery = rules.visits[each.pickup], rules.visits[each.delivery]
         opens, closes = pickup.windows[0][0], delivery.windows[0][1]
-        if pickup.prize is None and closes < opens + pickup.service:
+        if pickup.prize is None and is_over(opens + pickup.service, closes):
             sentence = (
                 "the window of {cities}, where a shipment is delivered, closes before it can be"
                 " picked up at {others}"

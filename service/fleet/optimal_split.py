@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.loads import loads_of
 from service.fleet.plans import Plan, Route
+from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
 from service.jit import allocating, compiled, inlined
 
 Indices = NDArray[np.int64]
-_ROUNDING = 1e-10  # relative, of sums of costs; less than what the check of plans allows
+_is_over = inlined(is_over)
 
 
 class FleetArrays(NamedTuple):
@@ -129,7 +130,7 @@ def _write_lengths(
     """Write the lengths of a vehicle's routes from a place on, shape (most, 2)."""
     departs, returns = fleet.shift[vehicle]
     start, end = fleet.ends[vehicle]
-    longest = fleet.longest[vehicle] * (1 + _ROUNDING)
+    longest = fleet.longest[vehicle]
     latest = min(returns, fleet.leaves_by[vehicle])
     begun = _Begun(0.0, 0.0, 0.0, departs, latest, start, True)
     for count in range(len(lengths)):
@@ -137,10 +138,10 @@ def _write_lengths(
         opens, closes = fleet.window[stop]
         begun = _released(begun, fleet.release[stop])
         begun = _extended(fleet, begun, stop, opens, closes, fleet.service[stop])
-        if not begun.in_time or _limited(fleet, begun) > longest:
+        if not begun.in_time or _too_long(fleet, begun, longest):
             return
         route = _extended(fleet, begun, end, 0.0, returns, 0.0)
-        if route.in_time and _limited(fleet, route) <= longest:
+        if route.in_time and not _too_long(fleet, route, longest):
             lengths[count, 0] = route.time if fleet.clock == 0 else route.first
             lengths[count, 1] = route.time if fleet.clock == 1 else route.second
 
@@ -149,7 +150,7 @@ def _write_lengths(
 def _released(begun: _Begun, release: float) -> _Begun:
     """Return a route that departs no earlier than what it brings to a stop is released."""
     early = max(begun.early, release)
-    in_time = begun.in_time and early <= begun.late * (1 + _ROUNDING)
+    in_time = begun.in_time and not _is_over(early, begun.late, early + begun.time)
     return _Begun(begun.first, begun.second, begun.time, early, begun.late, begun.stop, in_time)
 
 
@@ -179,16 +180,17 @@ def _extended(
         max(begun.early, opens - until) - waiting,
         min(begun.late, closes - until),
         stop,
-        begun.in_time and arrival <= closes + _ROUNDING * arrival,
+        begun.in_time and not _is_over(arrival, closes),
     )
 
 
 @inlined
-def _limited(fleet: FleetArrays, begun: _Begun) -> float:
-    """Return the length that `longest` limits."""
+def _too_long(fleet: FleetArrays, begun: _Begun, longest: float) -> bool:
+    """Return whether a route exceeds a limit on its time, or on its length without a clock."""
+    length = begun.first if fleet.limited == 0 else begun.second
     if fleet.limited == fleet.clock:
-        return begun.time
-    return begun.first if fleet.limited == 0 else begun.second
+        length = begun.time
+    return _is_over(length, longest, begun.early + begun.time)
 
 
 class Stock(NamedTuple):

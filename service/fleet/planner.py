@@ -1,9 +1,10 @@
 """plan_fleet(...): from a fleet to its front of plans."""
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
+from itertools import chain
 from math import inf
 
 import numpy as np
@@ -13,10 +14,11 @@ from service.construction.first_tours import SHARE, Constructor
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import KeptPlans, SolutionArchive
 from service.fleet.conflicts import no_plan
-from service.fleet.enumeration import exact_plans, is_enumerable
+from service.fleet.enumeration import MOST_STOPS, exact_plans, is_enumerable, some_plan
 from service.fleet.evaluation import points_of, violations
 from service.fleet.first_plans import Cutter, network_sequences, plain_plans
-from service.fleet.fleet import Array, Fleet, default_reference_point
+from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions, front_of, reference_point_of
 from service.fleet.goal import FREE, Goal
 from service.fleet.left_out import with_all_stops
 from service.fleet.measure_sweep import MeasureSweep
@@ -30,45 +32,20 @@ from service.fleet.solver import Solver
 from service.fleet.sweep import Searches, Sweep
 from service.fleet.translation import Translation
 from service.front import Progress, ReportOf, Termination
-from service.pareto import nondominated
 from service.search.best_subset import best_subset, selection_seconds
 from service.search.hypervolume import hypervolume
 
 _REPORT_EVERY = 0.1  # seconds
-_NO_LIMIT = 2**62
 _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
+_TRYING = 0.9  # share of the time limit, until when routes are tried if a search found no plan
+_LEAST_TRYING = 0.1  # seconds for that
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
 _BRIEF = 0.25  # seconds for them without a time limit, and to find what is in the way after it
 # With fewer plans, and fewer stops looked at (all in each iteration), a search goes on after its
 # deadline, for some 50 ms up to 200 stops: a process that is held up else finds no plan.
 _LEAST_PLANS, _LEAST_WORK = 10, 2000
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FleetOptions:
-    """The options of plan_fleet(...).
-
-    Args:
-        time_limit: The most seconds for everything, or up to 0.4 s more where hardly a plan is
-            found by then. At 0 there is no search: plans are made by cutting the tours of the
-            network into routes.
-        size: The greatest number of plans of the front.
-        seed: The seed of all random choices.
-        reference_point: The reference point of the hypervolume under m objectives, shape (m,); by
-            default lengths that no sensible plan reaches.
-        iterations: The most iterations of PyVRP. With an infinite time limit, the same seed and
-            iterations give the same front.
-        driven: A plan to start from, which may leave out stops.
-    """
-
-    time_limit: float
-    size: int = 100
-    seed: int = 0
-    reference_point: Array | None = None
-    iterations: int = _NO_LIMIT
-    driven: Plan | None = None
 
 
 def plan_fleet(
@@ -110,7 +87,7 @@ def plan_fleet(
                 ends = began + (options.time_limit or 2 * _BRIEF)
                 sentence = "no plan keeps every rule: all were tried"
                 raise no_plan(fleet, sentence, lambda: stop() or time.monotonic() > ends)
-            return _front(fleet, options, all_plans, "converged", began)
+            return front_of(fleet, options, all_plans, "converged", began)
     if options.time_limit == 0:
         return _without_search(fleet, options, constructor, stop, began)
     return _searched(fleet, options, constructor, stop, report, began)
@@ -132,7 +109,7 @@ def _without_search(
         if not kept:
             raise
         plans = []
-    return _front(fleet, options, [*kept, *plans], "converged", began, constructed=len(plans))
+    return front_of(fleet, options, [*kept, *plans], "converged", began, constructed=len(plans))
 
 
 def _completed(fleet: Fleet, plan: Plan) -> Plan | None:
@@ -158,14 +135,28 @@ def _searched(
     elif constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
+    plans: Iterable[Plan] = ()
     if not search.archive and terminated != "cancelled" and fleet.rules.has_bounds:
         search = _Search(fleet, options, stop, report, began, loose=True)
+        if plan := _tried(fleet, options, stop, began):
+            plans = [plan]
+            search.begin_with(plan)
         terminated = search.run()
     if not search.archive and terminated != "cancelled":
-        for plan in plain_plans(fleet, stop):
+        for plan in chain(plans, plain_plans(fleet, stop)):
             if not violations(fleet, plan):
-                return _front(fleet, options, [plan], terminated, began)
+                return front_of(fleet, options, [plan], terminated, began)
     return search.front(options.size, terminated)
+
+
+def _tried(
+    fleet: Fleet, options: FleetOptions, stop: Callable[[], bool], began: float
+) -> Plan | None:
+    """Return a plan of a fleet of few stops, found by trying its routes; None if none is found."""
+    if len(fleet.rules.clients) > MOST_STOPS:
+        return None
+    until = max(began + _TRYING * options.time_limit, time.monotonic() + _LEAST_TRYING)
+    return some_plan(fleet, lambda: stop() or time.monotonic() > until)
 
 
 def _constructed(
@@ -208,7 +199,7 @@ class _Search:
         self._began = self._reported = began
         self._deadline = self._began + options.time_limit
         units = Units.of(fleet)
-        self._reference_point = units.points(_reference_point(fleet, options))
+        self._reference_point = units.points(reference_point_of(fleet, options))
         self._translation = Translation(units.fleet, loose)
         give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
@@ -291,7 +282,7 @@ class _Search:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
             until = time.monotonic() + _BRIEF
             raise no_plan(self._fleet, sentence, lambda: self._stop() or time.monotonic() > until)
-        front = _front(
+        front = front_of(
             self._fleet, self._options, plans, terminated, self._began, self._constructed
         )
         return self._with_kept(replace(front, found=max(front.found, len(archive))))
@@ -362,35 +353,3 @@ def _sweep_of(rules: Rules) -> type[Searches]:
     if more or second in ("imbalance", "load_distance"):
         return MixedSweep
     return Sweep if second in ("sum", "max", "unassigned") else MeasureSweep
-
-
-def _front(
-    fleet: Fleet,
-    options: FleetOptions,
-    plans: Sequence[Plan],
-    terminated: Termination | None,
-    began: float,
-    constructed: int = 0,
-) -> FleetFront:
-    """Return the front of plans that break no rule."""
-    points = points_of(fleet, plans)
-    reference_point = _reference_point(fleet, options)
-    front = nondominated(points)
-    kept = front[best_subset(points[front], options.size, reference_point)]
-    return FleetFront(
-        fleet=fleet,
-        plans=[plans[index] for index in kept],
-        points=points[kept],
-        found=len(front),
-        constructed=constructed,
-        scale=fleet.scale,
-        reference_point=reference_point,
-        hypervolume=hypervolume(points[kept], reference_point),
-        terminated=terminated,
-        timings={"improvement": 1000 * (time.monotonic() - began)},
-    )
-
-
-def _reference_point(fleet: Fleet, options: FleetOptions) -> Array:
-    given = options.reference_point
-    return default_reference_point(fleet) if given is None else given

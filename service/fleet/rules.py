@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
+from service.fleet.rounding import is_over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 
 Array = NDArray[np.float64]
@@ -214,12 +215,12 @@ def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
 
 
 def _check_breaks(rules: Rules, vehicle: VehicleType, part: str) -> None:
-    free = -inf
+    free = 0.0
     for index, (opens, closes, length) in enumerate(vehicle.breaks):
         where = f"{part}/breaks/{index}/window"
         if rules.clock is None:
             raise invalid(where, _UNTIMED)
-        if closes < opens or opens < free:
+        if closes < opens or is_over(free, opens):
             demand = "must begin after the break before it has ended, and not end before it begins"
             raise invalid(where, f"{demand}, got {opens:g} to {closes:g}")
         free = closes + length

@@ -2,15 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from itertools import pairwise
 from math import inf
 
 from service.fleet.breaks import Stay, place_breaks, with_breaks
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route, path_of
+from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Rules
-from service.fleet.vehicles import ALWAYS, VehicleType
+from service.fleet.vehicles import ALWAYS, Span, VehicleType
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,8 @@ class Schedule:
         arrivals: The arrival at each stop of `path_of`; at the first stop, the departure. The
             vehicle may wait at a stop until its window opens.
         end: The end of the route.
-        late: The largest delay at a window, or at the end of the shift with its overtime.
+        late: The largest delay at a window, or at the end of the shift with its overtime; 0 if it
+            is a rounding.
         waiting: The time that the vehicle waits.
         slack: How much later it may leave without being late, if it is never late.
         lateness: The sum of the times by which visits begin after they are due.
@@ -47,14 +49,16 @@ class Schedule:
         return self.end - self.arrivals[0]
 
 
+_REMEMBERED = 64  # routes: the rules and the lengths of a plan ask for the times of each
 _FREE = Stay((ALWAYS,), 0.0, inf)
 
 
+@lru_cache(_REMEMBERED)
 def schedule(fleet: Fleet, route: Route) -> Schedule:
     """Return the times of a route whose vehicle is done as early as possible.
 
-    It leaves as late as neither delays its end nor makes a visit later than due, and no later than
-    it must.
+    Of the ways to be done then, it takes one of the least lateness. It leaves as late as neither
+    delays its end nor makes a visit later than due, and no later than it must.
 
     Raises:
         ValueError: The fleet has no clock.
@@ -103,20 +107,26 @@ def _timed(
     """Return the times of a route that may begin at a time, as in `schedule`."""
     drive = partial(_drive, stays, driven, last=vehicle.way[1])
     best = drive([0] * len(stays), begin)
-    if best.late or begin > vehicle.leaves_by:
+    if is_over(begin, vehicle.leaves_by):
         return replace(best, late=max(best.late, begin - vehicle.leaves_by))
+    if best.late:
+        return best
     # A later window at the stop that keeps the vehicle from leaving later may not delay the end.
     while best.slack <= best.waiting and best.tightest >= 0:
         allowed = list(best.windows)
         allowed[best.tightest] += 1
         later = drive(allowed, begin)
-        if later.late or later.end > best.end or later.lateness > best.lateness:
+        if (
+            later.late
+            or is_over(later.end, best.end)
+            or is_over(later.lateness, best.lateness, best.end)
+        ):
             break
         best = later
     # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
     # delay the end of the route.
     delay = min(best.waiting, best.slack, vehicle.leaves_by - begin)
-    return drive(best.windows, begin + delay) if delay else best
+    return drive(best.windows, begin + delay, reach=best.end) if delay > 0 else best
 
 
 def _drive(
@@ -125,19 +135,21 @@ def _drive(
     allowed: Sequence[int],
     departure: float,
     last: float,
+    reach: float = 0.0,
 ) -> Schedule:
     """Return the times of a route with legs of these times, from a departure on.
 
     At each stop the vehicle takes the first window that is not over, of those from a number in
-    `allowed` on; else the last one.
+    `allowed` on; else the last one. `reach` is the largest time from which the departure was
+    computed.
     """
     time, waiting, slack, late, lateness, tightest = departure, 0.0, inf, 0.0, 0.0, -1
     arrivals, used = [], []
     # Every solution of the search comes through here: branches cost less than calls of max().
     for place, ((windows, service, due), leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
         number = allowed[place]
-        while windows[number][1] < time and number + 1 < len(windows):
-            number += 1
+        if windows[number][1] < time:
+            number = _open_window(windows, number, time, reach)
         opens, closes = windows[number]
         arrivals.append(time)
         used.append(number)
@@ -147,19 +159,26 @@ def _drive(
             begin = opens
         until = closes
         if due < inf:
-            lateness += max(0.0, begin - due)
+            lateness += excess(begin, due, reach)
             until = min(closes, max(due, begin))
         if until - begin + waiting < slack:
             slack = until - begin + waiting
             tightest = place if until == closes and number + 1 < len(windows) else -1
-        if begin - closes > late:
-            late = begin - closes
+        if begin > closes:
+            late = max(late, excess(begin, closes, reach))
         end = begin + service
         time = end + leg
     if last - end + waiting < slack:
         slack, tightest = last - end + waiting, -1
-    late = max(late, end - last)
+    late = max(late, excess(end, last, reach))
     return Schedule(tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest)
+
+
+def _open_window(windows: Sequence[Span], number: int, time: float, reach: float) -> int:
+    """Return the first window that is not over, from a number on; else the last one."""
+    while number + 1 < len(windows) and is_over(time, windows[number][1], reach):
+        number += 1
+    return number
 
 
 def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[Stay]:

@@ -78,7 +78,8 @@ def plan_front(
     `driven` is a plan to start from.
     """
     # Imported here so that a service or a worker starts without PyVRP.
-    from service.fleet.planner import FleetOptions, plan_fleet
+    from service.fleet.fronts import FleetOptions
+    from service.fleet.planner import plan_fleet
 
     check_reference_point(task.options, partial(least_lengths, fleet), "plan")
     options = FleetOptions(

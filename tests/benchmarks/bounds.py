@@ -24,7 +24,8 @@ import numpy as np
 from service.errors import Refusal
 from service.fleet.evaluation import violations
 from service.fleet.fleet import Fleet
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route, kept_share
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import ALWAYS, VehicleType, Visit

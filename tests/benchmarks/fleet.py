@@ -29,8 +29,9 @@ import service
 from service.actor import OnnxActor, load_actors
 from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions
 from service.fleet.goal import Goal
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import Plan
 from service.fleet.rules import Rules
 from service.fleet.scales import UNBOUNDED

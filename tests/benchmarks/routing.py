@@ -25,7 +25,8 @@ from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile
 from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import Plan
 from service.pareto import nondominated
 from service.requests.fleet import parse_fleet_request

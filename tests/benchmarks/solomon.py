@@ -20,7 +20,8 @@ import vrplib
 
 from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import Plan
 from service.fleet.rules import Rules
 from service.fleet.translation import Translation

@@ -20,7 +20,8 @@ from service.examples.deliveries import BLACK_SPOTS
 from service.examples.helsinki import CROWDS, metres_beside, people_along
 from service.examples.streets import KINDS
 from service.examples.warehouse import DOCKS
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.planner import plan_fleet
 from service.front import PlanOptions
 from service.instance import Instance
 from service.kinds.robots import robot_fleet

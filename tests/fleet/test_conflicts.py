@@ -9,7 +9,8 @@ import pytest
 
 from service.errors import NoTour
 from service.fleet.fleet import Fleet
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.planner import plan_fleet
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType, Visit
 

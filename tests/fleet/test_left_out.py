@@ -8,8 +8,9 @@ import pytest
 
 from service.fleet.evaluation import plan_lengths, unassigned, violations
 from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions
 from service.fleet.left_out import explain
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType, Visit

@@ -10,8 +10,9 @@ from service.errors import NoTour, Refusal
 from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, route_lengths, violations
 from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions
 from service.fleet.necessary import check_necessary
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route
 from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit

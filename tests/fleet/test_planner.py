@@ -17,10 +17,11 @@ from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions
 from service.fleet.mixed_sweep import MixedSweep
 from service.fleet.moves import Mover
 from service.fleet.necessary import least_lengths
-from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, kept_share
 from service.fleet.rules import Over, Rules
 from service.fleet.solver import Solver
@@ -426,7 +427,8 @@ def test_a_search_ends_where_vans_in_limited_time_load_again_what_is_released() 
     """PyVRP's local search did not, so another process waits for it."""
     code = (
         "from service.errors import Refusal\n"
-        "from service.fleet.planner import FleetOptions, plan_fleet\n"
+        "from service.fleet.fronts import FleetOptions\n"
+        "from service.fleet.planner import plan_fleet\n"
         "from tests.fleet.test_planner import crowded\n"
         "for seed in range(6):\n"
         "    try: plan_fleet(crowded(seed), FleetOptions(time_limit=1.5, seed=seed))\n"

@@ -1,0 +1,79 @@
+"""Try all plans of a small fleet, to judge refusals and fronts."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from itertools import combinations, permutations, product
+
+from tests.fuzz.fleets_judged.judge import Judge, Judged
+from tests.fuzz.fleets_judged.timeline import Json
+
+Point = tuple[float, ...]
+Routes = dict[frozenset[int], list[Judged]]
+
+
+def exact_points(judge: Judge) -> list[Point]:
+    """Return the points of all plans that no other plan dominates, in order."""
+    routes = [_routes(judge, vehicle) for vehicle in judge.vehicles]
+    found: set[Point] = set()
+    for plan in _plans(judge, routes, tuple(judge.clients), [], Counter()):
+        found.add(judge.lengths(plan))
+    points = sorted(found)
+    return [p for p in points if not any(_dominates(q, p) for q in points)]
+
+
+def _dominates(a: Point, b: Point) -> bool:
+    return a != b and all(x <= y for x, y in zip(a, b, strict=True))
+
+
+def _routes(judge: Judge, vehicle: Json) -> Routes:
+    """Return the routes of a vehicle by the stops that they visit; of some that are alike, one."""
+    found: Routes = defaultdict(list)
+    fair = any(each.get("measure") == "imbalance" for each in judge.objectives)
+    reloads = [(), *((stop,) for stop in vehicle.get("reload", ()))]
+    for count in range(1, len(judge.clients) + 1):
+        for stops in permutations(judge.clients, count):
+            for before in product(reloads, repeat=count):
+                pairs = zip(before, stops, strict=True)
+                route = tuple(each for reload, stop in pairs for each in (*reload, stop))
+                judged = judge.route(vehicle, route)
+                if not isinstance(judged, str):
+                    _add(judged, found[frozenset(stops)], fair)
+    return found
+
+
+def _add(judged: Judged, routes: list[Judged], fair: bool) -> None:
+    """Add a route unless another of the same stops is as short; if `fair`, also as long."""
+
+    def key(route: Judged) -> Point:
+        return (*route.lengths, *((-route.compared,) if fair else ()))
+
+    added = key(judged)
+    if not any(all(x <= y for x, y in zip(key(r), added, strict=True)) for r in routes):
+        routes.append(judged)
+
+
+def _plans(
+    judge: Judge,
+    routes: list[Routes],
+    left: tuple[int, ...],
+    chosen: list[Judged],
+    used: Counter[int],
+) -> Iterator[list[Judged]]:
+    """Yield all plans that visit the stops left, with the routes chosen so far."""
+    if not left:
+        yield chosen
+        return
+    first, *others = left
+    if judge.prize(first) is not None:
+        partner = {**dict(judge.shipments), **judge.pickup_of}.get(first)
+        rest = tuple(stop for stop in others if stop != partner)
+        yield from _plans(judge, routes, rest, chosen, used)
+    for count in range(len(others) + 1):
+        for more in combinations(others, count):
+            stops = frozenset((first, *more))
+            rest = tuple(stop for stop in others if stop not in stops)
+            for index, each in enumerate(routes):
+                if used[index] < judge.vehicles[index].get("count", 1):
+                    for route in each.get(stops, ()):
+                        more_used = used + Counter((index,))
+                        yield from _plans(judge, routes, rest, [*chosen, route], more_used)

@@ -1,0 +1,250 @@
+"""Judge plans by the words of the guide: which rules they break, and what their measures are."""
+
+from collections import Counter
+from collections.abc import Iterator
+from itertools import accumulate, pairwise
+from math import inf, isclose
+from typing import Any, NamedTuple
+
+from tests.fuzz.fleets_judged.timeline import (
+    Json,
+    Timeline,
+    best_timelines,
+    is_later,
+    span_of,
+    trips_of,
+)
+
+CLOSE = 1e-7
+
+
+class Judged(NamedTuple):
+    """A route, and what it costs. Its type of vehicles has one shift at most."""
+
+    vehicle: Json
+    stops: tuple[int, ...]
+    best: list[Timeline]  # equally good
+    lengths: tuple[float, ...]
+    compared: float  # the length by which routes are compared
+
+
+class Judge:
+    """Knows a request, and judges routes and plans of it.
+
+    Args:
+        request: The request. Its references to stops are numbers, its ids these as text, and its
+            objectives have matrices.
+    """
+
+    def __init__(self, request: Json) -> None:
+        self.request = request
+        self.stops = request["stops"]
+        self.objectives = request["objectives"]
+        by_name = {each["name"]: each for each in self.objectives}
+        clock = request.get("clock")
+        self.clock = by_name.get(clock) if isinstance(clock, str) else clock
+        self.vehicles = [
+            {**vehicle, **({"shift": shift} if shift else {}), "number": number}
+            for vehicle in request["vehicles"]
+            for number, shift in enumerate(vehicle.get("shifts") or [vehicle.get("shift")])
+        ]
+        self.depots = {
+            place
+            for each in request["vehicles"]
+            for place in (each.get("start"), each.get("end"), *each.get("reload", ()))
+        } - {None}
+        self.clients = [i for i in range(len(self.stops)) if i not in self.depots]
+        self.shipments = [(each["pickup"], each["delivery"]) for each in request["shipments"]]
+        self.pickup_of = {delivery: pickup for pickup, delivery in self.shipments}
+
+    def prize(self, stop: int) -> float | None:
+        """Return the prize of a stop; None if it must be visited."""
+        prize: float | None = self.stops[self.pickup_of.get(stop, stop)].get("prize")
+        return prize
+
+    def route(self, vehicle: Json, stops: tuple[int, ...]) -> Judged | str:
+        """Return the lengths of a route, or a rule that it breaks."""
+        ends = ([] if each is None else [each] for each in (vehicle.get("start"), None))
+        path = [*next(ends), *stops, *([] if vehicle.get("end") is None else [vehicle["end"]])]
+        matrices = [each["matrix"] for each in self.objectives if "matrix" in each]
+        if isinstance(self.request.get("clock"), dict):
+            matrices.append(self.clock["matrix"])
+        if any(matrix[a][b] is None for matrix in matrices for a, b in pairwise(path)):
+            return "way"
+        if broken := next(self._broken(vehicle, list(stops)), None):
+            return broken
+        times, best = None, []
+        if self.clock is not None:
+            best = best_timelines(self.request, self.clock["matrix"], vehicle, list(stops))
+            if not best:
+                return "times"
+            times = best[0]
+        compared = self._compared(times, path)
+        reach = 0.0 if times is None else 1e-9 * times.end
+        if is_later(compared - reach, vehicle.get("longest", inf)):
+            return "longest"
+        lengths = [self._length(each, vehicle, stops, path, times) for each in self.objectives]
+        return Judged(vehicle, stops, best, tuple(lengths), compared)
+
+    def _broken(self, vehicle: Json, stops: list[int]) -> Iterator[str]:
+        """Yield the rules about skills, numbers of stops, trips and loads that a route breaks."""
+        trips = trips_of(vehicle, stops)
+        visited = [stop for trip in trips for stop in trip]
+        if any(not self._may_visit(vehicle, self.stops[stop]) for stop in visited):
+            yield "skills or vehicle"
+        if len(visited) > vehicle.get("max_stops", inf):
+            yield "max_stops"
+        if len(trips) > vehicle.get("max_trips", inf) or not all(trips[1:]):
+            yield "max_trips"
+        if any(
+            max(self._loads(vehicle, trips, number, dimension)) > capacity
+            for dimension, capacity in enumerate(vehicle.get("capacity", ()))
+            for number in range(len(trips))
+        ):
+            yield "capacity"
+        for pickup, delivery in self.shipments:
+            # Both or neither are visited, in this order.
+            if [stop for stop in visited if stop in (pickup, delivery)] not in (
+                [],
+                [pickup, delivery],
+            ):
+                yield "shipment"
+
+    def _may_visit(self, vehicle: Json, visit: Json) -> bool:
+        able = set(visit.get("skills", ())) <= set(vehicle.get("skills", ()))
+        return able and visit.get("vehicle") in (None, vehicle["id"])
+
+    def _loads(
+        self, vehicle: Json, trips: list[list[int]], number: int, dimension: int
+    ) -> list[int]:
+        """Return the load on a trip: at its start, and after each visit."""
+        deliveries = dict(self.shipments)
+        loads = []
+        for stop in trips[number]:
+            demand = self.stops[self.pickup_of.get(stop, stop)].get("demand") or [0] * 9
+            loads.append(demand[dimension] if stop in deliveries else -demand[dimension])
+        shipped = {*deliveries, *self.pickup_of}
+        pairs = zip(trips[number], loads, strict=True)
+        first = -sum(load for stop, load in pairs if stop not in shipped)
+        if number == 0 and vehicle.get("initial_load"):
+            first += vehicle["initial_load"][dimension]
+        return list(accumulate(loads, initial=first))
+
+    def _compared(self, times: Timeline | None, path: list[int]) -> float:
+        """Return the length by which routes are compared."""
+        if times is not None:
+            return times.end - times.departure
+        longest = [each for each in self.objectives if each.get("over") == "max"]
+        matrix = (longest or self.objectives)[0]["matrix"]
+        return float(sum(matrix[a][b] for a, b in pairwise(path)))
+
+    def _is_clock(self, objective: Json) -> bool:
+        if self.clock is None or isinstance(self.request["clock"], dict):
+            return False
+        if sum("matrix" in each for each in self.objectives) > 2:
+            return bool(objective["matrix"] == self.clock["matrix"])
+        return objective is self.clock
+
+    def _length(
+        self,
+        objective: Json,
+        vehicle: Json,
+        stops: tuple[int, ...],
+        path: list[int],
+        times: Timeline | None,
+    ) -> float:
+        if "matrix" in objective:
+            if times is not None and self._is_clock(objective):
+                return times.end - times.departure
+            return float(sum(objective["matrix"][a][b] for a, b in pairwise(path)))
+        match objective["measure"]:
+            case "vehicles":
+                return 1.0
+            case "overtime" if times is not None:
+                ends = span_of({**vehicle, "max_overtime": 0.0})[1]
+                return times.end - ends if is_later(times.end, ends) else 0.0
+            case "lateness" if times is not None:
+                return times.lateness
+            case "load_distance":
+                return self._load_distance(vehicle, stops, path)
+            case "imbalance":
+                return self._compared(times, path)
+        return 0.0
+
+    def _load_distance(self, vehicle: Json, stops: tuple[int, ...], path: list[int]) -> float:
+        trips = trips_of(vehicle, list(stops))
+        loads = [x for i in range(len(trips)) for x in self._loads(vehicle, trips, i, 0)]
+        if vehicle.get("start") is None:
+            del loads[0]
+        if vehicle.get("end") is None:
+            del loads[-1]
+        matrix = self.objectives[0]["matrix"]
+        return float(sum(matrix[a][b] * x for (a, b), x in zip(pairwise(path), loads, strict=True)))
+
+    def lengths(self, routes: list[Judged]) -> tuple[float, ...]:
+        """Return the lengths of a plan of these routes."""
+        visited = {stop for each in routes for stop in each.stops}
+        lost = sum(self.stops[s].get("prize", 0.0) for s in self.clients if s not in visited)
+        found = []
+        for index, objective in enumerate(self.objectives):
+            column = [each.lengths[index] for each in routes] or [0.0]
+            over = objective.get("measure", objective.get("over", "sum"))
+            joined = {"max": max(column), "imbalance": max(column) - min(column)}
+            found.append(lost if over == "unassigned" else joined.get(over, sum(column)))
+        found[0] += sum(each.vehicle.get("fixed", 0.0) for each in routes)
+        if all(each.get("measure") != "unassigned" for each in self.objectives):
+            found[0] += lost
+        return tuple(found)
+
+    def faults(self, plan: Json) -> Iterator[str]:
+        """Yield what is wrong with a plan of an answer."""
+        routes, used = [], Counter[tuple[str, int]]()
+        visits = Counter[int]()
+        for route in plan["routes"]:
+            number = route.get("shift", 0)
+            vehicle = next(
+                v for v in self.vehicles if (v["id"], v["number"]) == (route["vehicle"], number)
+            )
+            used[vehicle["id"], number] += 1
+            path = [int(stop) for stop in route["stops"]]
+            begin = vehicle.get("start") is not None
+            stops = tuple(path[begin : len(path) - (vehicle.get("end") is not None)])
+            visits.update(stop for stop in stops if stop not in self.depots)
+            judged = self.route(vehicle, stops)
+            if isinstance(judged, str):
+                yield f"{stops} breaks {judged}: {route}"
+                return
+            routes.append(judged)
+            yield from self._misreported(route, judged)
+        for vehicle in self.vehicles:
+            if used[vehicle["id"], vehicle["number"]] > vehicle.get("count", 1):
+                yield "too many vehicles"
+        for stop in self.clients:
+            if visits[stop] != 1 and (visits[stop] or self.prize(stop) is None):
+                yield f"stop {stop} is visited {visits[stop]} times"
+        if not _close(plan["lengths"], self.lengths(routes), self._reach(routes)):
+            yield f"lengths {plan['lengths']} are {self.lengths(routes)}"
+
+    def _reach(self, routes: list[Judged]) -> float:
+        return max([each.best[0].end for each in routes if each.best], default=1.0)
+
+    def _misreported(self, route: Json, judged: Judged) -> Iterator[str]:
+        """Yield where the times that are told of a route are not the best."""
+        if not judged.best:
+            return
+        best, departure = judged.best[0], route["arrivals"][0]
+        if not _close([departure], [best.departure], best.end):
+            yield f"leaves at {departure}, and could at {best.departure}: {route}"
+        elif not any(
+            _close(route["arrivals"], each.arrivals, each.end)
+            and _close(route.get("breaks", ()), each.breaks, each.end)
+            for each in judged.best
+        ):
+            yield f"arrivals {route['arrivals']} are {best.arrivals}"
+
+
+def _close(numbers: Any, others: Any, reach: float) -> bool:
+    return len(numbers) == len(others) and all(
+        isclose(a, b, rel_tol=CLOSE, abs_tol=CLOSE * max(1e-6, reach))
+        for a, b in zip(numbers, others, strict=True)
+    )

@@ -1,0 +1,236 @@
+"""Draw small fleets with all rules of the form, and some with bounds where routes arrive."""
+
+import copy
+import random
+from collections.abc import Sequence
+from itertools import accumulate, pairwise
+from typing import Any, NamedTuple
+
+from tests.fuzz.fleets_judged.timeline import Json
+
+_MEASURES = ("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance")
+
+
+def random_fleet(rng: random.Random) -> Json:
+    """Return a request of up to five stops to visit and two types of vehicles."""
+    clients = rng.randint(1, 5)
+    depots = rng.choice((1, 1, 2))
+    n = clients + depots
+    matrices = [_matrix(rng, n), _matrix(rng, n)]
+    timed = rng.random() < 0.85
+    request: Json = {
+        "stops": [{"id": str(i)} for i in range(n)],
+        "shipments": [],
+        "objectives": _objectives(rng, matrices, timed),
+    }
+    if timed:
+        _add_clock(rng, request, matrices)
+    dimensions = rng.choice((0, 1, 1, 2))
+    measures = {each.get("measure") for each in request["objectives"]}
+    if "load_distance" in measures:
+        dimensions = 1
+    for stop in request["stops"][depots:]:
+        stop |= _visit(rng, timed, dimensions, measures)
+    maximum = any(each.get("over") == "max" for each in request["objectives"])
+    request["vehicles"] = [
+        _vehicle(rng, str(i), _Form(n, depots, timed, dimensions, maximum), measures)
+        for i in range(rng.choice((1, 2, 2)))
+    ]
+    if clients > 1 and rng.random() < 0.25:
+        _add_shipment(request, n)
+    return request
+
+
+def _matrix(rng: random.Random, n: int) -> list[list[float | None]]:
+    digits = rng.choice((0, 2, None))
+    costs: list[list[float | None]] = [
+        [0.0 if i == j else _number(rng, 1.0, 30.0, digits) for j in range(n)] for i in range(n)
+    ]
+    if rng.random() < 0.15:
+        i, j = rng.sample(range(n), 2)
+        costs[i][j] = None
+    return costs
+
+
+def _number(rng: random.Random, least: float, most: float, digits: int | None = None) -> float:
+    number = rng.uniform(least, most)
+    return number if digits is None else round(number, digits)
+
+
+def _objectives(rng: random.Random, matrices: Sequence[Any], timed: bool) -> list[Json]:
+    """Return two or three objectives, named a, b and c."""
+    a, b = matrices
+    allowed = [m for m in _MEASURES if timed or m not in ("overtime", "lateness")]
+    kind = rng.random()
+    if kind < 0.5:
+        second: Json = {"measure": rng.choice(allowed)}
+    else:
+        second = {"matrix": rng.choice((a, b)), "over": rng.choice(("sum", "max", "max"))}
+    objectives = [{"name": "a", "matrix": a}, {"name": "b", **second}]
+    if rng.random() < 0.3:
+        others = [m for m in allowed if m != second.get("measure")]
+        third: Json = {"measure": rng.choice(others)}
+        if rng.random() < 0.4:
+            used = second.get("matrix", b)
+            over = "sum" if second.get("over") == "max" else rng.choice(("sum", "max"))
+            third = {"matrix": used if used is not a else rng.choice(matrices), "over": over}
+        objectives.append({"name": "c", **third})
+    return objectives
+
+
+def _add_clock(rng: random.Random, request: Json, matrices: Sequence[Any]) -> None:
+    named = [each["name"] for each in request["objectives"] if "matrix" in each]
+    request["clock"] = rng.choice(named)
+    if len(named) == 1 and rng.random() < 0.5:
+        request["clock"] = {"matrix": matrices[1]}
+
+
+def _visit(rng: random.Random, timed: bool, dimensions: int, measures: set[Any]) -> Json:
+    shares = {
+        "prize": 1.0 if "unassigned" in measures else 0.3,
+        "skills": 0.15,
+        "vehicle": 0.1,
+        "due": 0.9 if "lateness" in measures else 0.2,
+        "service": 0.4,
+        "release": 0.15,
+    }
+    found: Json = {
+        "prize": _number(rng, 1, 60, 1),
+        "skills": ["cold"],
+        "vehicle": "0",
+    }
+    if timed:
+        found["due"] = _number(rng, 5, 90, 2)
+        found["service"] = _number(rng, 0, 8, 2)
+        found["release"] = _number(rng, 0, 40, 2)
+    visit = {name: value for name, value in found.items() if rng.random() < shares[name]}
+    if dimensions:
+        visit["demand"] = [rng.randint(0, 4) for _ in range(dimensions)]
+    kind = rng.random()
+    times = sorted(_number(rng, 0, 120, 1) for _ in range(4))
+    if timed and kind < 0.35:
+        visit["window"] = [times[0], times[2]]
+    elif timed and kind < 0.55 and times[1] < times[2]:
+        visit["windows"] = [times[:2], times[2:]]
+    return visit
+
+
+class _Form(NamedTuple):
+    """What the vehicles of a fleet may have."""
+
+    n: int
+    depots: int
+    timed: bool
+    dimensions: int
+    maximum: bool
+
+
+def _vehicle(rng: random.Random, name: str, form: _Form, measures: set[Any]) -> Json:
+    end = rng.choice((0, 0, None, form.depots - 1))
+    vehicle: Json = {"id": name, "start": rng.choice((0, 0, 0, None)), "end": end}
+    vehicle["count"] = rng.choice((1, 2, 5, 5))
+    found: Json = {"skills": ["cold"], "fixed": _number(rng, 0, 20, 1)}
+    shares = {"skills": 0.7, "fixed": 0.3, "initial_load": 0.15, "longest": 0.2}
+    if form.dimensions:
+        vehicle["capacity"] = [rng.randint(4, 12) for _ in range(form.dimensions)]
+        found["initial_load"] = [rng.randint(0, 4) for _ in range(form.dimensions)]
+    if form.timed or form.maximum:
+        found["longest"] = _number(rng, 30, 120, 2)
+    vehicle |= {name: value for name, value in found.items() if rng.random() < shares[name]}
+    trips = rng.random()
+    if form.dimensions and form.n < 6 and trips < 0.3:
+        vehicle["reload"] = [rng.randrange(form.depots)]
+        vehicle |= rng.choice(({}, {"max_trips": 2}))
+    elif trips < 0.45:
+        vehicle["max_stops"] = rng.randint(1, 3)
+    if form.timed:
+        _add_times(rng, vehicle, measures)
+    return vehicle
+
+
+def _add_times(rng: random.Random, vehicle: Json, measures: set[Any]) -> None:
+    overtime = "overtime" in measures
+    if overtime or rng.random() < 0.6:
+        begin = _number(rng, 0, 20, 1)
+        vehicle["shift"] = [begin, begin + _number(rng, 30, 200, 1)]
+        if overtime or rng.random() < 0.2:
+            vehicle["max_overtime"] = _number(rng, 1, 40, 1)
+        elif rng.random() < 0.15:
+            end = vehicle["shift"][1]
+            vehicle["shifts"] = [vehicle.pop("shift"), [end + 10, end + 150]]
+    if rng.random() < 0.35:
+        opens, wide, length = _number(rng, 5, 60, 2), _number(rng, 0, 15, 2), rng.randint(2, 30)
+        rests = [{"window": [opens, opens + wide], "length": length}]
+        if rng.random() < 0.3:
+            later = opens + wide + length + _number(rng, 0.1, 20, 2)
+            rests.append({"window": [later, later + wide], "length": 5})
+        vehicle["breaks"] = rests
+
+
+def _add_shipment(request: Json, n: int) -> None:
+    """Make a shipment of the last two stops."""
+    for vehicle in request["vehicles"]:
+        for name in ("reload", "max_trips", "max_stops"):
+            vehicle.pop(name, None)
+    delivery = request["stops"][n - 1]
+    for stop in request["stops"][n - 2 :]:
+        stop.pop("release", None)
+        if several := stop.pop("windows", None):
+            stop["window"] = several[0]
+    for name in ("demand", "prize"):
+        delivery.pop(name, None)
+    request["shipments"] = [{"pickup": n - 2, "delivery": n - 1}]
+
+
+def with_bounds_at_arrivals(rng: random.Random, request: Json, plan: Json) -> Json:
+    """Return a request whose windows, breaks and limits end exactly where a plan arrives or ends.
+
+    The arrivals are added up in another order, so that they differ by roundings.
+    """
+    changed: Json = copy.deepcopy(request)
+    for route in plan["routes"]:
+        arrivals = route["arrivals"]
+        first = arrivals[0]
+        again = list(accumulate(b - a for a, b in pairwise(arrivals)))
+        times = [first, *(first + each for each in again)]
+        for stop, arrival, other in zip(route["stops"], arrivals, times, strict=True):
+            _bound(rng, changed, changed["stops"][int(stop)], rng.choice((arrival, other)))
+        vehicle = next(v for v in changed["vehicles"] if v["id"] == route["vehicle"])
+        _bound_vehicle(rng, vehicle, times)
+    return changed
+
+
+def _bound(rng: random.Random, request: Json, stop: Json, time: float) -> None:
+    """Let a window of a stop end at a time, or begin there; or the stop is due then."""
+    vehicles = request["vehicles"]
+    places = [[each.get("start"), each.get("end"), *each.get("reload", ())] for each in vehicles]
+    if int(stop["id"]) in (place for each in places for place in each):
+        return
+    shipped = any(int(stop["id"]) in each.values() for each in request["shipments"])
+    kind = rng.random()
+    if kind < 0.6:
+        for name in ("window", "windows"):
+            stop.pop(name, None)
+        first = [max(0.0, time - rng.choice((0.0, 1.5, 17.13))), time]
+        if kind < 0.3 and not shipped:
+            later = time + rng.choice((0.5, 60.0))
+            stop["windows"] = [first, [later, later + rng.choice((1.0, 60.0))]]
+        elif kind < 0.5:
+            stop["window"] = first
+        else:
+            stop["window"] = [time, time + rng.choice((0.0, 10.0))]
+    elif kind < 0.8:
+        stop["due"] = time
+
+
+def _bound_vehicle(rng: random.Random, vehicle: Json, times: list[float]) -> None:
+    """Let the shift, the longest route or a break end at times of a route."""
+    if rng.random() < 0.4 and "shifts" not in vehicle:
+        begin = max(0.0, times[0] - rng.choice((0.0, 0.0, 5.0)))
+        vehicle["shift"] = [begin, max(begin, times[-1])]
+    if rng.random() < 0.2 and times[-1] > times[0]:
+        vehicle["longest"] = times[-1] - times[0]
+    if rng.random() < 0.4:
+        time = rng.choice(times)
+        length = rng.choice((2.0, 7.7, 30.0))
+        vehicle["breaks"] = [{"window": [max(0.0, time - 10), time], "length": length}]
