@@ -33,6 +33,7 @@ MANY = 1_200  # cities from which on a round is too long for a rest that is most
 VAST = 7_000  # cities from which on a round of descents alone is first; at 5,000 it gains nothing
 TOURNAMENT_SIZE = 8  # points drawn, to choose one
 STEPS = 10  # of the iterated local search at each point
+LAST = 2.0**-300  # times the value of a point, which comes after all others
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
 
 
@@ -134,9 +135,16 @@ class SearchState(NamedTuple):
 
 
 @inlined
-def front_span(archive: Archive, k: int, reach: int) -> tuple[float, float]:
-    """Return width and height of the front from `reach` points before a point to `reach` after."""
+def front_span(archive: Archive, common: Array, k: int, reach: int) -> tuple[float, float]:
+    """Return width and height of the front from `reach` points before a point to `reach` after.
+
+    The span ends before lengths above the common ones: the rest of the front is not near there.
+    """
     before, after = max(k - reach, 0), min(k + reach, archive.counts[0] - 1)
+    while after > k and archive.points[after, 0] > common[0]:
+        after -= 1
+    while before < k and archive.points[before, 1] > common[1]:
+        before += 1
     return (
         archive.points[after, 0] - archive.points[before, 0],
         archive.points[before, 1] - archive.points[after, 1],
@@ -144,26 +152,29 @@ def front_span(archive: Archive, k: int, reach: int) -> tuple[float, float]:
 
 
 @compiled
-def choose_point(archive: Archive, random: NDArray[np.int64]) -> int:
+def choose_point(archive: Archive, common: Array, random: NDArray[np.int64]) -> int:
     """Choose by tournament a point beside which there is much hypervolume to gain.
 
     Of a few points drawn at random, that is the one whose neighbours span the largest box, divided
-    by one more than the number of times that a search has started from it.
+    by one more than the number of times that a search has started from it. Those with a length
+    above the common ones come last.
     """
     chosen, largest = 0, -1.0
     for _ in range(TOURNAMENT_SIZE):
         k = random_below(random, archive.counts[0])
-        width, height = front_span(archive, k, 1)
+        width, height = front_span(archive, common, k, 1)
         value = width * height / (1 + archive.tries[archive.slots[k]])
+        if archive.points[k, 0] > common[0] or archive.points[k, 1] > common[1]:
+            value *= LAST
         if value > largest:
             chosen, largest = k, value
     return chosen
 
 
 @compiled
-def scalarization_at(state: SearchState, k: int) -> Scalarization:
+def scalarization_at(state: SearchState, common: Array, k: int) -> Scalarization:
     """Return the weighted sum, of those in the state, that is most nearly tangent at a point."""
-    width, height = front_span(state.archive, k, SLOPE_REACH)
+    width, height = front_span(state.archive, common, k, SLOPE_REACH)
     w0 = height / (width + height) if width + height > 0 else 0.5
     weights, candidates, candidate_costs = state.weighted_candidates
     k = 0
@@ -174,13 +185,20 @@ def scalarization_at(state: SearchState, k: int) -> Scalarization:
 
 
 @compiled
-def fill_gaps(state: SearchState, rounds: int) -> None:
-    """Search from `rounds` points of the front, one after another, each chosen anew."""
+def fill_gaps(state: SearchState, common: Array, rounds: int) -> None:
+    """Search from `rounds` points of the front, one after another, each chosen anew.
+
+    Args:
+        state: The state of the search.
+        common: The greatest length under each objective, shape (2,), of tours without an outlying
+            cost that could be avoided.
+        rounds: The number of points.
+    """
     archive, working = state.archive, state.working
     for _ in range(rounds):
-        k = choose_point(archive, state.random)
+        k = choose_point(archive, common, state.random)
         slot = archive.slots[k]
         archive.tries[slot] += 1
-        scalarization = scalarization_at(state, k)
+        scalarization = scalarization_at(state, common, k)
         load(working, archive.tours[slot], archive.points[k, 0], archive.points[k, 1])
         iterated_local_search(working, scalarization, archive, state.random, STEPS, NO_END, True)

@@ -89,6 +89,7 @@ class Search:
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
+        self.common = scaled_reference(instance, instance.reference_point)
         costs = make_costs(instance)
         self.n = len(costs.cities)
         self.large = self.n >= LARGE
@@ -218,7 +219,7 @@ class Search:
     def _fill_gaps(self) -> Iterator[int]:
         """Run about n iterations of Pareto local search."""
         for _ in range(max(1, self.n // self.block)):
-            fill_gaps(self.state, self.block // STEPS)
+            fill_gaps(self.state, self.common, self.block // STEPS)
             yield self.block
 
     def _compete(self) -> Iterator[int]:

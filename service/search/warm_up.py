@@ -48,7 +48,7 @@ def two_opt() -> None:
     search = _search(_instance(coordinates=True))
     # This compiles iteration too: by two-opt, descent and iteration are one compiled function.
     search.local_search.descend(search.descents.scalarization(0), 0)
-    fill_gaps(search.state, 0)
+    fill_gaps(search.state, search.common, 0)
 
 
 def beside_two_opt() -> None:

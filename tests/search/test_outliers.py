@@ -229,3 +229,19 @@ def test_enumeration_stops_in_time_and_keeps_what_it_found() -> None:
     found = improve(instance, no_tours(9), stop=lambda: next(calls) > 3)
     assert found.terminated == "cancelled"
     assert len(found.points) > 0
+
+
+def test_legs_that_cost_ten_thousand_times_as_much_hide_few_tours_without_them() -> None:
+    """Under one objective: then tours with such a leg are on the front, far from all others."""
+    missed = 0
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        costs = rng.integers(10, 1000, (2, 13, 13)).astype(float)
+        big = rng.random((13, 13)) < 0.15
+        fronts = []
+        for cost in (1e7, np.inf):
+            costs[0][big] = cost
+            found = improve(Instance(matrices=costs), no_tours(13))
+            fronts.append(set(map(tuple, found.points.tolist())))
+        missed += len(fronts[1] - fronts[0])
+    assert missed <= 2
