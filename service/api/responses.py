@@ -121,6 +121,16 @@ class ObjectiveName(BaseModel):
     unit: str | None
 
 
+class RequestNote(BaseModel):
+    """A note on a request that was planned: something in it is likely to be a mistake."""
+
+    code: str = Field(description="tells notes apart: place, swapped, far, outlier or large-costs")
+    text: str
+    pointer: str | SkipJsonSchema[None] = Field(
+        default=None, description="JSON pointer to the part of the request that it is about"
+    )
+
+
 class FrontAnswer(BaseModel):
     """A front of tours, by ascending first length."""
 
@@ -155,6 +165,9 @@ class FrontAnswer(BaseModel):
     )
     stops: list[NamedStop] | SkipJsonSchema[None] = Field(
         default=None, description="as the request has them"
+    )
+    notes: list[RequestNote] | SkipJsonSchema[None] = Field(
+        default=None, description="what is likely to be a mistake in the request, if anything is"
     )
 
 

@@ -16,6 +16,7 @@ from service.cli.backends import Backend
 from service.cli.data import print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import Ids
+from service.cli.notes import print_request_notes
 from service.cli.options import OutputFormat, Ways, ways_of
 from service.cli.output import (
     ROBOTS,
@@ -71,6 +72,7 @@ def run_front(
             _draw(front, plan, output.plot, noun)
         if path_folder is not None:
             write_paths(front, path_folder)
+    print_request_notes(front.notes)
     _print_line(front_summary(front, noun))
     if line := uncovered_summary(front):
         _print_line(line)
@@ -102,6 +104,7 @@ def run_tour(
         print_data(tour_as_json(tour))
     else:
         print_csv([stops_of(tour.tour, ids or ids_of(front))], delimiter=" ")
+    print_request_notes(front.notes)
     _print_line(tour_summary(front, tour))
 
 

@@ -10,9 +10,9 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from paretour import read_ros_map
-from typer import echo
 
 from service.cli.errors import UsageError
+from service.cli.notes import print_file_notes
 from service.files.json_files import read_object as object_in
 from service.files.reader import read_files, read_table
 from service.files.reading import (
@@ -82,8 +82,7 @@ def read_request(
     if is_map and contents[0].is_picture:
         return FileRequest({}, None, "coverage", contents[0].data)
     reading = read_files(contents, _bounds(), wanted=kinds[0], unrounded=unrounded)
-    for note in reading.notes:
-        echo(f"{note.file}: {note.text}", err=True)
+    print_file_notes(reading.notes)
     if reading.kind not in kinds:
         noun = {"front": "one tour", "fleet": "vehicles", "coverage": "a map"}[reading.kind]
         raise UsageError(f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that")

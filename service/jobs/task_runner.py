@@ -10,7 +10,7 @@ from service.actor_info import ActorInfo
 from service.extensions.constructors import load_constructors
 from service.extensions.names import NO_EXTENSIONS, Extensions
 from service.extensions.searches import load_search
-from service.front import SearchFunction
+from service.front import Progress, SearchFunction
 from service.jobs.compiled_code import warm_up
 from service.jobs.parts import Compiling, Part
 from service.kinds.front_document import FrontDocument
@@ -53,7 +53,14 @@ class TaskRunner:
             self.actors[task.actor].load()
         if self.measurer is not None and task.needs_roads:
             task = self.measurer.measured(task, stop)
-        return RUNS[task.kind](task, Tools(self.actors, self.limits, self.search), stop, report)
+        tools = Tools(self.actors, self.limits, self.search)
+        if not task.notes:
+            return RUNS[task.kind](task, tools, stop, report)
+
+        def report_noted(progress: Progress, best: Callable[[int], FrontDocument]) -> None:
+            report(progress, lambda most: best(most).with_notes(task.notes))
+
+        return RUNS[task.kind](task, tools, stop, report_noted).with_notes(task.notes)
 
     def _open_networks(self) -> None:
         """Open all, those first that build the tours of most requests."""

@@ -22,6 +22,7 @@ from service.front import Front, Termination
 from service.objectives import OBJECTIVES
 from service.pareto import balances
 from service.preferences import angles
+from service.requests.notes.note import Note
 from service.requests.task import KindName
 
 _HEAD = 100  # the first bytes of a tour, which contain its first members
@@ -47,6 +48,7 @@ class FrontDocument:
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
         uncovered: The free cells of a map that are out of reach.
+        notes: What is likely to be a mistake in the request; None where nothing is.
         tours: The JSON of all tours, separated by commas, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
         angles: The direction of each tour in degrees, as m native floats of 8 bytes; of more than
@@ -69,6 +71,7 @@ class FrontDocument:
     objectives: list[dict[str, Any]] | None = None
     stops: list[dict[str, Any]] | None = None
     uncovered: dict[str, Any] | None = None
+    notes: list[dict[str, str]] | None = None
     tours: bytes = b""
     ends: bytes = b""
     angles: bytes = b""
@@ -98,6 +101,14 @@ class FrontDocument:
         known = {name: members[name] for name in _MEMBERS if name in members}
         known.setdefault("kind", _kind_of_earlier_version(members))
         return cls(**known, **encoded).with_balances()
+
+    def with_notes(self, notes: Iterable[Note]) -> Self:
+        """Return the front with notes on its request, if there are any."""
+        members = [
+            {name: value for name, value in vars(note).items() if value is not None}
+            for note in notes
+        ]
+        return replace(self, notes=members) if members else self
 
     def with_balances(self) -> Self:
         """Return the front with the balance of each tour, computed where it is missing."""

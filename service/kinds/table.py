@@ -71,4 +71,4 @@ def empty_document(task: Task) -> FrontDocument:
         terminated=None,
         actor=None,
         **members,
-    )
+    ).with_notes(task.notes)

@@ -31,6 +31,8 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
     document = {**_heading(front, link), "tours": _representatives(front)}
     if assumed:
         document["assumed"] = [note[:_LONGEST_NOTE] for note in assumed[:_MOST_NOTES]]
+    if notes := [note.text for note in front.notes if note.text not in assumed]:
+        document["notes"] = [note[:_LONGEST_NOTE] for note in notes[:_MOST_NOTES]]
     if not len(front):
         return _fitted({**document, "hint": "the front is empty: give it more time_limit"})
     knee = _knee(front)

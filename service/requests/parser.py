@@ -22,6 +22,7 @@ from service.requests.limits import (
     check_structure,
     within_network,
 )
+from service.requests.notes.of_task import with_notes
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stops import Labels, Stops
 from service.requests.task import Task, TaskSource
@@ -38,6 +39,10 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         InvalidInstance: The cities or the map cannot be planned.
     """
     check_structure(source.body, limits)
+    return with_notes(_parse(source, limits, actors), has_parts=source.upload is None)
+
+
+def _parse(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
     match source.kind:
         case "front":
             request = parse_front_request(source.body, limits, source.upload)

@@ -14,6 +14,7 @@ from service.front import PlanOptions
 from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
+from service.requests.notes.note import Note
 from service.requests.stops import Array, Labels, RoadMeasure, Stops, Traffic, cost_matrices
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
@@ -136,6 +137,7 @@ class Task:
         earlier: What is left of the tours of the front that is replanned, if one is.
         parts: Of a map that is replanned, the part of the request that names each place; places/2
             is place 2 of the earlier front.
+        notes: What is likely to be a mistake, for answers.
     """
 
     subject: Stops | Coverage | SharedCoverage | UnmeasuredFleet
@@ -148,6 +150,7 @@ class Task:
     timings: Mapping[str, float] = field(default_factory=dict)
     earlier: EarlierTours | None = None
     parts: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     @property
     def kind(self) -> KindName:

@@ -26,6 +26,7 @@ from service.objectives import Objective
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.earlier_versions import parse_rest
 from service.requests.limits import Limits
+from service.requests.notes.note import Note
 from service.requests.parser import parse_task
 from service.requests.stops import (
     Changed,
@@ -58,7 +59,7 @@ _FLAT_TYPES: Mapping[str, type[Any]] = {
     each.__name__: each
     for each in (
         *(Stop, Objective, Visit, Shipment, VehicleType, Robot),
-        *(VehicleName, Route),
+        *(VehicleName, Route, Note),
     )
 }
 _NUMBERS = "biuf"  # kinds of NumPy's types: booleans, integers and floats

@@ -93,6 +93,11 @@ def test_an_agent_plans_explains_chooses_and_replans(url: str) -> None:
             assert planned["ranges"]["hills"] == [lengths[:, 1].min(), lengths[:, 1].max()]
             assert sorted(planned["stops"]) == sorted(stop["id"] for stop in STOPS)
 
+            lost = [*STOPS[:-1], {**STOPS[-1], "location": [0, 0]}]
+            noted = await call(client, "plan_front", **{**FRONT, "stops": lost})
+            assert "lies at longitude 0 and latitude 0" in noted["notes"][0]
+            assert "notes" not in planned
+
             explained = await call(client, "explain_front", front=front)
             for sentence in explained["trades"]:
                 number = int(sentence.rpartition(" ")[2])

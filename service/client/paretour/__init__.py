@@ -23,7 +23,7 @@ from paretour.actors import Actor
 from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
-from paretour.fronts import Objective
+from paretour.fronts import Objective, RequestNote
 from paretour.kinds import FrontOfAnyKind
 from paretour.library import (
     InstanceFailed,
@@ -85,6 +85,7 @@ __all__ = [
     "Progress",
     "Refused",
     "ReplanRequest",
+    "RequestNote",
     "RobotFront",
     "RobotPlan",
     "RobotRequest",

@@ -28,6 +28,21 @@ class Objective:
         return self.name if self.unit is None else f"{self.name} ({self.unit})"
 
 
+@dataclass(frozen=True)
+class RequestNote:
+    """A note on a request that was planned: something in it is likely to be a mistake.
+
+    Attributes:
+        code: Tells notes apart: `place`, `swapped`, `far`, `outlier` or `large-costs`.
+        text: A sentence.
+        pointer: The JSON pointer of the part of the request that it is about, if it has one.
+    """
+
+    code: str
+    text: str
+    pointer: str | None = None
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class StoredFront(Generic[Item]):
     """A front of any kind, in order of the first length of its k tours or plans.
@@ -47,6 +62,7 @@ class StoredFront(Generic[Item]):
             eleven cities.
         document: The whole answer, with every member.
         objectives: The objectives, if the request named them.
+        notes: What is likely to be a mistake in the request.
     """
 
     id: str
@@ -58,6 +74,7 @@ class StoredFront(Generic[Item]):
     terminated: str | None
     document: Mapping[str, Any]
     objectives: tuple[Objective, ...] | None = None
+    notes: tuple[RequestNote, ...] = ()
 
     @property
     def losses(self) -> Array:

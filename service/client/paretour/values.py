@@ -23,7 +23,7 @@ from paretour.expect import (
     rows,
     text,
 )
-from paretour.fronts import Array, Objective, StoredFront
+from paretour.fronts import Array, Objective, RequestNote, StoredFront
 from paretour.ros.paths import Path
 
 T = TypeVar("T")
@@ -314,7 +314,15 @@ def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
         "reference_point": answer.maybe("reference_point", floats(m)),
         "terminated": answer.maybe("terminated", text),
         "document": answer.document,
+        "notes": answer.maybe("notes", each(_parse_note)) or (),
     }
+
+
+def _parse_note(value: Any, where: str) -> RequestNote:
+    note = members(value, where)
+    return RequestNote(
+        note.read("code", text), note.read("text", text), note.maybe("pointer", text)
+    )
 
 
 def objectives_of(answer: Members) -> tuple[Objective, ...] | None:

@@ -41,5 +41,11 @@ function ended({ stage, answer }) {
   const { one, many } = kindNamed(answer).noun;
   const found = `${counted(points, one, many)} found`;
   const shown = front.length < points ? `, the best ${front.length} of them shown` : "";
-  return `${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`;
+  return [`${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`, ...doubts(answer)].join(" ");
+}
+
+/** The notes on the request, but for those on the file, which are shown already. */
+function doubts({ notes = [] }) {
+  const shown = element("file-notes").textContent;
+  return notes.map(({ text }) => text).filter((text) => !shown.includes(text));
 }

@@ -7,6 +7,7 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.requests.limits import Limits
+from service.requests.notes.of_task import with_notes
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.rest_of_fleet import rest_of_fleet
@@ -35,6 +36,10 @@ def parse_replan(source: ReplanSource, limits: Limits, actors: Mapping[str, Acto
             be replanned so.
         InvalidInstance: The costs or the map cannot be planned.
     """
+    return with_notes(_parse(source, limits, actors), has_parts=False)
+
+
+def _parse(source: ReplanSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
     stored = source.front
     task = _stored_task(stored, limits, actors)
     if isinstance(task.subject, UnmeasuredFleet):
