@@ -31,7 +31,7 @@ _NAMES = {
     " twstart twfrom twopen timewindowopen readytime ready earliest earliesttime earlieststart"
     " earlieststarttime earliestarrival earliestarrivaltime earliestdelivery earliestdeliverytime"
     " notbefore noearlierthan arriveafter deliverafter completeafter open opens opening opentime"
-    " openingtime from begin von start"
+    " opendate openingtime from begin von start"
     " heuredebut debut ouverture orainizio inizio apertura horainicio inicio desde abertura"
     " begintijd starttijd alkaa alku",
     "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"

@@ -2,10 +2,14 @@
 
 import re
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 from service.errors.printable import printable
+from service.files.cells.dates import Calendar
+from service.files.cells.ids import are_names, is_list_of_cities, numbered
+from service.files.cells.signs import decimals_of, is_number, is_numeric, with_plain_numbers
+from service.files.cells.totals import is_total, is_total_of_vehicles, without_totals
 from service.files.chosen import DETAIL, IGNORED, chosen_fields, without_unused
 from service.files.column_names import (
     NAMES_OF_STOPS,
@@ -14,11 +18,10 @@ from service.files.column_names import (
     best_fields,
     fields_of,
     is_about_vehicles,
+    plain_name,
 )
-from service.files.dates import Calendar
 from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
-from service.files.signs import decimals_of, is_number, is_numeric, with_plain_numbers
-from service.files.tables import LeftOut, Row, Table, number_in, plain_numbers
+from service.files.tables import LeftOut, Table, number_in, plain_numbers
 
 Read = TypeVar("Read")
 _DEGREES = r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d{1,2})?)"
@@ -28,16 +31,9 @@ _POINT = re.compile(
 )
 # As web maps show a place: latitude first.
 _PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
-_PLACES = ("longitude", "latitude", "place", "x", "y")
-_TOTAL = re.compile(
-    r"(?:(?:grand|sub)[ -]?)?totals?|sums?|(?:gesamt|zwischen)?summe|gesamt|insgesamt|somme|totale"
-    r"|suma|soma|totaal|yhteensä",
-    re.IGNORECASE,
-)
-_MOST_TOTALS = 4  # rows
-_MOST_OF_TOTAL = 2  # fields, if its name does not say what it is
-_ROUNDING = 1e-6
 _UNUSED = (DETAIL, IGNORED)
+_HAS_DIGITS = re.compile(r"\d")
+_OF_PLACES = ("point", "location", "position")  # which may have names
 _INDEX = ("", "index", "unnamed: 0")
 _MOST_DETAILS = 10  # columns
 _LONGEST_DETAIL = 200  # characters of a text
@@ -61,6 +57,7 @@ class Columns:
     units: dict[int, float] = field(default_factory=dict)
     calendar: Calendar = field(default_factory=Calendar)
     on_earth: bool = False
+    _ids: list[str] | None = None
     of_stops: bool = True
 
     def find(self, field: str) -> int | None:
@@ -189,6 +186,33 @@ class Columns:
             placed[at] = placed[at]._replace(taken_for=field)
         return placed
 
+    def ids(self) -> list[str]:
+        """Return the id of each row. Those that are missing, or come twice, are kept as wrong.
+
+        Names of stops that are missing or come twice are numbered, with a note.
+        """
+        if self._ids is None:
+            at = self.fields.index("id")
+            names = [" ".join(texts[at].split()) for _, texts in self.table.rows]
+            if self.of_stops and not self.is_chosen(at) and are_names(self.names[at]):
+                self._ids = numbered(self.source, self.names[at], names)
+            else:
+                self._check_ids(names, at)
+                self._ids = names
+        return self._ids
+
+    def _check_ids(self, ids: Sequence[str], at: int) -> None:
+        """Keep ids that are missing, or come twice, as wrong."""
+        seen: dict[str, int] = {}
+        for row, name in enumerate(ids):
+            if not name:
+                self.refuse(row, at, "must be an id, got none")
+            elif name in seen:
+                came = f"got {quoted(name)} as in row {seen[name]}"
+                self.refuse(row, at, f"must be an id that no other row has, {came}")
+            else:
+                seen[name] = self.table.rows[row][0]
+
     def _texts(self, column: int) -> list[str]:
         return [row[column] for _, row in self.table.rows]
 
@@ -196,6 +220,14 @@ class Columns:
     def are_any_chosen(self) -> bool:
         """Return whether a person has chosen a field for any column."""
         return bool(self.source.file.chosen)
+
+    def keep(self, fields: Collection[str], why: str) -> None:
+        """Take no column for any other field than these and ids, and note those that were."""
+        for at, taken_for in enumerate(self.fields):
+            if taken_for is not None and taken_for not in fields and taken_for != "id":
+                self.fields[at] = None
+                name = quoted(self.names[at])
+                self.source.note("left-out", f"{name} was not used as {taken_for}: {why}.")
 
     def leave_free(self, columns: Collection[int]) -> None:
         """Take no column but these for a field, apart from that of ids."""
@@ -218,7 +250,7 @@ class Columns:
     def _report_details(self) -> None:
         """Add the texts of details to the source, by the ids of their stops or their numbers."""
         count = len(self.table.rows)
-        ids = ids_of(self) if "id" in self.fields else [f"{row + 1}" for row in range(count)]
+        ids = self.ids() if "id" in self.fields else [f"{row + 1}" for row in range(count)]
         for name, taken_for, texts in self._placed():
             if taken_for == DETAIL:
                 short = [printable(" ".join(text.split()))[:_LONGEST_DETAIL] for text in texts]
@@ -240,7 +272,7 @@ def columns_of(source: Source, table: Table) -> Columns:
     fields: list[str | None] = [*chosen]
     if table.heading:
         fields = fields_of(names, chosen)
-        table = _without_totals(source, table, lambda rows: _is_total(rows, fields))
+        table = without_totals(source, table, lambda rows: is_total(rows, fields))
     columns = Columns(source, table, names, fields)
     source.supposed.extend(columns.listed())
     columns.read_signs()
@@ -249,6 +281,8 @@ def columns_of(source: Source, table: Table) -> Columns:
             _check_places(columns, at)
         elif fields[at] in (None, "place"):
             fields[at] = _place_column(columns, at)
+    if not any(chosen):
+        _name_rows(columns)
     if "id" not in fields and fields[0] is None and table.width > 1:
         first = table.rows[0][1][0]
         # Without a heading, or if a square of costs has named rows, the first row decides.
@@ -256,50 +290,6 @@ def columns_of(source: Source, table: Table) -> Columns:
         if (named and number_in(first) is None) or _is_index(table):
             fields[0] = "id"
     return columns
-
-
-def _without_totals(
-    source: Source, table: Table, is_total: Callable[[Sequence[Row]], bool]
-) -> Table:
-    """Return a table without rows of totals at its end, with a note on each."""
-    rows = list(table.rows)
-    while len(rows) > max(1, len(table.rows) - _MOST_TOTALS) and is_total(rows):
-        number, texts = rows.pop()
-        came = quoted(" ".join(filter(None, texts)))
-        source.note("total", f"Row {number}, {came}, was taken for a total and left out.")
-    unused = {
-        at: each._replace(texts=each.texts[: len(rows)]) for at, each in table.left_out.items()
-    }
-    return replace(table, rows=rows, left_out=unused)
-
-
-def _is_total(rows: Sequence[Row], fields: Sequence[str | None]) -> bool:
-    """Return whether the last row has no place, and is named as a total, unnamed, or has a sum."""
-    texts = rows[-1][1]
-    places = [text for text, each in zip(texts, fields, strict=True) if each in _PLACES]
-    if not places or any(places):
-        return False
-    filled = [at for at, text in enumerate(texts) if text]
-    if _is_named_total(texts):
-        return True
-    is_unnamed = all(fields[at] != "id" for at in filled)
-    return len(filled) <= _MOST_OF_TOTAL and (is_unnamed or any(_is_sum(rows, at) for at in filled))
-
-
-def _is_total_of_vehicles(rows: Sequence[Row]) -> bool:
-    """Return whether the last row is named as a total, and has only numbers beside its name."""
-    texts = [text for text in rows[-1][1] if text]
-    return _is_named_total(texts) and sum(number_in(text) is None for text in texts) == 1
-
-
-def _is_named_total(texts: Sequence[str]) -> bool:
-    return any(_TOTAL.fullmatch(text.rstrip(" :")) for text in texts)
-
-
-def _is_sum(rows: Sequence[Row], at: int) -> bool:
-    """Return whether the last number of a column is the sum of those above it."""
-    total, *above = (number_in(texts[at]) or 0.0 for _, texts in reversed(rows))
-    return total > 0 and len(above) > 1 and abs(total - sum(above)) < _ROUNDING * total
 
 
 def _place_column(columns: Columns, at: int) -> str | None:
@@ -316,6 +306,26 @@ def _place_column(columns: Columns, at: int) -> str | None:
     name = quoted(columns.names[at])
     columns.source.note("place", f"{name} is taken to be latitude, then longitude.")
     return "place"
+
+
+def _name_rows(columns: Columns) -> None:
+    """Take a column of places for ids if it has names, and cities only if they are all it has.
+
+    Amounts without a digit, such as the names of goods, are none.
+    """
+    fields, table = columns.fields, columns.table
+    texts = [[row[at] for _, row in table.rows] for at in range(table.width)]
+    at = columns.find("id")
+    if at is not None and plain_name(columns.names[at]) == "city":
+        others = [texts[each] for each in range(table.width) if fields[each] is None]
+        fields[at] = "id" if is_list_of_cities(texts[at], others) else None
+    for at, taken_for in enumerate(fields):
+        if taken_for == "demand" and any(texts[at]) and not _HAS_DIGITS.search("".join(texts[at])):
+            fields[at] = None  # such as the names of goods
+    for at, name in enumerate(columns.names):
+        if "id" not in fields and fields[at] == "place" and all(map(str.strip, texts[at])):
+            is_named = not any(map(is_number, texts[at])) and plain_name(name) in _OF_PLACES
+            fields[at] = "id" if is_named and place_in(texts[at][0]) is None else fields[at]
 
 
 def _check_places(columns: Columns, at: int) -> None:
@@ -342,22 +352,6 @@ def _is_index(table: Table) -> bool:
     return table.heading is not None and table.heading[0].strip().casefold() in _INDEX
 
 
-def ids_of(columns: Columns) -> list[str]:
-    """Return the id of each row. Those that are missing, or come twice, are kept as wrong."""
-    at = columns.fields.index("id")
-    ids = [" ".join(texts[at].split()) for _, texts in columns.table.rows]
-    seen: dict[str, int] = {}
-    for row, name in enumerate(ids):
-        if not name:
-            columns.refuse(row, at, "must be an id, got none")
-        elif name in seen:
-            came = f"got {quoted(name)} as in row {seen[name]}"
-            columns.refuse(row, at, f"must be an id that no other row has, {came}")
-        else:
-            seen[name] = columns.table.rows[row][0]
-    return ids
-
-
 def columns_of_vehicles(source: Source, table: Table) -> Columns:
     """Return the columns of a table of vehicles, with the field that each may be.
 
@@ -369,7 +363,7 @@ def columns_of_vehicles(source: Source, table: Table) -> Columns:
         UnreadableFile: The columns cannot be taken for what was chosen.
     """
     table = without_unused(source, table, NAMES_OF_VEHICLES)
-    table = _without_totals(source, table, _is_total_of_vehicles)
+    table = without_totals(source, table, is_total_of_vehicles)
     names = table.heading or []
     fields = best_fields(names, NAMES_OF_VEHICLES, chosen_fields(source.file, names))
     columns = Columns(source, table, names, fields, of_stops=False)

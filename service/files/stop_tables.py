@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from service.files.cells.times import read_calendar
 from service.files.column_names import FLEET, PLANES
-from service.files.columns import Columns, columns_of, ids_of, place_in
+from service.files.columns import Columns, columns_of, place_in
 from service.files.depots import for_stops
 from service.files.fleets import Stop, fleet_request, have_times, measured, planar, with_measure
 from service.files.places import note_places, out_of_range, weighted
@@ -24,11 +25,11 @@ from service.files.planes import (
 )
 from service.files.reading import Reading, Source, quoted
 from service.files.tables import Table, number_in, plain_numbers
-from service.files.times import read_calendar
 from service.files.visits import add_visits
 from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
 Array = NDArray[np.float64]
+_ON_EARTH = ("longitude", "latitude", "place")
 _NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none", "x", "∞"}
 
 
@@ -103,7 +104,7 @@ def _in_planes(columns: Columns) -> Reading:
     for plane, names in zip(planes, zip(PLANES[::2], PLANES[1::2], strict=True), strict=False):
         columns.fields[plane[0]], columns.fields[plane[1]] = names
     found = [columns.numbers(list(plane)) for plane in planes]
-    ids = ids_of(columns) if "id" in columns.fields else None
+    ids = columns.ids() if "id" in columns.fields else None
     columns.report()
     if ids is None:
         rows = [list(chain.from_iterable(each)) for each in zip(*found, strict=True)]
@@ -173,6 +174,7 @@ def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
     """
     source, fields = columns.source, columns.fields
     if _is_located(columns):
+        columns.keep((*_ON_EARTH, *FLEET), "a fleet has no costs or planes of its own")
         stops = _stops(columns, _places(columns))
         note_places(source, stops)
         return stops, None
@@ -181,6 +183,7 @@ def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
         fleet = ", ".join(quoted(name) for name, each in named if each in FLEET)
         demand = "must have places, in columns lon and lat or x and y"
         raise source.refusal(f"{demand}, beside {fleet}" if fleet else demand)
+    columns.keep(("x", "y", *FLEET), "a fleet has no costs or other planes of its own")
     source.note("objectives", "Distances in the plane of x and y are time as well.")
     plane = columns.numbers([fields.index("x"), fields.index("y")])
     return _stops(columns, None), plane
@@ -213,7 +216,7 @@ def check_degrees(
 
 def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
     if "id" in columns.fields:
-        ids = ids_of(columns)
+        ids = columns.ids()
     else:
         ids = [str(number) for number in range(1, len(columns.table.rows) + 1)]
         columns.source.note("ids", "No column has names of stops: they are numbered from 1.")
@@ -227,7 +230,9 @@ def _other_objectives(columns: Columns, stops: list[Stop]) -> list[dict[str, Any
     """Return the objectives after distance: a plane, costs per metre, or else time by road."""
     x, y = (columns.find(name) for name in ("x", "y"))
     if x is not None and y is not None:
+        columns.keep((*_ON_EARTH, "x", "y"), "the other objective is the plane of x and y")
         return [{"name": "second length", "coordinates": columns.numbers([x, y])}]
+    columns.keep((*_ON_EARTH, "cost"), "a plane needs x and y")
     costs = [at for at, each in enumerate(columns.fields) if each == "cost"]
     if not costs:
         sentence = "The second objective is time by road, of a routing engine."
@@ -263,6 +268,7 @@ def part_of(source: Source, table: Table) -> Part:
     columns = columns_of(source, table)
     name, count = source.name, len(table.rows)
     if "place" in columns.fields or {"longitude", "latitude"} <= set(columns.fields):
+        columns.keep(_ON_EARTH, "beside a file of costs, stops have places alone")
         stops = _stops(columns, _places(columns))
         note_places(source, stops)
         columns.report()
@@ -280,7 +286,7 @@ def part_of(source: Source, table: Table) -> Part:
         wide = "1 column" if len(free) == 1 else f"{len(free)} columns"
         raise source.refusal(f"{demand}; got {rows} of {wide if free else 'ids alone'}")
     columns.read_signs(free)
-    ids = ids_of(columns) if "id" in columns.fields else None
+    ids = columns.ids() if "id" in columns.fields else None
     if len(free) == 2 != count:
         return Part(name, count, ids, {"coordinates": columns.numbers(free)})
     source.check_count("cities", source.bounds.matrix_cities, count)

@@ -29,6 +29,7 @@ _MOST_COLUMNS = 2**14  # as of spreadsheets
 _LONG = 40  # characters of a field; white space in a longer one may be long as well
 _LARGEST = 1e150  # the same limit as in requests
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
+_POINT = re.compile(r"(?:SRID=\d+;)?\s*POINT\s*Z?M?\s*\(\s*[-+\d.]", re.IGNORECASE)  # of WKT
 _PLAIN = re.compile(r"[-+0-9.eE ]+", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
@@ -238,8 +239,8 @@ def _counts_up(fields: Sequence[str]) -> bool:
 
 def _is_heading(fields: Sequence[str], rows: Sequence[Row]) -> bool:
     """Return whether a row is a heading: words only, after `id`, or the same names as the rows."""
-    if any(field.lower().startswith("point") for field in fields[1:]):
-        return any(not field.lower().startswith("point") and "(" in field for field in fields)
+    if any(map(_POINT.match, fields[1:])):
+        return any("(" in field and not _POINT.match(field) for field in fields)
     numbers = [number_in(field) is not None for field in fields]
     if not any(numbers) or fields[0].strip("#").casefold() == "id":
         return True

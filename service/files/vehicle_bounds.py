@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from service.files.cells.times import seconds_in
 from service.files.columns import Columns
 from service.files.fleets import Stop, Vehicle, in_shifts
 from service.files.reading import UnreadableFile, quoted
-from service.files.times import seconds_in
 from service.files.visits import texts_in
 
 _PER_UNIT = 8  # vehicles whose skills are compared for one unit of work

@@ -2,10 +2,17 @@
 
 import re
 
+from service.files.cells.durations import read_units
+from service.files.cells.times import (
+    is_time,
+    read_calendar,
+    recognise_hours,
+    seconds_in,
+    spans_in,
+)
 from service.files.column_names import fields_of, is_about_vehicles
-from service.files.columns import Columns, columns_of, columns_of_vehicles, ids_of
+from service.files.columns import Columns, columns_of, columns_of_vehicles
 from service.files.depots import with_depots
-from service.files.durations import read_units
 from service.files.fleets import (
     Stop,
     Vehicle,
@@ -19,13 +26,6 @@ from service.files.fleets import (
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
-from service.files.times import (
-    is_time,
-    read_calendar,
-    recognise_hours,
-    seconds_in,
-    spans_in,
-)
 from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
 from service.files.vehicle_loads import add_loads
 from service.files.visits import add_visits, texts_in
@@ -104,7 +104,7 @@ class _Vehicles:
         columns = self._columns
         rows = range(len(columns.table.rows))
         if "id" in columns.fields:
-            ids = ids_of(columns)
+            ids = columns.ids()
         else:
             ids = [f"vehicle {row + 1}" for row in rows]
             self._source.note("ids", "No column has names of vehicles: they are numbered from 1.")

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from service.files.cells.durations import read_units
+from service.files.cells.times import recognise_hours, seconds_in, spans_in
 from service.files.column_names import WINDOWS
 from service.files.columns import Columns
-from service.files.durations import read_units
 from service.files.fleets import Stop, spans
-from service.files.times import recognise_hours, seconds_in, spans_in
 
 _SEPARATOR = re.compile(r"[;|,]")  # between skills or ids
 _AROUND_TEXT = " []{}\"'"  # as Python and JSON write lists

@@ -348,7 +348,111 @@ DATES: dict[str, tuple[list[str], Becomes | str]] = {
         stops("depot a", "open until midnight", window=[None, [37800, 86400]]),
     ),
 }  # fmt: skip
-ALL = {**SIGNS, **PLANES, **DEPOTS, **DATES}
+PLACES = ["60.171,24.941", "60.169,24.952", "60.165,24.933"]
+HEADINGS: dict[str, tuple[list[str], Becomes | str]] = {
+    "OptimoRoute": (
+        ["Order ID,Latitude,Longitude,Time window from,Time window to,Duration,Load #1,Load #2,Priority\n"
+         f"D1,{PLACES[0]},,,,,,M\nA,{PLACES[1]},08:00,15:00,15,2,1.5,H\nB,{PLACES[2]},,,5,1,1,L\n"],
+        stops("D1 A B", "'Duration' is in minutes, 15 at most", "Not used: 'Priority'",
+              demand=[None, [20, 15], [10, 10]], service=[None, 900, 300], window=[None, [28800, 54000], None]),
+    ),
+    "Circuit": (
+        ["Address Line 1,City,Latitude,Longitude,Earliest Time,Latest Time,Time at stop\n"
+         f"Main St 1,Espoo,{PLACES[0]},08:30,15:30,5\nSide St 2,Espoo,{PLACES[1]},10:30,,2\nSide St 3,Vantaa,{PLACES[2]},,,2\n"],
+        stops("1 2 3", "'Time at stop' is in minutes, 5 at most", "open until midnight", "No column has names of stops",
+              "Not used: 'Address Line 1', 'City'", window=[[30600, 55800], [37800, 86400], None], service=[300, 120, 120]),
+    ),
+    "Route4Me": (
+        ["Alias,Lat,Lng,Order Weight,Order Cube,Time Window Start,Time Window End,Service Time\n"
+         f"Depot,{PLACES[0]},,,,,\nAnn,{PLACES[1]},12,1,9:00 AM,5:00 PM,10\nAnn,{PLACES[2]},8,1,,,10\n"],
+        stops("Depot Ann Ann_2", "'Alias' has names that come twice, or none: they are numbered, as 'Ann 2'",
+              demand=[None, [12, 1], [8, 1]], service=[None, 600, 600], window=[None, [32400, 61200], None]),
+    ),
+    "Routific": (
+        ["name,lat,lng,start,end,duration,load,type\n"
+         f"Depot,{PLACES[0]},,,,,\nAnn,{PLACES[1]},9:00,12:00,10,2,A\nBo,{PLACES[2]},,,5,1,B\n"],
+        stops("Depot Ann Bo", "'duration' is in minutes", "Not used: 'type'", demand=[None, [2], [1]],
+              service=[None, 600, 300], window=[None, [32400, 43200], None]),
+    ),
+    "Shopify, a row for each item": (
+        ["Name,Email,Lineitem quantity,Shipping City,Latitude,Longitude,Total\n"
+         f"#1001,ann@example.com,2,Helsinki,{PLACES[0]},20.50\n#1001,,1,,{PLACES[0]},\n#1002,bo@example.com,3,Espoo,{PLACES[1]},8.00\n"],
+        stops("#1001 #1001_2 #1002", "'Name' has names that come twice", demand=[[2], [1], [3]]),
+    ),
+    "WooCommerce": (
+        ["Order Number,Order Total,Total Items,Customer Note,Latitude,Longitude\n"
+         f"501,20.50,2,ring twice,{PLACES[0]}\n502,8.00,1,,{PLACES[1]}\n"],
+        stops("501 502", "'Total Items' (demand)", "Not used: 'Order Total', 'Customer Note'", demand=[[2], [1]]),
+    ),
+    "AntsRoute": (
+        ["Id,Name,City,Latitude,Longitude,Duration,Open-date,Due-date\n"
+         f"20180101-1,Ann,London,{PLACES[0]},30,2026-11-30,2026-12-01\n20180101-2,Bo,London,{PLACES[1]},20,2026-11-30,2026-11-30\n"],
+        stops("20180101-1 20180101-2", "Not used: 'Name', 'City'", "'Duration' is in minutes", window=[[0, 172800], [0, 86400]]),
+    ),
+    "Onfleet": (
+        ["Recipient_Name,Latitude,Longitude,completeAfter,completeBefore,quantity,serviceTime\n"
+         f"Ann,{PLACES[0]},2026-11-30 09:00,2026-11-30 12:00,1,3\nAnn,{PLACES[1]},,,2,3\n"],
+        stops("1 2", "'serviceTime' is in minutes, 3 at most", window=[[32400, 43200], None], service=[180, 180]),
+    ),
+    "Track-POD": (
+        ["Order No,Latitude,Longitude,Time from,Time to,Weight (kg),Pallets,Service time (min)\n"
+         f"1,{PLACES[0]},08:00,10:00,10.5,1,5\n2,{PLACES[1]},08:00,12:00,3,1,5\n"],
+        stops("1 2", demand=[[105, 10], [30, 10]], service=[300, 300], window=[[28800, 36000], [28800, 43200]]),
+    ),
+    "WorkWave": (
+        ["Name,Latitude,Longitude,Load,Service Time,Time Window Start,Time Window End\n"
+         f"Ann,{PLACES[0]},2,10,10:00pm,1:30am (+1)\nBo,{PLACES[1]},1,5,,\n"],
+        stops("Ann Bo", demand=[[2], [1]], service=[600, 300], window=[[79200, 91800], None]),
+    ),
+    "Google My Maps": (
+        ['WKT,name,description\n"POINT (24.941 60.171)",Ann,ring twice\n"POINT (24.952 60.169)",Ann,\n'],
+        stops("Ann Ann_2", "Not used: 'description'", location=[[24.941, 60.171], [24.952, 60.169]]),
+    ),
+    "points in a heading": (
+        [f"ref,point.lat,point.lon,service_duration_s,Point of contact\na,{PLACES[0]},150,Ann\nb,{PLACES[1]},150,Bo\n"],
+        stops("a b", "Not used: 'Point of contact'", service=[150, 150]),
+    ),
+    "names of points": ([f"Point,Lat,Lon\nHarbour,{PLACES[0]}\nStation,{PLACES[1]}\n"], stops("Harbour Station")),
+    "cities alone": ([f"City,Lat,Lon,Population\nEspoo,{PLACES[0]},300000\nVantaa,{PLACES[1]},250000\n"], stops("Espoo Vantaa")),
+    "a city twice": (
+        [f"City,Lat,Lon,Demand\nEspoo,{PLACES[0]},2\nEspoo,{PLACES[1]},1\n"],
+        stops("1 2", "No column has names of stops", "Not used: 'City'", demand=[[2], [1]]),
+    ),
+    "cities of streets": (
+        [f"Street,City,Lat,Lon\nMain St,Espoo,{PLACES[0]}\nSide St,Vantaa,{PLACES[1]}\n"],
+        stops("1 2", "Not used: 'Street', 'City'"),
+    ),
+    "a customer without a name": (
+        [f"Customer,Lat,Lon,Qty\n,{PLACES[0]},\nAnn,{PLACES[1]},2\n"],
+        stops("1 Ann", "'Customer' has names that come twice, or none", demand=[None, [2]]),
+    ),
+    "an id twice": ([f"Order ID,Lat,Lon\n7,{PLACES[0]}\n7,{PLACES[1]}\n"], "must be an id that no other row has, got '7'"),
+    "an order without a place whose demand is the sum": (
+        [f"id,Lat,Lon,Qty\nA1,{PLACES[0]},2\nA2,{PLACES[1]},3\nA3,,,5\n"],
+        "row 4, column 'Lat' must be a number, got ''",
+    ),
+    "an unnamed row without a place that is no sum": (
+        [f"id,Lat,Lon,Qty\nA1,{PLACES[0]},2\nA2,{PLACES[1]},3\n,,,4\n"],
+        "row 4, column 'id' must be an id, got none",
+    ),
+    "opening hours": (
+        [f"id,Lat,Lon,Opening hours\ndepot,{PLACES[0]},\na,{PLACES[1]},8:00-12:30\n"],
+        stops("depot a", window=[None, [28800, 45000]]),
+    ),
+    "loads of orders and of vans": (
+        [f"id,Lat,Lon,Load #1,Load #2\ndepot,{PLACES[0]},,\na,{PLACES[1]},2,30\n", "vehicle,Max load #2,Max load #1\nvan,90,4\n"],
+        stops("depot a", request={"vehicles": [{"id": "van", "capacity": [4, 90], "start": "depot", "end": "depot"}]}),
+    ),
+    "items as text are no demand": (
+        [f"id,Lat,Lon,Items\na,{PLACES[0]},soap\nb,{PLACES[1]},bread and milk\n"],
+        stops("a b", "Not used: 'Items'"),
+    ),
+    "costs beside demands": (
+        [f"id,Lat,Lon,demand,risk\ndepot,{PLACES[0]},,1\na,{PLACES[1]},2,3\n"],
+        stops("depot a", "'risk' was not used", demand=[None, [2]]),
+    ),
+}  # fmt: skip
+ALL = {**SIGNS, **PLANES, **DEPOTS, **DATES, **HEADINGS}
 READ = {name: case for name, case in ALL.items() if isinstance(case[1], Becomes)}
 
 

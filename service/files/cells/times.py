@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
+from service.files.cells.dates import Parts, TimeColumn, calendar_of, parts_of
 from service.files.column_names import (
     SECONDS,
     WINDOWS,
@@ -11,7 +12,6 @@ from service.files.column_names import (
     unit_of_times,
 )
 from service.files.columns import Columns
-from service.files.dates import Parts, TimeColumn, calendar_of, parts_of
 from service.files.reading import WrongCell, quoted
 from service.files.tables import number_in
 

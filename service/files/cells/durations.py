@@ -2,11 +2,11 @@
 
 import re
 
+from service.files.cells.times import DURATIONS
 from service.files.column_names import are_usually_minutes, seconds_of
 from service.files.columns import Columns
 from service.files.reading import quoted
 from service.files.tables import number_in
-from service.files.times import DURATIONS
 
 _MINUTE = 60
 _MOST_MINUTES = 480  # of a visit, a working day

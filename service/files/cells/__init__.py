@@ -1,0 +1,1 @@
+"""Read the cells of tables: numbers with their signs, ids, totals, times, dates and durations."""

@@ -1,0 +1,59 @@
+"""Ids of stops: names that come twice are numbered, and cities are no ids of orders."""
+
+from collections.abc import Sequence
+
+from service.files.column_names import plain_name
+from service.files.reading import Source, quoted
+from service.files.tables import number_in
+
+# Headings of names, or of customers who may have two orders.
+_NAMES = frozenset(
+    [
+        *("stop", "name", "stopname", "ordername", "alias", "customer", "customerid", "customerno"),
+        *("custno", "kunde", "kundennummer", "node", "label", "site", "client", "cliente", "klant"),
+        *("asiakas", "nom", "nome", "nombre", "naam", "nimi", "arret", "fermata", "parada"),
+        *("halte", "city", "point", "location", "position"),
+    ]
+)
+
+
+def are_names(heading: str) -> bool:
+    """Return whether a heading is that of names, which may come twice, and not of ids."""
+    return plain_name(heading) in _NAMES
+
+
+def is_list_of_cities(cities: Sequence[str], others: Sequence[Sequence[str]]) -> bool:
+    """Return whether cities name the rows of a table: all differ, and no other text does."""
+    are_texts = [any(text and number_in(text) is None for text in each) for each in others]
+    return all(cities) and len(set(cities)) == len(cities) and not any(are_texts)
+
+
+def numbered(source: Source, heading: str, names: Sequence[str]) -> list[str]:
+    """Return names of which none is missing or comes twice, with a note on those that are new."""
+    taken = {name for name in names if name}
+    seen: set[str] = set()
+    ids: list[str] = []
+    again: dict[str, int] = {}
+    for row, name in enumerate(names, 1):
+        found = name or _free(f"{row}", taken, {})
+        if found in seen:
+            found = _free(found, taken, again)
+        seen.add(found)
+        taken.add(found)
+        ids.append(found)
+    new = [each for each, name in zip(ids, names, strict=True) if each != name]
+    if new:
+        what = f"{quoted(heading)} has names that come twice, or none"
+        source.note("ids", f"{what}: they are numbered, as {quoted(new[0])}.")
+    return ids
+
+
+def _free(name: str, taken: set[str], again: dict[str, int]) -> str:
+    """Return a name that is not taken: this one, or with the next number behind it."""
+    if name not in taken:
+        return name
+    number = again.get(name, 1) + 1
+    while f"{name} {number}" in taken:
+        number += 1
+    again[name] = number
+    return f"{name} {number}"
