@@ -27,7 +27,15 @@ from service.files.spreadsheets import is_spreadsheet, sheets_of
 from service.files.stop_tables import Part, part_of, reading_of
 from service.files.tables import Table, table_of_csv, table_of_rows
 from service.files.texts import text_of
-from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
+from service.files.tsplib import (
+    TsplibFile,
+    costs,
+    is_tsplib,
+    note_rounded,
+    places,
+    plain,
+    split_tsplib,
+)
 from service.files.vehicle_tables import has_vehicles, read_fleet
 from service.files.waypoints import is_xml, table_of_xml
 from service.files.work import LINE_OF_TEXT, UNITS, Work
@@ -191,8 +199,7 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Pa
             raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
         return Part(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
     found = costs(file)
-    if file.kind not in ("EXPLICIT", "EXACT_2D", "EXACT_3D"):
-        source.note("rounded", f"Distances are whole numbers, as TSPLIB defines {file.kind}.")
+    note_rounded(file)
     plane = places(file).tolist() if file.kind == "EUC_2D" else None
     return Part(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
 

@@ -16,6 +16,7 @@ from service.files.tables import number_in
 Array = NDArray[np.float64]
 _KEYWORD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)[ \t]*(?:[:=](.*))?")
 _IN_HEAD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)(?:[ \t]*[:=]|[ \t])?(.*)")  # as LKH reads it
+_COMMENT = re.compile(r"(^|[ \t]+)#.*")
 _REPEATED = {"COMMENT"}  # in several lines
 _LAYOUTS = {
     "FULL_MATRIX": "full",
@@ -81,9 +82,12 @@ class TsplibFile:
     @cached_property
     def first_node(self) -> int:
         """The number of the first node: 1, or 0 where NODE_COORD_SECTION counts from 0."""
-        lines = self.sections.get("NODE_COORD_SECTION", ())
-        numbers = {number_in(line[0]) for line in lines if line}
-        return 0 if numbers == set(range(len(lines))) else 1
+        numbers = self._nodes_of("NODE_COORD_SECTION")
+        return 0 if numbers and set(numbers) == set(range(len(numbers))) else 1
+
+    def _nodes_of(self, section: str) -> list[float | None]:
+        """Return the numbers of nodes that begin the lines of a section."""
+        return [number_in(line[0]) for line in self.sections.get(section, ()) if line]
 
     def of_nodes(self, section: str, columns: int) -> Array:
         """Return the numbers of each node in a section, by ascending numbers of the nodes.
@@ -93,6 +97,8 @@ class TsplibFile:
         """
         found = self.numbers(section, self.dimension, 1 + columns)
         order = self.order(found[:, 0])
+        if order is None and self._nodes_of(section) == self._nodes_of("NODE_COORD_SECTION"):
+            return found[:, 1:]  # of other numbers, which stand for their places in the file
         if order is None:
             first, last = self.first_node, self.first_node + self.dimension - 1
             raise self.source.refusal(
@@ -141,6 +147,7 @@ def _fill(file: TsplibFile, text: str) -> None:
     """Read the lines of a text into the keywords and sections of a file."""
     lines: list[list[str]] | None = None  # the words in each line of the current section
     for line in map(str.strip, text.split("\n")):
+        line = _COMMENT.sub("", line)
         keyword = _KEYWORD.fullmatch(line)
         if lines is None and keyword is None:
             keyword = _IN_HEAD.fullmatch(line)
@@ -190,11 +197,31 @@ def costs(file: TsplibFile) -> Array:
         found = places(file)
         if not (np.abs(found) <= _LARGEST).all():
             raise file.source.refusal(f"NODE_COORD_SECTION must hold numbers up to {_LARGEST:g}")
-        return _distances(file.kind, found)
+        scale = _scale(file)
+        return _distances(file.kind, found * scale) / scale
     if file.kind != "EXPLICIT":
         known = ", ".join(("EXPLICIT", *_AXES))
         raise file.source.refusal(f"EDGE_WEIGHT_TYPE must be one of {known}", file.kind)
     return _explicit(file)
+
+
+def note_rounded(file: TsplibFile) -> None:
+    """Note how distances are rounded, if they are."""
+    if file.kind not in ("EXPLICIT", "EXACT_2D", "EXACT_3D"):
+        scale = _scale(file)
+        what = "whole numbers" if scale == 1 else f"rounded to 1/{scale:g}"
+        file.source.note("rounded", f"Distances are {what}, as TSPLIB defines {file.kind}.")
+
+
+def _scale(file: TsplibFile) -> float:
+    """Return by what LKH multiplies places before distances are rounded: 10 keeps a decimal."""
+    if "SCALE" not in file.header:
+        return 1
+    scale = number_in(file.word("SCALE"))
+    if scale is None or scale < 1 or (scale != 1 and file.kind in ("GEO", "ATT")):
+        demand = f"SCALE must be a number from 1, and 1 for {file.kind}"
+        raise file.source.refusal(demand, file.word("SCALE"))
+    return scale
 
 
 def _explicit(file: TsplibFile) -> Array:

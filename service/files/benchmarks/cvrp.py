@@ -10,15 +10,12 @@ from service.files.benchmarks.vehicles import Depots, Vehicles, vehicles_of
 from service.files.fleets import Stop, fleet_request, planar
 from service.files.reading import Reading
 from service.files.tables import number_in
-from service.files.tsplib import TsplibFile, costs, plain
+from service.files.tsplib import TsplibFile, costs, note_rounded, plain
 
 Array = NDArray[np.float64]
 _PAIRS = "PICKUP_AND_DELIVERY_SECTION"
 _OPEN = ("OVRP", "COVRP", "OVRPTW")
-_BESIDE_PAIRS = (
-    *("DEMAND_SECTION", "LINEHAUL_SECTION"),
-    *("TIME_WINDOW_SECTION", "SERVICE_TIME", "SERVICE_TIME_SECTION"),
-)
+_BESIDE_PAIRS = ("DEMAND_SECTION", "LINEHAUL_SECTION", "SERVICE_TIME", "SERVICE_TIME_SECTION")
 
 
 def read_cvrp(file: TsplibFile) -> Reading:
@@ -41,8 +38,7 @@ def read_cvrp(file: TsplibFile) -> Reading:
         fleet = _without_capacity(file, fleet)
     kept = [at for at in range(file.dimension) if at not in depots.stops or at in fleet.used]
     matrix = plain(costs(file)[np.ix_(kept, kept)])
-    if file.kind not in ("EXPLICIT", "EXACT_2D", "EXACT_3D"):
-        file.source.note("rounded", f"Distances are whole numbers, as TSPLIB defines {file.kind}.")
+    note_rounded(file)
     request = fleet_request([stops[at] for at in kept], fleet.types, planar({"matrix": matrix}))
     if shipments:
         request["shipments"] = shipments
@@ -75,7 +71,7 @@ def _add_demands(file: TsplibFile, stops: list[Stop], clients: list[int]) -> Non
     found = [name for name in ("DEMAND_SECTION", "LINEHAUL_SECTION") if name in file.sections]
     if len(found) > 1:
         raise file.source.refusal(f"{found[0]} must not stand beside {found[1]}")
-    if not found and "CAPACITY" not in file.header:
+    if not found and "CVRP" not in file.word("TYPE").upper():
         return
     name = found[0] if found else "DEMAND_SECTION"
     columns = max(1, len(file.words(name)) // file.dimension - 1)
@@ -110,6 +106,11 @@ def _add_pairs(
         raise file.source.refusal(f"{both[0]} must not stand beside {_PAIRS}")
     rows = file.of_nodes(_PAIRS, 6)
     windows = rows[:, 1:3] if rows[:, 1:3].any() else None
+    if "TIME_WINDOW_SECTION" in file.sections:
+        again = file.of_nodes("TIME_WINDOW_SECTION", 2)
+        if windows is not None and not np.array_equal(windows, again):
+            raise file.source.refusal(f"TIME_WINDOW_SECTION must be as {_PAIRS}, or left out")
+        windows = again
     shipments = []
     for at in clients:
         demand, _, _, service, pickup, delivery = rows[at].tolist()

@@ -27,6 +27,7 @@ _OF_COSTS = {
     "DIMENSION",
     "EDGE_WEIGHT_TYPE",
     "EDGE_WEIGHT_FORMAT",
+    "SCALE",
     "NODE_COORD_SECTION",
     "EDGE_WEIGHT_SECTION",
 }
@@ -65,7 +66,7 @@ _OF_FLEETS = {
 }
 # A file with one of these alone may be a tour: DEPOT_SECTION names its start.
 _TELLING = _OF_FLEETS - {"DEPOT_SECTION", "BACKHAUL_SECTION"}
-_NO_EFFECT = {"SCALE": 1, "DEMAND_DIMENSION": 1, "EXTERNAL_SALESMEN": 0}  # with these values
+_NO_EFFECT = {"DEMAND_DIMENSION": 1, "EXTERNAL_SALESMEN": 0}  # with these values
 _NOTED = {
     "FIXED_EDGES_SECTION": "tours may do without its edges",
     "TOUR_SECTION": "the search needs no tour to start from",
@@ -110,8 +111,10 @@ _SPLIT = "SDVRP"  # or a site-dependent problem, if vehicles have clients
 def is_fleet(file: TsplibFile) -> bool:
     """Return whether a file is about vehicles, or a traveller who has times."""
     rename(file)
-    named = not _TELLING.isdisjoint({*file.header, *file.sections})
-    return named or "VRP" in file.word("TYPE").upper()
+    named = [name for name in (*file.header, *file.sections) if name in _TELLING]
+    if [number_in(file.word(name)) for name in named if name in _COUNTS] == [1]:
+        named = [name for name in named if name not in _COUNTS]  # a tour is of one vehicle
+    return bool(named) or "VRP" in file.word("TYPE").upper()
 
 
 def rename(file: TsplibFile) -> None:
@@ -133,12 +136,12 @@ def check_costs(file: TsplibFile) -> None:
     """
     _check_type(file)
     if is_fleet(file):
-        names = (name for name in (*file.header, *file.sections) if name in _TELLING)
-        name = next(names, "TYPE")
+        of_fleets = (name for name in (*file.header, *file.sections) if name in _TELLING)
+        name = next(of_fleets, "TYPE")
         raise file.source.refusal(f"{name} is of a fleet: bring this file alone")
     if file.sections.get("DEPOT_SECTION"):
         file.source.note("left-out", "DEPOT_SECTION was not used: tours are round trips.")
-    _check(file, _OF_COSTS | {"DEPOT_SECTION"})
+    _check(file, _OF_COSTS | {"DEPOT_SECTION", *_COUNTS})
 
 
 def check_fleet(file: TsplibFile) -> None:

@@ -231,7 +231,7 @@ def _reload(rows: _Rows, depots: Depots, at: int) -> Vehicle:
     found = sorted(rows.lists("VEHICLES_RELOAD_DEPOT")[at])
     reloads = rows.number(most, at)
     if not found:
-        if reloads:
+        if reloads and section not in file.sections:
             raise file.source.refusal(f"{most} needs {section}")
         return {}
     if wrong := [depots.name(each) for each in found if each not in depots.stops]:

@@ -201,7 +201,37 @@ READ = {
         ("stops", "id", ["0", "1", "2", "3"]),
         ("vehicles", "start", ["0"]),
     ),
-    "a keyword that has no effect": (text("SCALE : 1\nOPTIMAL_VALUE: 30\n"),),
+    "comments behind a number sign": (
+        text("SERVICE_TIME : 4  # minutes\n# to be checked\n").replace("2 1\n", "2 1 # bakery\n"),
+        ("stops", "service", [None, 4, 4, 4]),
+        ("stops", "demand", [None, [1], [2], [3]]),
+    ),
+    "nodes of other numbers, which are the same in all sections": (
+        HEAD
+        + PLACES.replace("1 0 0", "0 0 0")
+        + DEMANDS.replace("1 0", "0 0")
+        + "DEPOT_SECTION\n1\n-1\n",
+        ("stops", "id", ["1", "2", "3", "4"]),
+        ("stops", "demand", [None, [1], [2], [3]]),
+    ),
+    "windows of pairs, said twice": (
+        text(sections=PAIRS + "TIME_WINDOW_SECTION\n1 0 100\n2 0 50\n3 0 90\n4 0 80\n", demands=""),
+        ("stops", "window", [None, [0, 50], [0, 90], [0, 80]]),
+    ),
+    "no demands, and a capacity": (
+        text("SERVICE_TIME : 4\n", demands="").replace("TYPE : CVRP\n", ""),
+        ("stops", "service", [None, 4, 4, 4]),
+        ("vehicles", "capacity", [None]),
+    ),
+    "an explicit matrix without places": (
+        HEAD.replace("EUC_2D", "EXPLICIT\nEDGE_WEIGHT_FORMAT : LOWER_ROW")
+        + "EDGE_WEIGHT_SECTION\n1\n2 3\n4 5 6\n"
+        + DEMANDS
+        + END,
+        ("stops", "id", ["1", "2", "3", "4"]),
+        ("stops", "demand", [None, [1], [2], [3]]),
+    ),
+    "a keyword that has no effect": (text("DEMAND_DIMENSION : 1\nOPTIMAL_VALUE: 30\n"),),
 }
 
 
@@ -252,10 +282,8 @@ REFUSED = {
         text("SPLIT : YES\n"),
         "it to plan without it, got 'YES'",
     ),
-    "SCALE": (
-        text("SCALE : 100\n"),
-        "it to plan without it, got '100'",
-    ),
+    "SCALE": (text("SCALE : -100\n"), "SCALE must be a number from 1"),
+    "SCALE of ATT": (text("SCALE : 10\n").replace("EUC_2D", "ATT"), "and 1 for ATT, got '10'"),
     "a keyword in the head and its section": (
         text("SERVICE_TIME : 4\n", "SERVICE_TIME_SECTION\n1 0\n2 4\n3 0\n4 5\n"),
         "SERVICE_TIME must not stand beside SERVICE_TIME_SECTION",
@@ -287,6 +315,11 @@ REFUSED = {
         text(sections=PAIRS.replace("6 2 0", "6 4 0"), demands=""),
         "PICKUP_AND_DELIVERY_SECTION must name the pick-up of each delivery",
     ),
+    "windows beside other ones of pairs": (
+        text(sections=PAIRS + WINDOWS, demands=""),
+        "TIME_WINDOW_SECTION must be as PICKUP_AND_DELIVERY_SECTION, or left out",
+    ),
+    "demands that are missing": (text(demands=""), "DEMAND_SECTION must have 4 rows"),
     "demands beside pairs": (
         text(sections=PAIRS),
         "DEMAND_SECTION must not stand beside PICKUP_AND_DELIVERY_SECTION",
@@ -335,6 +368,14 @@ def test_a_fleet_is_not_one_objective_of_two() -> None:
         read_files(files, Bounds())
 
 
+def test_a_tour_of_one_vehicle_is_one_objective_of_two() -> None:
+    content = "VEHICLES : 1\nDIMENSION : 4\nEDGE_WEIGHT_TYPE : EUC_2D\n" + PLACES
+    files = [NamedFile(name, content.encode()) for name in ("a.tsp", "b.tsp")]
+    assert len(read_files(files, Bounds()).request["matrices"]) == 2
+    with pytest.raises(UnreadableFile, match="one objective: name another"):
+        read_files(files[:1], Bounds())
+
+
 def test_cities_of_another_order_have_the_costs_of_their_numbers() -> None:
     sorted_cities = (
         "DIMENSION: 3\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n1 0 0\n2 5 0\n3 9 0\n"
@@ -343,6 +384,19 @@ def test_cities_of_another_order_have_the_costs_of_their_numbers() -> None:
     files = [NamedFile("a.tsp", sorted_cities.encode()), NamedFile("b.tsp", mixed.encode())]
     first, second = read_files(files, Bounds()).request["matrices"]
     assert first == second == [[0, 5, 9], [5, 0, 4], [9, 4, 0]]
+
+
+@pytest.mark.parametrize(
+    ("scale", "kind", "distance"),
+    [(10, "EUC_2D", 1.4), (10, "FLOOR_2D", 1.4), (100, "CEIL_2D", 1.42)],
+)
+def test_distances_are_rounded_after_they_are_scaled(
+    scale: int, kind: str, distance: float
+) -> None:
+    content = text(f"SCALE : {scale}\n").replace("EUC_2D", kind).replace("2 3 4", "2 1 1")
+    reading = read(content)
+    assert reading.request["objectives"][0]["matrix"][0][1] == pytest.approx(distance)
+    assert f"rounded to 1/{scale}" in " ".join(note.text for note in reading.notes)
 
 
 def test_routes_under_a_limit_count_the_service() -> None:
