@@ -43,6 +43,9 @@ def read_cvrp(file: TsplibFile) -> Reading:
     if shipments:
         request["shipments"] = shipments
     fleet.check_distances(file, timed="clock" in request)
+    if "clock" in request and "DISTANCE" in file.header:
+        text = "DISTANCE limits the time of a route, which service and waiting are part of."
+        file.source.note("times", text)
     return file.source.reading("fleet", request)
 
 

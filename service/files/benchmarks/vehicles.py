@@ -118,7 +118,8 @@ def _count(file: TsplibFile) -> int | None:
     name = count_of(file)
     if name is None:
         lengths = [len(file.sections[section]) for section in _sections(file)]
-        return lengths[0] if lengths else None
+        one = 1 if "TSP" in file.word("TYPE").upper() else None  # a tour is of one vehicle
+        return lengths[0] if lengths else one
     value = number_in(file.word(name))
     if value is None or not value.is_integer() or value < 1:
         raise file.source.refusal(f"{name} must be a whole number from 1", file.word(name))

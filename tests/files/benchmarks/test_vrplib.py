@@ -190,9 +190,10 @@ READ = {
     "a traveller with windows": (
         text(sections=WINDOWS, demands="")
         .replace(": CVRP", ": TSPTW")
-        .replace("CAPACITY : 10", "SALESMEN : 1"),
+        .replace("CAPACITY : 10\n", ""),
         ("stops", "window", [None, [0, 60], [5, 70], [0, 90]]),
         ("vehicles", "capacity", [None]),
+        ("vehicles", "count", [1]),
     ),
     "nodes that count from 0": (
         HEAD
@@ -344,6 +345,7 @@ NOTED = [
     ("FIXED_EDGES_SECTION\n1 2\n-1\n", "FIXED_EDGES_SECTION was not used"),
     ("TOUR_SECTION\n1 2 3 4 -1\n", "TOUR_SECTION was not used"),
     ("WRITTEN_BY : a program\n", "WRITTEN_BY was not used: it is not a known keyword"),
+    ("DISTANCE : 90\nSERVICE_TIME : 4\n", "DISTANCE limits the time of a route"),
     ("", "Distances are whole numbers, as TSPLIB defines EUC_2D."),
 ]
 
