@@ -6,7 +6,7 @@ than these defaults; the second objective is the longest route.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from service.files.fleets import Stop, Vehicle, measured, speed_between
@@ -17,6 +17,7 @@ from service.files.reading import Source, quoted
 _PER_HOUR, _PER_KM = 3600, 0  # the defaults of VROOM
 _DIFFER = "vehicles differ in it, and objectives hold for all of them"
 _OF = "costs of vehicles"
+_SAME = "all vehicles have the same one, and the objectives are metres and seconds"
 _LIMITS = ("max_travel_time", "max_distance")
 Objectives = list[dict[str, Any]]
 Matrix = list[list[Any]]
@@ -109,6 +110,9 @@ def _by_places(
         note_unused(source, "speed_factor", "vehicles", "times are by road")
         factor = 1
     if not rates.fixed:  # at one speed, any rates have the same best plans
+        _note_rates(source, rates, _SAME)
+        if factor != 1 and not timed:
+            note_unused(source, "speed_factor", "vehicles", "nothing here takes time")
         return measured(source, timed, stops, factor), 1
     distance, time = measured(source, rates.per_hour > 0 or timed, stops, factor)
     per_second, per_metre = rates.per_hour / 3600, rates.per_km / 1000
@@ -173,30 +177,41 @@ def _by_matrices(
     if not cut.given.get("distances"):
         if rates.per_km:
             note_unused(source, "per_km", _OF, "there are no matrices of distances")
-        unit = _noted(source, "total time", rates.per_hour / 3600) if rates.fixed else 1
-        return [total, longest], unit
+        return [total, longest], _unit(source, "total time", replace(rates, per_km=0))
     distances = cut.matrix("distances")
     distance = {"name": "distance", "matrix": distances, "over": "sum"}
     if rates.per_hour and rates.per_km:
         source.note("objectives", "The first objective is VROOM's cost: per_hour and per_km.")
         costs = _costs(durations, distances, rates)
         return [{"name": "cost", "matrix": costs, "over": "sum"}, longest], 1
+    if rates.fixed and not rates.per_km:
+        return [total, longest], _unit(source, "total time", rates)
+    return [distance, longest], _unit(source, "distance", rates)
+
+
+def _unit(source: Source, name: str, rates: Rates) -> float:
+    """Return VROOM's cost of a unit of the first objective, time or distance, with a note."""
     if not rates.fixed:
-        return [distance, longest], 1
-    if rates.per_km:
-        return [distance, longest], _noted(source, "distance", rates.per_km / 1000)
-    return [total, longest], _noted(source, "total time", rates.per_hour / 3600)
+        if not rates.per_km:
+            _note_rates(source, rates, _SAME)
+        return 1
+    return _noted(source, name, rates.per_km / 1000 if rates.per_km else rates.per_hour / 3600)
 
 
 def _note_beside_costs(source: Source, cut: _Cut, rates: Rates) -> None:
     """Note what a matrix of costs stands for."""
     why = "there are matrices of costs"
+    _note_rates(source, rates, why)
+    if cut.given.get("distances"):
+        note_unused(source, "distances", "matrices", why)
+
+
+def _note_rates(source: Source, rates: Rates, why: str) -> None:
+    """Note rates that are not the defaults, and are not used."""
     if rates.per_hour != _PER_HOUR:
         note_unused(source, "per_hour", _OF, why)
     if rates.per_km != _PER_KM:
         note_unused(source, "per_km", _OF, why)
-    if cut.given.get("distances"):
-        note_unused(source, "distances", "matrices", why)
 
 
 def _costs(durations: Matrix, distances: Matrix, rates: Rates) -> Matrix:
