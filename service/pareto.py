@@ -18,7 +18,8 @@ def nondominated(points: Array) -> Indices:
     """Return the indices of the nondominated points, by ascending first length, then the second.
 
     Of equal points the first one stays. Of two objectives the first length strictly ascends along
-    the result and the second strictly descends; O(k log k). Of more objectives O(k^2).
+    the result and the second strictly descends; O(k log k). Of more objectives O(k^2);
+    service.search.nondominated is faster, in compiled code.
 
     Args:
         points: Shape (k, m), in any order and unit; k may be 0.
@@ -75,7 +76,15 @@ def hypervolume(points: Array, reference_point: Array) -> float:
         raise ValueError(f"the reference point must be positive, got {reference_point.tolist()}")
     shares = shares_of(points, reference_point)
     inside = shares[(shares < 1).all(axis=1)]
-    front = inside[nondominated(inside)]
+    return area(inside[nondominated(inside)])
+
+
+def area(front: Array) -> float:
+    """Return the hypervolume of nondominated points, which ascend by their first length.
+
+    Args:
+        front: Shape (k, 2), below 1: in units of the reference point.
+    """
     heights = np.concatenate(([1.0], front[:-1, 1])) - front[:, 1]
     return min(1.0, float(((1 - front[:, 0]) * heights).sum()))  # 1 at most, for all rounding
 

@@ -25,13 +25,14 @@ from service.front import (
     SearchResult,
 )
 from service.instance import Instance, tour_lengths
-from service.pareto import nondominated
-from service.search.best_subset import best_subset, selection_seconds
+from service.search.best_subset import best_subset, selection_limit, selection_seconds
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED
 from service.search.forbidden_legs import tightest
+from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.improve import improve
+from service.search.nondominated import nondominated
 from service.search.open_routes import oriented, plain_tours, rotated
 
 Array = NDArray[np.float64]
@@ -54,7 +55,12 @@ def improved(
         instance,
         tours,
         deadline=deadline,
-        reserve=partial(selection_seconds, options.size, objectives=instance.objectives),
+        reserve=partial(
+            selection_seconds,
+            options.size,
+            objectives=instance.objectives,
+            seconds=selection_limit(options.time_limit),
+        ),
         seed=options.seed,
         stop=stop,
         report=report,
@@ -124,19 +130,18 @@ def plan(
     times.append(time.perf_counter())
     if not len(found.points):
         raise Cancelled if stop() else _no_tour(instance, options, found)
-    gained = None if before is None else hypervolume(found.points, reference_point) - before
-    chosen = best_subset(found.points, options.size, reference_point, stop)
-    if options.choose_again is not None:
-        chosen = options.choose_again(found, chosen)
-    tours = found.tours_at(chosen).astype(np.int64)
+    front = FrontPoints(found.points, reference_point)
+    gained = None if before is None else max(0.0, front.quick_hypervolume - before)
+    chosen = _selected(found, front, options, stop)
+    best, tours = front.at(chosen), found.tours_at(chosen).astype(np.int64)
     times.append(time.perf_counter())
     bound = _bound(instance, reference_point, stop) if options.bound and not stop() else None
     times.append(time.perf_counter())
     return front_of(
         tours=_as_reported(instance, options.start, tours),
-        points=found.points[chosen],
-        hypervolume=hypervolume(found.points[chosen], reference_point),
-        found=len(found.points),
+        points=best.points,
+        hypervolume=best.hypervolume,
+        found=len(front),
         terminated=found.terminated,
         timings=dict(zip(_PHASES, (1000 * np.diff(times)).tolist(), strict=True)),
         bound=bound,
@@ -167,6 +172,16 @@ def _unsearched(instance: Instance, tours: NDArray[np.integer], *_: object) -> S
     points = tour_lengths(instance, tours)
     front = nondominated(points)
     return SearchResult(points[front], tours[front].__getitem__, "converged")
+
+
+def _selected(
+    found: SearchResult, front: FrontPoints, options: PlanOptions, stop: Callable[[], bool]
+) -> Indices:
+    """Return the indices of the tours to report."""
+    chosen = best_subset(front, options.size, selection_limit(options.time_limit), stop)
+    if options.choose_again is None:
+        return chosen
+    return options.choose_again(found, chosen)
 
 
 def _bound(instance: Instance, reference_point: Array, stop: Callable[[], bool]) -> float:

@@ -11,6 +11,7 @@ from hypothesis.extra.numpy import arrays
 
 from service.pareto import balances, hypervolume, knee, nondominated
 from service.search.best_subset import best_subset
+from service.search.front_points import FrontPoints
 
 POINT_LISTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=9)
 REFERENCE_POINT = np.array([8.0, 10.0])
@@ -71,31 +72,32 @@ def test_no_subset_has_a_larger_hypervolume(
     points: list[tuple[int, int]], size: int, corner: tuple[int, int]
 ) -> None:
     given_points, reference_point = np.array(points, float), np.array(corner, float)
-    chosen = best_subset(given_points, size, reference_point)
-    assert len(chosen) == min(size, len(points))
+    _, front = FrontPoints.among(given_points, reference_point)
+    chosen = best_subset(front, size)
+    assert len(chosen) == min(size, len(front))
     assert (np.diff(chosen) > 0).all()
     best = max(
         hypervolume(given_points[list(some)], reference_point)
         for some in combinations(range(len(points)), len(chosen))
     )
-    assert hypervolume(given_points[chosen], reference_point) == pytest.approx(best, abs=1e-12)
+    assert front.at(chosen).hypervolume == pytest.approx(best, abs=1e-12)
 
 
 def test_a_front_beyond_the_reference_point_is_spread_evenly() -> None:
     points = np.stack([np.arange(101.0), 100 - np.arange(101.0)], axis=1) + 10
-    assert best_subset(points, 3, np.ones(2)).tolist() == [0, 50, 100]
+    assert best_subset(FrontPoints(points, np.ones(2)), 3).tolist() == [0, 50, 100]
 
 
 def test_a_size_that_is_not_positive_is_refused() -> None:
     with pytest.raises(ValueError, match="size must be at least 1, got 0"):
-        best_subset(np.ones((3, 2)), 0, np.ones(2))
+        best_subset(FrontPoints(np.ones((1, 2)), np.ones(2)), 0)
 
 
 def test_a_hundred_of_ten_thousand_are_the_best_that_exchanges_find() -> None:
     rng = np.random.default_rng(0)
     points = np.stack([np.sort(rng.random(10_000)), -np.sort(-rng.random(10_000))], axis=1)
     corner = np.full(2, 1.1)
-    chosen = best_subset(points, 100, corner)
+    chosen = best_subset(FrontPoints(points, corner), 100)
     best = hypervolume(points[chosen], corner)
     for place in range(100):
         for other in (chosen[place] - 1, chosen[place] + 1):
@@ -107,7 +109,7 @@ def test_a_hundred_of_ten_thousand_are_the_best_that_exchanges_find() -> None:
 def test_a_best_subset_that_is_told_to_stop_is_spread_over_the_front() -> None:
     x = np.linspace(0, 1, 101)
     points = np.stack((x, 1 - x), axis=1)
-    chosen = best_subset(points, 5, np.full(2, 1.5), lambda: True)
+    chosen = best_subset(FrontPoints(points, np.full(2, 1.5)), 5, stop=lambda: True)
     assert chosen.tolist() == [0, 25, 50, 75, 100]
 
 

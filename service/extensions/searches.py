@@ -10,7 +10,7 @@ from service.extensions.checks import called, checked
 from service.extensions.entry_points import SEARCHES, described, loaded
 from service.front import PlanOptions, ReportOf, SearchFunction, SearchResult, Termination
 from service.instance import Instance, tour_lengths
-from service.pareto import nondominated
+from service.search.nondominated import nondominated
 
 _FEWEST_CITIES = 3  # of a search: with fewer cities there are no other tours than the given ones
 _SHARE = 0.95  # of the seconds left that the function gets; the rest is for checks and the choice

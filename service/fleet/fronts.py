@@ -8,9 +8,8 @@ from service.fleet.evaluation import points_of
 from service.fleet.fleet import Array, Fleet, default_reference_point
 from service.fleet.plans import FleetFront, Plan
 from service.front import Termination
-from service.pareto import nondominated
 from service.search.best_subset import best_subset
-from service.search.hypervolume import hypervolume
+from service.search.front_points import FrontPoints
 
 _NO_LIMIT = 2**62
 
@@ -51,17 +50,18 @@ def front_of(
     """Return the front of plans that break no rule."""
     points = points_of(fleet, plans)
     reference_point = reference_point_of(fleet, options)
-    front = nondominated(points)
-    kept = front[best_subset(points[front], options.size, reference_point)]
+    indices, front = FrontPoints.among(points, reference_point)
+    chosen = best_subset(front, options.size)
+    best, kept = front.at(chosen), indices[chosen]
     return FleetFront(
         fleet=fleet,
         plans=[plans[index] for index in kept],
-        points=points[kept],
+        points=best.points,
         found=len(front),
         constructed=constructed,
         scale=fleet.scale,
         reference_point=reference_point,
-        hypervolume=hypervolume(points[kept], reference_point),
+        hypervolume=best.hypervolume,
         terminated=terminated,
         timings={"improvement": 1000 * (time.monotonic() - began)},
     )

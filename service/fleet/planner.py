@@ -32,8 +32,8 @@ from service.fleet.solver import Solver
 from service.fleet.sweep import Searches, Sweep
 from service.fleet.translation import Translation
 from service.front import Progress, ReportOf, Termination
-from service.search.best_subset import best_subset, selection_seconds
-from service.search.hypervolume import hypervolume
+from service.search.best_subset import best_subset, selection_limit, selection_seconds
+from service.search.front_points import FrontPoints
 
 _REPORT_EVERY = 0.1  # seconds
 _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
@@ -273,7 +273,9 @@ class _Search:
         """
         archive = self.archive
         points = np.array(archive.points).reshape(-1, len(self._reference_point))
-        chosen = best_subset(points, size, self._reference_point)
+        indices, known = FrontPoints.among(points, self._reference_point)
+        seconds = selection_limit(self._options.time_limit)
+        chosen = indices[best_subset(known, size, seconds)]
         found = [self._translation.plan(archive.solutions[index]) for index in chosen]
         plans = [plan for plan in found if not violations(self._fleet, plan)]
         if not plans and self._cancelled:
@@ -329,9 +331,8 @@ class _Search:
         left = self._deadline - now
         if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and self.archive:
             self._reported = now
-            points = np.array(self.archive.points)
-            volume = hypervolume(points, self._reference_point)
-            progress = Progress(now - self._began, volume, len(points))
+            found = FrontPoints(np.array(self.archive.points), self._reference_point)
+            progress = Progress(now - self._began, found.quick_hypervolume, len(found))
             self._report(progress, partial(self.front, terminated=None))
         return begun and left <= self._reserve()
 
@@ -343,7 +344,12 @@ class _Search:
         found = len(self.archive)
         left_out = min((each.num_missing_clients() for each in self.archive.solutions), default=0)
         checked = (min(found, self._options.size) + left_out) * self._fleet.rules.n
-        selected = selection_seconds(self._options.size, found, len(self._reference_point))
+        selected = selection_seconds(
+            self._options.size,
+            found,
+            objectives=len(self._reference_point),
+            seconds=selection_limit(self._options.time_limit),
+        )
         return self._pause + _CHECKING * checked + selected
 
 

@@ -16,11 +16,12 @@ from service.coverage.leg_paths import LegPaths
 from service.front import Front, PlanOptions, Progress, ReportOf, SearchResult, Termination
 from service.instance import Instance, tour_steps
 from service.objectives import OBJECTIVES
-from service.pareto import nondominated
 from service.replanning.earlier_tours import EarlierTours
 from service.replanning.kept_legs import kept_shares, with_most_kept_at
-from service.search.best_subset import best_subset
+from service.search.best_subset import SHORTLY, best_subset
+from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
+from service.search.nondominated import nondominated
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
@@ -112,7 +113,8 @@ class PlanWithDetours:
     def _add(self, front: Front) -> None:
         """Add the tours of a front to those found, and report: a short search may not have."""
         self._found = self._with(front.tours)
-        self._hypervolume = hypervolume(self._found.points, self._reference_point)
+        found = FrontPoints(self._found.points, self._reference_point)
+        self._hypervolume = found.quick_hypervolume
         self._say(0.0, 0, lambda size: self._front(front, self._found, size))
 
     def _with(self, tours: Tours) -> "_Found":
@@ -132,13 +134,13 @@ class PlanWithDetours:
         front = nondominated((points / self._reference_point).round(_DIGITS))
         most = max(self._options.size, _MOST_FOUND if objectives == OBJECTIVES else 0)
         if len(front) > most:
-            front = front[best_subset(points[front], most, self._reference_point)]
+            front = front[self._best(points[front], most)]
         return _Found(points[front], tours[places[front]], rows[front])
 
     def _front(self, front: Front, found: "_Found", size: int) -> Front:
         """Return the best `size` of the tours found; other attributes are those of `front`."""
         legs, earlier = self._legs, self._earlier
-        chosen = best_subset(found.points, min(size, self._options.size), self._reference_point)
+        chosen = self._best(found.points, min(size, self._options.size))
         kept = None
         if earlier is not None:
             if earlier.balance is not None and earlier.min_kept == 0:
@@ -159,6 +161,11 @@ class PlanWithDetours:
             hypervolume=hypervolume(points, self._reference_point),
             gained=None,
         )
+
+    def _best(self, points: Array, size: int) -> NDArray[np.intp]:
+        """Return the indices of the best `size` points of a front."""
+        front = FrontPoints(points, self._reference_point)
+        return best_subset(front, size, SHORTLY)
 
     def _tell(self, progress: Progress, best: Callable[[int], Front]) -> None:
         """Report the tours found so far, those of the search in progress included."""

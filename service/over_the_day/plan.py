@@ -19,7 +19,8 @@ from service.over_the_day.day import Day
 from service.over_the_day.search import DaySearch
 from service.replanning.earlier_tours import EarlierTours
 from service.replanning.kept_legs import kept_shares
-from service.search.best_subset import best_subset, selection_seconds
+from service.search.best_subset import best_subset, selection_limit, selection_seconds
+from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.open_routes import rotated
 
@@ -149,7 +150,9 @@ class _Planning:
     ) -> Front:
         """Return the best front so far; until the deadline, best departures are looked for."""
         points, tours = self._search.found()
-        chosen = best_subset(points, min(size, self._options.size), self._reference_point)
+        front = FrontPoints(points, self._reference_point)
+        seconds = selection_limit(self._options.time_limit)
+        chosen = best_subset(front, min(size, self._options.size), seconds)
         # With their best departures, some may dominate others.
         driven = self._search.driven(tours[chosen], deadline).best()
         kept = None
@@ -181,7 +184,8 @@ class _Planning:
     def _reserve(self) -> float:
         """Return the seconds that it takes to select the front."""
         size, points = self._options.size, self._search.size
-        selecting = selection_seconds(size, points, self._instance.objectives)
+        seconds = selection_limit(self._options.time_limit)
+        selecting = selection_seconds(size, points, self._instance.objectives, seconds)
         return selecting + self._finishing * min(size, points)
 
     def _improve(self, means: Front) -> Termination:
@@ -200,7 +204,7 @@ class _Planning:
 
     def _tell(self, means: Front, now: float) -> None:
         points, _ = self._search.found()
-        found = hypervolume(points, self._reference_point)
+        found = FrontPoints(points, self._reference_point).quick_hypervolume
         progress = Progress(now - self._began, found, len(points))
         self._report(progress, lambda size: self._front(means, size))
 

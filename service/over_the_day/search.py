@@ -29,8 +29,8 @@ from service.over_the_day.travel import (
     traffic_of,
     write_reached,
 )
-from service.pareto import nondominated
 from service.preferences import spread, weights
+from service.search.nondominated import nondominated
 from service.search.several.archive import BlockArchive, best_row, make_archive, rows_of
 
 Array = NDArray[np.float64]

@@ -11,13 +11,12 @@ from service.construction.first_tours import Constructor
 from service.errors import Refusal
 from service.front import Front, PlanOptions, ReportOf, reporting
 from service.instance import Instance, tour_lengths
-from service.pareto import nondominated
 from service.planner import plan
 from service.replanning.earlier_tours import EarlierTours, Tours, few_enough, touched_cities
 from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, most_like_driven, with_most_kept_at
-from service.search.best_subset import best_subset
-from service.search.hypervolume import hypervolume
+from service.search.best_subset import best_subset, selection_limit
+from service.search.front_points import FrontPoints
 
 _LEAST_SECONDS = 1e-3  # for the search, even if completing the earlier tours took all of the time
 _ROUNDING = 1e-9  # of a share
@@ -66,7 +65,7 @@ def replan(
     timings = {**front.timings, "construction": front.timings["construction"] + 1000 * spent}
     front = replace(front, timings=timings)
     if earlier.min_kept > 0:
-        front = _keeping(instance, front, first, earlier, options.size)
+        front = _keeping(instance, front, first, earlier, options)
     elif len(first):
         tours = most_like_driven(instance, front.tours, front.points, first, earlier.driven)
         front = replace(front, tours=tours)
@@ -99,7 +98,7 @@ def _from_earlier(
 
 
 def _keeping(
-    instance: Instance, front: Front, first: Tours, earlier: EarlierTours, size: int
+    instance: Instance, front: Front, first: Tours, earlier: EarlierTours, options: PlanOptions
 ) -> Front:
     """Return the best of a front and the first tours that keep enough of the driven tour."""
     allowed = np.isfinite(tour_lengths(instance, first)).all(axis=1)
@@ -110,8 +109,13 @@ def _keeping(
         least, most = earlier.min_kept, float(kept.max())
         raise Refusal("too-different", pointer="/min_kept", limit=least, actual=most)
     tours = tours[enough]
-    tours = tours[nondominated(tour_lengths(instance, tours))]
-    chosen = best_subset(tour_lengths(instance, tours), size, front.reference_point)
-    points = tour_lengths(instance, tours[chosen])
-    found = hypervolume(points, front.reference_point)
-    return replace(front, tours=tours[chosen], points=points, hypervolume=found, found=len(tours))
+    indices, known = FrontPoints.among(tour_lengths(instance, tours), front.reference_point)
+    chosen = best_subset(known, options.size, selection_limit(options.time_limit))
+    best = known.at(chosen)
+    return replace(
+        front,
+        tours=tours[indices[chosen]],
+        points=best.points,
+        hypervolume=best.hypervolume,
+        found=len(known),
+    )

@@ -1,5 +1,6 @@
 """Best subsets: of the points of a front, those with the largest joint hypervolume."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -7,80 +8,125 @@ from numpy.typing import NDArray
 
 from service.jit import allocating, inlined
 from service.objectives import OBJECTIVES
-from service.pareto import nondominated, shares_of
-from service.search.several.volume import choose_greedily, make_sweep
+from service.search.front_points import FrontPoints
+from service.search.several.greedy_choice import choose_next, make_choice
+from service.search.thinning import Cells, divided, evenly
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-_SELECTING = 5e-8  # seconds for each pair of a point and a choice, twice what an EPYC core takes
-_SELECTING_OF_SEVERAL = 1e-7  # the same of three objectives; of each further one times the size
+Stop = Callable[[], bool]
+
+SHORTLY = 0.02  # seconds for the choice of a front that is reported on the way
+_LEAST_SECONDS, _LEAST_SHARE, _SHARE = 0.05, 0.2, 0.05  # of the time limit, for the choice
+# Seconds on a core of an EPYC, rather too many. For each pair of a point and a choice:
+_A_PAIR = 4e-8
+# For a look at one of several objectives: at all, and for each point that is chosen already.
+_A_LOOK, _A_CHOSEN = 2.5e-7, {3: 3e-9, 4: 1.2e-8}
+_LOOKS = 1.5  # at each point, where as many points are chosen as the number e; with the logarithm
+_COLLECTING = 2e-6  # for each point found: to sort the archive, and to copy the points
+
+
+def selection_limit(time_limit: float) -> float:
+    """Return the seconds that choosing tours may take within a time limit of planning.
+
+    A twentieth of the limit; 50 ms where that is less, but at most a fifth of the limit. Without a
+    search, where the limit is 0, it is 50 ms.
+    """
+    if time_limit == 0:
+        return _LEAST_SECONDS
+    return max(_SHARE * time_limit, min(_LEAST_SECONDS, _LEAST_SHARE * time_limit))
+
+
+def selection_seconds(size: int, points: int, objectives: int, seconds: float) -> float:
+    """Return an estimate, rather too high, of what best_subset() takes, and collecting the points.
+
+    Args:
+        size: How many points are chosen.
+        points: The number of points found.
+        objectives: The number of objectives.
+        seconds: The most that the choice may take.
+    """
+    choosing = 0.0 if points <= size else min(seconds, points * _for_each(size, objectives))
+    return choosing + _COLLECTING * points
 
 
 def best_subset(
-    points: Array, size: int, reference_point: Array, stop: Callable[[], bool] = lambda: False
+    front: FrontPoints, size: int, seconds: float = math.inf, stop: Stop = lambda: False
 ) -> Indices:
     """Return the ascending indices of the `size` points with the largest joint hypervolume.
 
     Of two objectives exact (Bringmann, Friedrich and Klitzke, 2014). Of more, points are chosen one
     after another, each time that which adds most: the hypervolume is at least 63 % of the largest
-    (Nemhauser, Wolsey and Fisher, 1978). If there are at most `size` points, all are returned. If
-    fewer than `size` contribute to the hypervolume, the rest are other nondominated points, and
-    then any others, evenly spread along the first length. O(k log k + k size) of two objectives.
+    (Nemhauser, Wolsey and Fisher, 1978). Where there are too many points for the seconds given,
+    they are first thinned evenly. If there are at most `size` points, all are returned. If fewer
+    than `size` lie below the reference point, the rest are others, evenly spread along the first
+    length. O(k log k + k size) of two objectives.
 
     Args:
-        points: Shape (k, m), in any order.
+        front: The points.
         size: How many points to choose, at least 1.
-        reference_point: Shape (m,), positive, in the unit of the points.
+        seconds: About how long the choice may take on one core of an EPYC. What is chosen depends
+            on this number, and not on the clock.
         stop: Called for each point chosen; once it returns True, points that are evenly spread
             over the front are returned instead.
 
     Raises:
         ValueError: The size is not positive.
 
-    >>> points = np.array([[5.0, 5.0], [4.0, 6.0], [2.0, 7.0], [7.0, 4.0]])
-    >>> best_subset(points, 2, np.array([10.0, 10.0]))
+    >>> points = np.array([[2.0, 7.0], [4.0, 6.0], [5.0, 5.0], [7.0, 4.0]])
+    >>> best_subset(FrontPoints(points, np.array([10.0, 10.0])), 2)
     array([0, 2])
     """
     if size < 1:
         raise ValueError(f"size must be at least 1, got {size}")
-    if len(points) <= size:
-        return np.arange(len(points))
-    front = nondominated(points)
-    shares = shares_of(points[front], reference_point)
-    inside = (shares < 1).all(axis=1)
-    useful = front[inside]
+    if len(front) <= size:
+        return np.arange(len(front))
+    useful = front.inside
     if len(useful) > size:
-        best = _best_of_front if points.shape[1] == OBJECTIVES else _greedy
-        return np.sort(useful[best(np.ascontiguousarray(shares[inside]), size, stop)])
-    spare = np.setdiff1d(front, useful)
-    if len(useful) + len(spare) < size:
-        useful = front
-        spare = np.setdiff1d(np.arange(len(points)), front)
-    spare = spare[np.argsort(points[spare, 0], kind="stable")]
-    places = np.linspace(0, len(spare) - 1, size - len(useful)).astype(np.intp)
-    return np.sort(np.concatenate((useful, spare[places])))
+        return np.sort(useful[_chosen(front.shares[useful], size, seconds, stop)])
+    spare = np.setdiff1d(np.arange(len(front)), useful)
+    return np.sort(np.concatenate((useful, evenly(spare, size - len(useful)))))
 
 
-def selection_seconds(size: int, points: int, objectives: int = OBJECTIVES) -> float:
-    """Return an estimate, rather too high, of the seconds that best_subset() takes."""
-    if points <= size:
-        return 0.0
+def _chosen(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
+    """Return the indices of `size` points, all below 1, of more."""
+    objectives = shares.shape[1]
+    affordable = min(len(shares), seconds / _for_each(size, objectives))
+    cells = divided(shares, max(size, int(affordable)))
+    if objectives > OBJECTIVES:
+        return _greedy(shares, cells, size, seconds, stop)
+    firsts = np.sort(cells.firsts)
+    if len(firsts) <= size:
+        return _with_others(firsts, shares, size)
+    return firsts[_best_of_front(np.ascontiguousarray(shares[firsts]), size, stop)]
+
+
+def _for_each(size: int, objectives: int) -> float:
+    """Return the seconds that choosing `size` points takes for each point of the front."""
     if objectives == OBJECTIVES:
-        return _SELECTING * points * size
-    return _SELECTING_OF_SEVERAL * points * size * (1 if objectives == 3 else size)
+        return _A_PAIR * size
+    looks = 1.0 + _LOOKS * math.log(size)
+    return looks * (_A_LOOK + _A_CHOSEN[objectives] * size / 2)
 
 
-def _greedy(shares: Array, size: int, stop: Callable[[], bool]) -> Indices:
+def _greedy(shares: Array, cells: Cells, size: int, seconds: float, stop: Stop) -> Indices:
     """Return the indices of `size` points, chosen one after another from more."""
-    gains = (1 - shares).prod(axis=1)
-    chosen = np.empty(size, np.int64)
-    sweep = make_sweep(size, shares.shape[1])
-    for count in range(size):
-        if stop():
-            rest = np.flatnonzero(gains >= 0)
-            places = np.linspace(0, len(rest) - 1, size - count).astype(np.intp)
-            return np.concatenate((chosen[:count], rest[places]))
-        choose_greedily(shares, gains, chosen, count, sweep)
+    affordable = size
+    while affordable > 1 and len(cells.firsts) * _for_each(affordable, shares.shape[1]) > seconds:
+        affordable -= 1 + affordable // 10
+    choice = make_choice(shares, cells, size)
+    while choice.counts[0] < affordable and not stop():
+        choose_next(choice)
+    return _with_others(choice.chosen[: choice.counts[0]], shares, size, cells.firsts)
+
+
+def _with_others(
+    chosen: Indices, shares: Array, size: int, first: Indices | None = None
+) -> Indices:
+    """Return the chosen points and others: of those named first, then of all, evenly spread."""
+    for others in (() if first is None else (first,)) + (np.arange(len(shares)),):
+        left = np.setdiff1d(others, chosen)
+        chosen = np.concatenate((chosen, evenly(left, min(len(left), size - len(chosen)))))
     return chosen
 
 

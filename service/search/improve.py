@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from service.front import Progress, ReportOf, SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
-from service.pareto import nondominated
 from service.search.archive import MAX_POINTS
-from service.search.best_subset import best_subset
+from service.search.best_subset import SHORTLY, best_subset
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.front_points import FrontPoints
+from service.search.nondominated import nondominated
 from service.search.schedule import Search
 from service.search.several.schedule import SearchOfSeveral
 
@@ -143,7 +144,7 @@ def _enumerated(
 def _best_found(search: Search | SearchOfSeveral, size: int) -> SearchResult:
     """Return the best subset of a size of the front that a search has found so far."""
     points = search.points()
-    indices = best_subset(points, size, search.reference_point)
+    indices = best_subset(FrontPoints(points, search.reference_point), size, SHORTLY)
     return SearchResult(points[indices], search.tours(indices).__getitem__, None)
 
 

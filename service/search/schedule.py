@@ -34,7 +34,7 @@ from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.descents import Descents
 from service.search.enumeration import enumerate_tours
-from service.search.hypervolume import hypervolume
+from service.search.front_points import FrontPoints
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -111,7 +111,7 @@ class Search:
     @property
     def hypervolume(self) -> float:
         """The hypervolume of the front found so far, 0 to 1."""
-        return hypervolume(self.points(), self.reference_point)
+        return FrontPoints(self.points(), self.reference_point).hypervolume
 
     @property
     def allowed(self) -> bool:

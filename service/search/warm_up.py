@@ -17,6 +17,7 @@ from service.search.candidates import Scalarization, rank_candidates
 from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
+from service.search.front_points import FrontPoints
 from service.search.improve import improve
 from service.search.local_search import least_gain, offer, sum_afresh
 from service.search.pareto_local_search import WEIGHTS, fill_gaps
@@ -54,7 +55,8 @@ def two_opt() -> None:
 def beside_two_opt() -> None:
     """Compile what a search by two-opt needs besides."""
     instance = _instance(coordinates=True)
-    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
+    points = np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]])
+    best_subset(FrontPoints(points, np.full(2, 4.0)), 2)
     search = _search(instance)
     for _ in search.pool_candidates():
         pass

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from service.search.best_subset import best_subset
+from service.search.front_points import FrontPoints
 from service.search.improve import improve
 from tests.benchmarks.instances import paper_instances
 from tests.benchmarks.methods import methods
@@ -55,7 +56,7 @@ def main(arguments: list[str]) -> None:
 def _searched(instance: Instance) -> Points:
     nothing = np.empty((0, instance.n), np.int32)
     points = tour_lengths(instance, improve(instance, nothing, iterations=ROUNDS).tours)
-    return points[best_subset(points, TOURS, np.full(2, float(instance.n)))]
+    return points[best_subset(FrontPoints(points, np.full(2, float(instance.n))), TOURS)]
 
 
 def _points(method: Method, instance: Instance) -> list[list[float]]:

@@ -34,6 +34,7 @@ from numpy.typing import NDArray
 from service.instance import tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.best_subset import best_subset
+from service.search.front_points import FrontPoints
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rests import (
     ROAD_STOPS,
@@ -192,7 +193,7 @@ def _by_or_tools(rest: Rest, best: Array, limit: float) -> dict[str, float]:
     points = tour_lengths(rest.instance, np.concatenate((rest.hints, routes)))
     points = points[nondominated(points)]
     corner = rest.instance.n * rest.instance.scale
-    return _cell(points[best_subset(points, TOURS, corner)], best, seconds)
+    return _cell(points[best_subset(FrontPoints(points, corner), TOURS)], best, seconds)
 
 
 def _cell(points: Array, best: Array, seconds: float) -> dict[str, float]:

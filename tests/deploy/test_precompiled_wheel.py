@@ -24,9 +24,10 @@ print(*WheelBuilder(sys.argv[1]).build(directory=sys.argv[2], versions=["standar
 COMPILED_CODE = """
 import numpy as np
 from service.search.best_subset import best_subset
+from service.search.front_points import FrontPoints
 
 def warm_up() -> None:
-    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
+    best_subset(FrontPoints(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), np.full(2, 4.0)), 2)
 """
 LOAD = """
 import json

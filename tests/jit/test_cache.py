@@ -30,8 +30,9 @@ def test_compiled_code_works_where_it_cannot_be_cached() -> None:
     """Of numba's ways to find a place, the only one left does not apply here."""
     code = (
         "import numpy as np; from service.search.best_subset import best_subset;"
+        "from service.search.front_points import FrontPoints;"
         "points = np.stack([np.arange(9.0), 9 - np.arange(9.0)], axis=1);"
-        "print(len(best_subset(points, 3, np.full(2, 10.0))))"
+        "print(len(best_subset(FrontPoints(points, np.full(2, 10.0)), 3)))"
     )
     environment = {
         **os.environ,

@@ -16,6 +16,7 @@ from service.planner import plan
 from service.preferences import fan, from_angles
 from service.search.best_subset import best_subset
 from service.search.bound.hypervolume import hypervolume_bound
+from service.search.front_points import FrontPoints
 from service.search.improve import improve
 from tests.helpers.instances import no_tours
 
@@ -142,4 +143,4 @@ def test_costs_that_no_unit_can_hold_together_are_refused() -> None:
 
 def test_a_reference_point_in_too_small_a_unit_leaves_every_tour_out() -> None:
     points = np.array([[1e300, 2e300], [2e300, 1e300], [3e300, 5e299]])
-    assert len(best_subset(points, 2, np.array([1e-300, 1e-300]))) == 2
+    assert len(best_subset(FrontPoints(points, np.array([1e-300, 1e-300])), 2)) == 2

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.jit import compiled
+from service.jit import compiled, inlined
 from service.search.archive import ROUNDING
 from service.search.closing import opened_tours
 from service.search.several.archive import BlockArchive, insert, make_archive, rows_of
@@ -39,17 +39,34 @@ def exact_tours_of_several(
             complete = False
             break
     rows = rows_of(archive)
-    distinct = _distinct(archive.points[rows], 1 + ROUNDING * n)
+    distinct = np.ones(len(rows), np.bool_)
+    mark_distinct(archive.points[rows], 1 + ROUNDING * n, distinct)
     return opened_tours(instance, archive.tours[rows[distinct]]), complete
 
 
-def _distinct(points: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
-    """Return which points more than rounding keeps from being dominated by another."""
-    distinct = np.ones(len(points), np.bool_)
-    for k, point in enumerate(points):
-        at_least = (points <= point * slack).all(axis=1)
-        distinct[k] = np.count_nonzero(at_least & distinct) == 1  # itself
-    return distinct
+@compiled
+def mark_distinct(points: NDArray[np.float64], slack: float, distinct: NDArray[np.bool_]) -> None:
+    """Mark each point that more than rounding keeps from being dominated by another one marked.
+
+    Args:
+        points: Shape (k, m).
+        slack: What a length may be multiplied by, for rounding.
+        distinct: The marks, shape (k,), all True.
+    """
+    for k in range(len(points)):
+        for j in range(len(points)):
+            if j != k and distinct[j] and no_worse(points, j, k, slack):
+                distinct[k] = False
+                break
+
+
+@inlined
+def no_worse(points: NDArray[np.float64], j: int, k: int, slack: float) -> bool:
+    """Return whether point j is nowhere above point k, but for rounding."""
+    below = True
+    for m in range(points.shape[1]):
+        below &= points[j, m] <= points[k, m] * slack
+    return below
 
 
 @compiled

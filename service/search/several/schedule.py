@@ -16,7 +16,7 @@ from service.search.archive import MAX_POINTS
 from service.search.archive import make_archive as make_sorted_archive
 from service.search.candidates import Scalarization
 from service.search.closing import closed_tours, opened_tours
-from service.search.hypervolume import hypervolume
+from service.search.front_points import FrontPoints
 from service.search.pareto_local_search import SearchState, WeightedCandidates
 from service.search.several.archive import (
     accepts,
@@ -95,6 +95,7 @@ class SearchOfSeveral:
         self._descents = DescentsOfSeveral(instance, self._state, self._sums, descent, cities)
         self._constructing = touched is None
         self._lengths = np.empty(instance.objectives)
+        self._sorted = 0, np.empty(0, np.int32)  # tours ever inserted, and the rows then
 
     def _state_of_two(self) -> SearchState:
         """Return the state of a search for two objectives, for its local searches.
@@ -114,8 +115,8 @@ class SearchOfSeveral:
 
     @property
     def hypervolume(self) -> float:
-        """The hypervolume of the front found so far, 0 to 1."""
-        return hypervolume(self.points(), self.reference_point)
+        """The hypervolume of the front found so far, 0 to 1; of four objectives of a part of it."""
+        return FrontPoints(self.points(), self.reference_point).quick_hypervolume
 
     @property
     def allowed(self) -> bool:
@@ -130,13 +131,20 @@ class SearchOfSeveral:
 
     def tours(self, indices: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
         """Return the tours of the front, or those at indices, by ascending first length."""
-        rows = rows_of(self._archive)
+        rows = self._rows()
         tours = self._archive.tours[rows if indices is None else rows[indices]]
         return opened_tours(self.instance, tours)
 
     def points(self) -> Array:
         """Return the points of the front, shape (p, m), in the instance's units."""
-        return np.ldexp(self._archive.points[rows_of(self._archive)], -self.instance.shifts)
+        return np.ldexp(self._archive.points[self._rows()], -self.instance.shifts)
+
+    def _rows(self) -> NDArray[np.int32]:
+        """Return the rows of the archive in the order of the front; sorted once for each front."""
+        inserted = int(self._archive.counts[2])
+        if inserted != self._sorted[0]:
+            self._sorted = inserted, rows_of(self._archive)
+        return self._sorted[1]
 
     def not_covered(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
         """Return the tours that the front neither dominates nor equals.

@@ -1,4 +1,4 @@
-"""Hypervolumes of points of three or four objectives, and what a point would add, in compiled code.
+"""Hypervolumes of points of three or four objectives, in compiled code.
 
 Lengths are shares of the reference point, so that this is 1 in each. By sweeps: of three objectives
 along the third, over a staircase of the points so far (Fonseca, Paquete and López-Ibáñez, 2006);
@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from service.jit import compiled, inlined
 
 Array = NDArray[np.float64]
-Order = NDArray[np.int64]
 
 
 class Sweep(NamedTuple):
@@ -141,47 +140,3 @@ def keep_sorted(front: Array, kept: int, points: Array, k: int) -> int:
         place -= 1
     front[place, 0], front[place, 1], front[place, 2] = x, y, z
     return left + 1
-
-
-@compiled
-def added_volume(shares: Array, chosen: Order, count: int, k: int, sweep: Sweep) -> float:
-    """Return by how much point k would increase the hypervolume of `count` chosen points.
-
-    The chosen points are ascending by the last length. Each covers a part of the box of point k:
-    the box of the point whose lengths are the greater ones of the two points.
-    """
-    box, objectives = 1.0, shares.shape[1]
-    for m in range(objectives):
-        box *= 1.0 - shares[k, m]
-    for j in range(count):
-        for m in range(objectives):
-            sweep.points[j, m] = max(shares[chosen[j], m], shares[k, m])
-    return box - volume_of(sweep, count)
-
-
-@compiled
-def choose_greedily(shares: Array, gains: Array, chosen: Order, count: int, sweep: Sweep) -> int:
-    """Choose one more point, that which adds most to the hypervolume; return its index.
-
-    Args:
-        shares: The points, shape (k, m), all below 1.
-        gains: What each adds at most, shape (k,): as more are chosen, a point can only add less.
-            Those that are looked at are brought up to date; of a chosen point it is -1.
-        chosen: Where the choice is inserted, ascending by the last length.
-        count: How many are chosen already.
-        sweep: Scratch space.
-    """
-    best, most = -1, -1.0
-    k = int(np.argmax(gains))
-    while gains[k] > most:
-        gains[k] = max(0.0, added_volume(shares, chosen, count, k, sweep))
-        if gains[k] > most:
-            best, most = k, gains[k]
-        k = int(np.argmax(gains))
-    gains[best] = -1.0
-    place, last = count, shares.shape[1] - 1
-    while place > 0 and shares[chosen[place - 1], last] > shares[best, last]:
-        chosen[place] = chosen[place - 1]
-        place -= 1
-    chosen[place] = best
-    return best

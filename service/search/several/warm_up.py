@@ -10,7 +10,7 @@ from service.instance import Instance
 from service.search.best_subset import best_subset
 from service.search.bound.several import lowest_lengths
 from service.search.enumeration import exact_tours
-from service.search.hypervolume import hypervolume
+from service.search.front_points import FrontPoints
 from service.search.improve import improve
 
 _N = 12  # cities: too many to enumerate
@@ -30,9 +30,9 @@ def local_search() -> None:
 
 def beside_local_search() -> None:
     """Compile what follows a search, and the enumeration of few cities."""
-    best_subset(np.eye(3), 2, np.full(3, 2.0))
-    hypervolume(np.eye(3), np.full(3, 2.0))
     for objectives in (3, 4):
+        front = FrontPoints.among(np.eye(objectives), np.full(objectives, 2.0))[1]
+        best_subset(front, 2)
         exact_tours(Instance(coordinates=_planes(objectives)[:5]))
 
 

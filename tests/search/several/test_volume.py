@@ -9,8 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from service import pareto
 from service.search.best_subset import best_subset
+from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
+from service.search.nondominated import nondominated
 
 several = pytest.mark.parametrize("objectives", [3, 4])
 
@@ -20,6 +23,11 @@ def shell(k: int, objectives: int, seed: int = 0) -> NDArray[np.float64]:
     points = np.abs(np.random.default_rng(seed).normal(size=(k, objectives)))
     shares: NDArray[np.float64] = 1.05 - points / np.linalg.norm(points, axis=1, keepdims=True)
     return shares
+
+
+def in_order(points: NDArray[np.float64]) -> FrontPoints:
+    """The front of some points, with the reference point (1, 1, ...)."""
+    return FrontPoints.among(points, np.ones(points.shape[1]))[1]
 
 
 @several
@@ -42,27 +50,62 @@ def test_that_of_a_large_front_too(objectives: int, k: int) -> None:
 
 @several
 def test_chosen_points_have_nearly_the_largest_hypervolume(objectives: int) -> None:
-    ones = np.ones(objectives)
     for seed in range(10):
         points = shell(14, objectives, seed)
-        chosen = best_subset(points, 4, ones)
-        best = max(hypervolume(points[list(few)], ones) for few in combinations(range(14), 4))
+        front = in_order(points)
+        chosen = best_subset(front, 4)
+        fours = combinations(range(14), 4)
+        best = max(hypervolume(points[list(few)], np.ones(objectives)) for few in fours)
         assert len(set(chosen.tolist())) == 4
-        assert hypervolume(points[chosen], ones) >= 0.97 * best
+        assert front.at(chosen).hypervolume >= 0.97 * best
 
 
 @several
 def test_each_choice_adds_as_much_as_any_other_point_would(objectives: int) -> None:
-    points, ones = shell(300, objectives), np.ones(objectives)
-    few, more = (set(best_subset(points, size, ones).tolist()) for size in (20, 21))
+    front = in_order(shell(300, objectives))
+    few, more = (set(best_subset(front, size).tolist()) for size in (20, 21))
     assert few < more
-    reached = hypervolume(points[sorted(more)], ones)
-    for k in range(len(points)):
-        assert hypervolume(points[sorted(few | {k})], ones) <= reached + 1e-12
+    reached = front.at(np.array(sorted(more))).hypervolume
+    for k in range(len(front)):
+        assert front.at(np.array(sorted(few | {k}))).hypervolume <= reached + 1e-12
+
+
+@several
+@pytest.mark.parametrize("size", [10, 100])
+def test_a_choice_in_little_time_loses_little(objectives: int, size: int) -> None:
+    front = in_order(shell(20_000, objectives))
+    best, quick = best_subset(front, size), best_subset(front, size, seconds=0.02)
+    assert len(set(quick.tolist())) == size
+    assert front.at(quick).hypervolume > 0.985 * front.at(best).hypervolume
+
+
+@several
+def test_nearly_all_of_many_points_are_chosen_without_time_too(objectives: int) -> None:
+    front = in_order(shell(3_000, objectives))
+    chosen = best_subset(front, 2_000, seconds=1e-3)
+    assert len(set(chosen.tolist())) == 2_000
+
+
+@several
+@given(data=st.data())
+def test_the_nondominated_are_those_of_moocore(objectives: int, data: st.DataObject) -> None:
+    point = st.tuples(*[st.integers(0, 4)] * objectives)
+    points = np.array(data.draw(st.lists(point, max_size=40)), float).reshape(-1, objectives)
+    kept = nondominated(points)
+    expected = moocore.is_nondominated(points) if len(points) else np.empty(0, bool)
+    np.testing.assert_array_equal(np.sort(kept), np.flatnonzero(expected))
+    np.testing.assert_array_equal(kept, pareto.nondominated(points))
+
+
+@several
+def test_the_nondominated_of_many_are_those_of_moocore(objectives: int) -> None:
+    points = np.random.default_rng(0).random((5_000, objectives)).round(2)
+    expected = np.flatnonzero(moocore.is_nondominated(points))
+    np.testing.assert_array_equal(np.sort(nondominated(points)), expected)
 
 
 @several
 def test_a_choice_that_is_stopped_is_of_as_many_points(objectives: int) -> None:
-    points, calls = shell(300, objectives), iter([False] * 5 + [True])
-    chosen = best_subset(points, 50, np.ones(objectives), lambda: next(calls))
+    front, calls = in_order(shell(300, objectives)), iter([False] * 5 + [True])
+    chosen = best_subset(front, 50, stop=lambda: next(calls))
     assert len(set(chosen.tolist())) == 50
