@@ -1,6 +1,7 @@
 """Best subsets: of the points of a front, those with the largest joint hypervolume."""
 
 import math
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -9,8 +10,8 @@ from numpy.typing import NDArray
 from service.jit import allocating, inlined
 from service.objectives import OBJECTIVES
 from service.search.front_points import FrontPoints
-from service.search.several.greedy_choice import choose_next, make_choice
-from service.search.thinning import Cells, divided, evenly
+from service.search.several.greedy_choice import MOST_COMPARED, choose_next, make_choice
+from service.search.thinning import divided, evenly
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -21,7 +22,9 @@ _LEAST_SECONDS, _LEAST_SHARE, _SHARE = 0.05, 0.2, 0.05  # of the time limit, for
 # Seconds on a core of an EPYC, rather too many. For each pair of a point and a choice:
 _A_PAIR = 4e-8
 # For a look at one of several objectives: at all, and for each point that is chosen already.
-_A_LOOK, _A_CHOSEN = 2.5e-7, {3: 3e-9, 4: 1.2e-8}
+_A_LOOK, _A_CHOSEN = 2.5e-7, {3: 2.5e-9, 4: 1.1e-8}
+_PATIENCE = 2.0  # times as long as it may take, the choice goes on
+_LESS = 0.125  # of the seconds, with which it begins again where the machine is too slow
 _LOOKS = 1.5  # at each point, where as many points are chosen as the number e; with the logarithm
 _COLLECTING = 2e-6  # for each point found: to sort the archive, and to copy the points
 
@@ -65,8 +68,8 @@ def best_subset(
     Args:
         front: The points.
         size: How many points to choose, at least 1.
-        seconds: About how long the choice may take on one core of an EPYC. What is chosen depends
-            on this number, and not on the clock.
+        seconds: About how long the choice may take. What is chosen depends on this number, and on
+            the clock only where the machine is much slower than one core of an EPYC.
         stop: Called for each point chosen; once it returns True, points that are evenly spread
             over the front are returned instead.
 
@@ -90,12 +93,12 @@ def best_subset(
 
 def _chosen(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     """Return the indices of `size` points, all below 1, of more."""
-    objectives = shares.shape[1]
-    affordable = min(len(shares), seconds / _for_each(size, objectives))
-    cells = divided(shares, max(size, int(affordable)))
-    if objectives > OBJECTIVES:
-        return _greedy(shares, cells, size, seconds, stop)
-    firsts = np.sort(cells.firsts)
+    if shares.shape[1] > OBJECTIVES:
+        return _greedy(shares, size, seconds, stop)
+    if len(shares) * _for_each(size, OBJECTIVES) <= seconds:
+        return _best_of_front(shares, size, stop)
+    affordable = max(size, int(seconds / _for_each(size, OBJECTIVES)))
+    firsts = np.sort(divided(shares, affordable).firsts)
     if len(firsts) <= size:
         return _with_others(firsts, shares, size)
     return firsts[_best_of_front(np.ascontiguousarray(shares[firsts]), size, stop)]
@@ -105,19 +108,49 @@ def _for_each(size: int, objectives: int) -> float:
     """Return the seconds that choosing `size` points takes for each point of the front."""
     if objectives == OBJECTIVES:
         return _A_PAIR * size
-    looks = 1.0 + _LOOKS * math.log(size)
-    return looks * (_A_LOOK + _A_CHOSEN[objectives] * size / 2)
+    return _looks(size) * _a_look(size, objectives)
 
 
-def _greedy(shares: Array, cells: Cells, size: int, seconds: float, stop: Stop) -> Indices:
-    """Return the indices of `size` points, chosen one after another from more."""
-    affordable = size
-    while affordable > 1 and len(cells.firsts) * _for_each(affordable, shares.shape[1]) > seconds:
-        affordable -= 1 + affordable // 10
+def _looks(size: int) -> float:
+    """Return how often each point, or the best of each cell, is looked at for `size` choices."""
+    return 1.0 + _LOOKS * math.log(size)
+
+
+def _a_look(size: int, objectives: int) -> float:
+    """Return the mean seconds of a look at a point while `size` points are chosen."""
+    return _A_LOOK + _A_CHOSEN[objectives] * size / 2
+
+
+def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
+    """Return the indices of `size` points, chosen one after another from more.
+
+    Where there is not enough time for all of them, the rest is evenly spread.
+    """
+    until = time.monotonic() + _PATIENCE * seconds
+    most, wanted, objectives = len(shares), size, shares.shape[1]
+    if most * _for_each(size, objectives) > seconds:
+        looks = seconds / _a_look(size, objectives) - MOST_COMPARED * size
+        most = max(size, int(looks / _looks(size)))
+    cells = divided(shares, most)
+    if most == size:
+        wanted = _affordable(size, seconds, objectives)
     choice = make_choice(shares, cells, size)
-    while choice.counts[0] < affordable and not stop():
+    while choice.counts[0] < wanted and not stop():
+        if most > size and time.monotonic() > until:
+            return _greedy(shares, size, _LESS * seconds, stop)
         choose_next(choice)
     return _with_others(choice.chosen[: choice.counts[0]], shares, size, cells.firsts)
+
+
+def _affordable(size: int, seconds: float, objectives: int) -> int:
+    """Return how many of `size` points can be chosen by what they add from about as many cells."""
+    wanted = size
+    while wanted > 1:
+        looks = size * _looks(wanted) + MOST_COMPARED * wanted
+        if looks * _a_look(wanted, objectives) <= seconds:
+            break
+        wanted -= 1 + wanted // 10
+    return wanted
 
 
 def _with_others(

@@ -87,8 +87,10 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     if not search.size:
         search.construct()
     dropped = search.not_covered(tours)
-    if len(dropped) or not search.allowed:
+    if not search.allowed:
         return _front(instance, np.concatenate((search.tours(), dropped)), terminated)
+    if len(dropped):
+        return _with_dropped(search, dropped, terminated)
     return SearchResult(search.points(), search.tours, terminated)
 
 
@@ -146,6 +148,24 @@ def _best_found(search: Search | SearchOfSeveral, size: int) -> SearchResult:
     points = search.points()
     indices = best_subset(FrontPoints(points, search.reference_point), size, SHORTLY)
     return SearchResult(points[indices], search.tours(indices).__getitem__, None)
+
+
+def _with_dropped(
+    search: Search | SearchOfSeveral, dropped: NDArray[np.integer], terminated: Termination
+) -> SearchResult:
+    """Return the front of a search, and of tours that its full archive had to drop."""
+    found = search.size
+    points = np.concatenate((search.points(), tour_lengths(search.instance, dropped)))
+    front = nondominated(points)
+
+    def tours_at(indices: NDArray[np.intp]) -> NDArray[np.integer]:
+        rows = front[indices]
+        tours = np.empty((len(rows), dropped.shape[1]), np.int32)
+        tours[rows < found] = search.tours(rows[rows < found])
+        tours[rows >= found] = dropped[rows[rows >= found] - found]
+        return tours
+
+    return SearchResult(points[front], tours_at, terminated)
 
 
 def _front(instance: Instance, tours: NDArray[np.integer], terminated: Termination) -> SearchResult:

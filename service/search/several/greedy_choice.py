@@ -15,6 +15,8 @@ from service.jit import compiled, inlined
 from service.search.several.volume import Sweep, make_sweep, volume_of
 from service.search.thinning import Cells
 
+MOST_COMPARED = 8  # points of a cell, to find the one of them that adds most
+
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
@@ -83,7 +85,8 @@ def take_best(choice: Choice, cell: int) -> int:
     The cell's gain becomes that of its second best point, or -1 where it has none.
     """
     first, second, at, after = -1.0, -1.0, -1, -1
-    for place in range(choice.starts[cell], choice.starts[cell + 1]):
+    begin, end = choice.starts[cell], choice.starts[cell + 1]
+    for place in range(begin, min(end, begin + MOST_COMPARED)):
         point = choice.members[place]
         if choice.taken[point]:
             continue
