@@ -126,7 +126,6 @@ def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
 
     Where there is not enough time for all of them, the rest is evenly spread.
     """
-    until = time.monotonic() + _PATIENCE * seconds
     most, wanted, objectives = len(shares), size, shares.shape[1]
     if most * _for_each(size, objectives) > seconds:
         looks = seconds / _a_look(size, objectives) - MOST_COMPARED * size
@@ -135,6 +134,7 @@ def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     if most == size:
         wanted = _affordable(size, seconds, objectives)
     choice = make_choice(shares, cells, size)
+    until = time.monotonic() + _PATIENCE * seconds
     while choice.counts[0] < wanted and not stop():
         if most > size and time.monotonic() > until:
             return _greedy(shares, size, _LESS * seconds, stop)
