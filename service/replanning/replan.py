@@ -11,6 +11,7 @@ from service.construction.first_tours import Constructor
 from service.errors import Refusal
 from service.front import Front, PlanOptions, ReportOf, reporting
 from service.instance import Instance, tour_lengths
+from service.objectives import MOST_OBJECTIVES
 from service.planner import plan
 from service.replanning.earlier_tours import EarlierTours, Tours, few_enough, touched_cities
 from service.replanning.insertion import completed
@@ -20,7 +21,9 @@ from service.search.front_points import FrontPoints
 
 _LEAST_SECONDS = 1e-3  # for the search, even if completing the earlier tours took all of the time
 _ROUNDING = 1e-9  # of a share
-_MOST_CELLS = 2**22  # cities of all tours among which those that keep enough legs are chosen
+# Of the tours among which those that keep enough legs are chosen: cities of all of them for each
+# second that choosing may take, and tours under four objectives.
+_CITIES_A_SECOND, _MOST_OF_FOUR = 10_000_000, 4_000
 
 
 def replan(
@@ -90,7 +93,12 @@ def _from_earlier(
         if options.fewer and options.time_limit > 0:
             options = replace(options, directions=options.directions[:0])
     if earlier.min_kept > 0:
-        return replace(options, size=max(options.size, _MOST_CELLS // instance.n))
+        seconds = selection_limit(options.time_limit)
+        most = int(_CITIES_A_SECOND * seconds) // instance.n
+        if instance.objectives == MOST_OBJECTIVES:
+            most = min(most, _MOST_OF_FOUR)
+        limit = max(0.0, options.time_limit - seconds)
+        return replace(options, size=max(options.size, most), time_limit=limit)
     if earlier.balance is None:
         return options
     choose = partial(with_most_kept_at, instance, earlier.driven, earlier.balance)

@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 REPORT_EVERY = 0.1  # seconds
 LONGEST_REPORTS = 10  # times as long as a report takes, the search goes on before the next
 # Of fewer points, and fewer blocks, a search goes on after its deadline, some 10 ms up to 200
-# cities: a process that was not run for a moment else answers with one tour.
+# cities: a process that was not run for a moment else answers with one tour. It goes on until there
+# is one: of 10,000 cities some 50 to 100 ms after it began, half of what nearest neighbours take.
 LEAST_POINTS, LEAST_BLOCKS = 10, 50
 
 
@@ -113,7 +114,7 @@ def _run(
             return "cancelled"
         left = np.inf if deadline is None else deadline - now
         before, step, looked = step, now - looked, now
-        begun = search.size >= LEAST_POINTS or block >= LEAST_BLOCKS
+        begun = search.size >= (LEAST_POINTS if block < LEAST_BLOCKS else 1)
         next_step = min(before, step)  # the process may not have run during one of the two
         late = begun and left <= reserve(search.size) + next_step
         if late or (iterations is not None and spent >= iterations):

@@ -24,6 +24,7 @@ _NAMES = (
     "coverage",
     "curves",
     "day",
+    "deadlines",
     "detours",
     "fleet",
     "fronts",
