@@ -2,24 +2,27 @@
 
 Instances: uniform cities, cities in clusters, and kroA100, kroB100 and kroC100 of TSPLIB together,
 whose files are in a folder of the user's. Every method has the same seconds of the clock on one
-thread: our search, the whole front at once; weighted sums, which share the seconds, by fast-tsp
-(105) and by OR-Tools' guided local search (28, as it finds hardly any tour in a tenth of a
-second); and NSGA-III and MOEA/D of pymoo. All points that a method
-finds count. The reference point is n times the scale. Of kroABC100 a front of a longer search is
-summed up, so that others have one to beat: its least lengths, its number of points, a digest of
-them, and the hypervolume between its least and its greatest lengths. What is stored is not measured
-again. Prints a table and stores `results/several.json`.
+thread: our search, the whole front at once; a service that is asked over HTTP for 100 and for 1,000
+tours, its seconds being those until the answer is read; weighted sums, which share the seconds, by
+fast-tsp (105) and by OR-Tools' guided local search (28, as it finds hardly any tour in a tenth of a
+second); and NSGA-III and MOEA/D of pymoo. All points that a method finds count, and of the service
+those that it returns. The reference point is n times the scale. Of kroABC100 a front of a longer
+search is summed up, so that others have one to beat: its least lengths, its number of points, a
+digest of them, and the hypervolume between its least and its greatest lengths. What is stored is
+not measured again. Prints a table and stores `results/several.json`.
 """
 
 import argparse
+import atexit
 import time
 from collections.abc import Callable
-from contextlib import suppress
-from functools import partial
+from contextlib import ExitStack, suppress
+from functools import cache, partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import httpx
 import moocore
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +36,7 @@ from tests.benchmarks.kro import rounded_distances
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals import evolutionary, fast_tsp_weights, ortools_routing
 from tests.benchmarks.rows import resume
+from tests.helpers.processes import serve_process
 
 Array = NDArray[np.float64]
 Find = Callable[[Instance, float], Array]
@@ -41,6 +45,7 @@ KRO = ("kroA100", "kroB100", "kroC100")
 LONG = "a long search"
 SIZES = {  # by the name of the instances: kind of plane, cities, objectives, how many, seconds
     "50 uniform, 4 objectives": (uniform, 50, 4, 3, 10.0),
+    "100 uniform, 4 objectives": (uniform, 100, 4, 3, 3.0),
     "100 uniform": (uniform, 100, 3, 3, 10.0),
     "100 clustered": (clustered, 100, 3, 3, 10.0),
     "500 uniform": (uniform, 500, 3, 1, 10.0),
@@ -60,6 +65,8 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--long", type=float, default=600.0, help="seconds of the long search")
     options = parser.parse_args(arguments)
     warm_up()
+    if any(row in SERVED for row in options.rows):
+        _client()  # the first call waits until the service has compiled everything
     for row in options.rows:
         for name in options.on:
             kind, n, objectives, count, seconds = SIZES[name]
@@ -121,6 +128,26 @@ def _search(instance: Instance, seconds: float) -> Array:
     return improve(instance, nothing, deadline=time.monotonic() + seconds).points
 
 
+def _served(size: int, instance: Instance, seconds: float) -> Array:
+    """The points of the tours that a service returns over HTTP."""
+    given = instance.coordinates if instance.matrices is None else instance.matrices
+    kind = "coordinates" if instance.matrices is None else "matrices"
+    assert given is not None
+    body = {kind: given.tolist()}
+    answer = _client().post("/front", json={**body, "time_limit": seconds, "size": size})
+    answer.raise_for_status()
+    return np.array([tour["lengths"] for tour in answer.json()["front"]])
+
+
+@cache
+def _client() -> httpx.Client:
+    """A client of a service with one worker, which runs until this process ends."""
+    running = ExitStack()
+    atexit.register(running.close)
+    service = running.enter_context(serve_process({"PARETOUR_WORKERS": "1"}, ready=True))
+    return running.enter_context(httpx.Client(base_url=service.url, timeout=120))
+
+
 def _under_weights(
     solve: Callable[[Array, float], NDArray[np.int64]],
     count: int,
@@ -140,8 +167,13 @@ def _under_weights(
     return tour_lengths(instance, np.array(tours, np.int64).reshape(-1, instance.n))
 
 
+SERVED: dict[str, Find] = {
+    "the service, 100 tours": partial(_served, 100),
+    "the service, 1,000 tours": partial(_served, 1_000),
+}
 METHODS: dict[str, Find] = {
     "the search": _search,
+    **SERVED,
     "105 weighted sums, fast-tsp": partial(_under_weights, fast_tsp_weights.solve, 105),
     "28 weighted sums, OR-Tools": partial(_under_weights, ortools_routing.guided, 28),
     "NSGA-III, pymoo": evolutionary.nsga3,
