@@ -344,12 +344,8 @@ class _Search:
         found = len(self.archive)
         left_out = min((each.num_missing_clients() for each in self.archive.solutions), default=0)
         checked = (min(found, self._options.size) + left_out) * self._fleet.rules.n
-        selected = selection_seconds(
-            self._options.size,
-            found,
-            objectives=len(self._reference_point),
-            seconds=selection_limit(self._options.time_limit),
-        )
+        limit = selection_limit(self._options.time_limit)
+        selected = selection_seconds(self._options.size, found, len(self._reference_point), limit)
         return self._pause + _CHECKING * checked + selected
 
 
