@@ -72,7 +72,8 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     """
     heading = table.heading or [f"{number}" for number in range(1, table.width + 1)]
     source.choices.extend([*fields, IGNORED])
-    known = [each[:LONGEST_NAME] for each in heading]
+    aside = [each.name for each in table.left_out.values()]  # which are never used
+    known = [each[:LONGEST_NAME] for each in (*heading, *aside)]
     for name, field in source.file.chosen.items():
         if name not in known:
             raise source.refusal("has no column of the name that was chosen", name)
@@ -87,6 +88,7 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     }
     if not left_out:
         return table
+    left_out |= table.left_out
     kept = [at for at in range(len(heading)) if at not in left_out]
     if not kept:
         raise source.refusal("must have a column that is not ignored")

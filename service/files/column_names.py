@@ -205,6 +205,12 @@ def _are_hours(name: str, field: str | None) -> bool:
     return field == "window_from" and name.casefold().strip().endswith("hours")
 
 
+def field_of_each(names: Sequence[str]) -> list[str | None]:
+    """Return the field of stops that each name may be by itself, or None."""
+    known = _by_name(NAMES_OF_STOPS)
+    return [_rank(plain_name(name), known, NAMES_OF_STOPS)[0] for name in names]
+
+
 def best_fields(
     heading: Sequence[str], names: Mapping[str, str], chosen: Sequence[str | None] = ()
 ) -> list[str | None]:

@@ -51,7 +51,11 @@ def reading_of(source: Source, table: Table) -> Reading:
     Raises:
         UnreadableFile: A field does not fit its column, or columns are missing.
     """
-    columns = columns_of(source, table)
+    return reading_of_columns(columns_of(source, table))
+
+
+def reading_of_columns(columns: Columns) -> Reading:
+    """Return the request of the columns of a table. See `reading_of`."""
     recognise_pasted(columns)
     if any(each in FLEET for each in columns.fields):
         return _fleet(columns)

@@ -25,7 +25,7 @@ _SEPARATORS = {
 }
 _SAMPLE = 2**16  # characters by which the separator is recognised
 _SAMPLE_ROWS = 50
-_MOST_COLUMNS = 2**14  # as of spreadsheets
+MOST_COLUMNS = 2**14  # as of spreadsheets
 _LONG = 40  # characters of a field; white space in a longer one may be long as well
 _LARGEST = 1e150  # the same limit as in requests
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
@@ -134,7 +134,7 @@ def table_of_rows(source: Source, fields: Iterable[tuple[int, Sequence[str]]]) -
             rows.append((number, stripped))
         else:
             empty += bool(stripped)
-    source.check_count("columns", _MOST_COLUMNS, widest)
+    source.check_count("columns", MOST_COLUMNS, widest)
     if empty:
         source.note("empty-rows", f"{_counted(empty)} left out.")
     if not rows:

@@ -38,8 +38,8 @@ def cells_as(formats: Sequence[str], *values: object, **more: Any) -> list[str]:
     ("code", "number", "text"),
     [
         ("General", "0.5", "0.5"),
-        ("General", "6.0171000000000003E1", "60.171"),
-        ("General", "60.170999999999999", "60.171"),
+        ("General", "6.0171000000000003E1", "60.1710"),
+        ("General", "60.170999999999999", "60.1710"),
         ("General", "7", "7"),
         ("General", "7.0", "7"),
         ("General", "12345678901234567", "12345678901234567"),

@@ -64,7 +64,9 @@ def _number(text: str, number: float) -> str:
         return text
     if number.is_integer() and abs(number) < _WHOLE:
         return str(int(number))
-    return repr(float(f"{number:.{MOST_DIGITS}g}"))
+    written = repr(float(f"{number:.{MOST_DIGITS}g}"))
+    # With three decimals the point might be a thousands sign.
+    return f"{written}0" if re.fullmatch(r"-?\d+\.\d{3}", written) else written
 
 
 def _time(days: float, shown: Format, from_1904: bool) -> str | None:
