@@ -13,7 +13,7 @@ from paretour import read_ros_map
 
 from service.cli.errors import UsageError
 from service.cli.notes import print_file_notes
-from service.files.json_files import read_object as object_in
+from service.files.json_files.reader import read_object as object_in
 from service.files.reader import read_files, read_table
 from service.files.reading import (
     Bounds,

@@ -7,8 +7,8 @@ from service.files.benchmarks.customers import is_customers, read_customers
 from service.files.benchmarks.cvrp import read_cvrp
 from service.files.benchmarks.keywords import check_costs, is_fleet
 from service.files.columns import share_signs
-from service.files.json_files import looks_like_json, read_json
-from service.files.octile import is_octile
+from service.files.json_files.reader import looks_like_json, read_json
+from service.files.maps.octile import is_octile
 from service.files.other_files import named_binary
 from service.files.reading import (
     Bounds,
@@ -23,7 +23,6 @@ from service.files.reading import (
     choices_of,
     reading_of_several,
 )
-from service.files.spreadsheets import is_spreadsheet, sheets_of
 from service.files.stop_tables import Part, part_of, reading_of
 from service.files.tables import Table, table_of_csv, table_of_rows
 from service.files.texts import text_of
@@ -39,6 +38,7 @@ from service.files.tsplib import (
 from service.files.vehicle_tables import has_vehicles, read_fleet
 from service.files.waypoints import is_xml, table_of_xml
 from service.files.work import LINE_OF_TEXT, UNITS, Work
+from service.files.xlsx.sheets import is_spreadsheet, sheets_of
 from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 
 _UNITS_OF_STOP = 16  # of work, where there may be more stops than usual
@@ -105,7 +105,7 @@ def _read_all(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -
 
 def _read_map(sources: Sequence[Source]) -> Reading:
     """Return the request for a map, in a picture or more, a map.yaml and tables of costs."""
-    from service.files.maps import read_map  # here because it is slow to load
+    from service.files.maps.reader import read_map  # here because it is slow to load
 
     maps = [each for each in sources if _is_map(each.file)]
     tables = [each for each in sources if each not in maps]

@@ -10,10 +10,10 @@ from pydantic_core import to_json
 from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal
 from service.files.chosen import DETAIL, IGNORED, with_chosen
-from service.files.maps import with_grid
+from service.files.maps.reader import with_grid
 from service.files.reader import read_files
 from service.files.reading import Bounds, FileTooLarge, NamedFile, Note, Reading, UnreadableFile
-from service.files.spreadsheets import is_spreadsheet
+from service.files.xlsx.sheets import is_spreadsheet
 from service.requests.limits import Limits, check_structure
 
 _UNPACKED = 50  # times the bytes of a spreadsheet; the usual are some 10 times as long

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-import service.files.maps  # noqa: F401  (loading it takes a while, which is not measured)
+import service.files.maps.reader  # noqa: F401  (loading it takes a while, which is not measured)
 from service.errors import Refusal
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile

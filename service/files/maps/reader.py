@@ -9,8 +9,8 @@ import numpy as np
 from pydantic_core import to_json
 
 from service.errors import Refusal
-from service.files.layers import Rows, check_size_of_layer, costs_of_cells, names_of_layers
-from service.files.octile import is_octile, read_octile
+from service.files.maps.layers import Rows, check_size_of_layer, costs_of_cells, names_of_layers
+from service.files.maps.octile import is_octile, read_octile
 from service.files.reading import (
     FileTooLarge,
     Reading,

@@ -1,17 +1,16 @@
 """Read JSON: requests, GeoJSON, records with columns by name, and rows of cities."""
 
-import json
 import re
 from math import isfinite
 from typing import Any
 
 from pydantic_core import from_json
 
-from service.files.geojson import read_geojson
+from service.files.json_files.geojson import read_geojson
+from service.files.json_files.records import check_lists, rows_of
 from service.files.planners.others import refuse_others
 from service.files.planners.vroom import is_vroom, read_vroom
 from service.files.reading import Kind, Reading, Source, quoted
-from service.files.records import check_lists, rows_of
 from service.files.stop_tables import reading_of
 from service.files.tables import table_of
 from service.files.texts import text_of

@@ -17,8 +17,8 @@ from service.files.fleets import (
     measured,
     with_measure,
 )
+from service.files.json_files.records import check_lists, is_place, members_of
 from service.files.reading import Reading, Request, Source, quoted
-from service.files.records import check_lists, is_place, members_of
 from service.files.stop_tables import reading_of_columns, visits_of
 from service.files.tables import MOST_COLUMNS, LeftOut, Table, number_in, table_of
 from service.files.visits import add_visits

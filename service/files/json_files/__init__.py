@@ -1,0 +1,1 @@
+"""Read JSON: requests, GeoJSON, and records with columns by name."""
