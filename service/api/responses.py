@@ -124,7 +124,9 @@ class ObjectiveName(BaseModel):
 class RequestNote(BaseModel):
     """A note on a request that was planned: something in it is likely to be a mistake."""
 
-    code: str = Field(description="tells notes apart: place, swapped, far, outlier or large-costs")
+    code: str = Field(
+        description="tells notes apart: place, swapped, far, outlier, large-costs or prizes"
+    )
     text: str
     pointer: str | SkipJsonSchema[None] = Field(
         default=None, description="JSON pointer to the part of the request that it is about"

@@ -1,6 +1,6 @@
 """Make requests for fleets: their objectives, their clock, and what they measure."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -95,22 +95,39 @@ def fleet_request(
 
 
 def with_measure(source: Source, request: Request) -> Request:
-    """Return a request whose second objective is lateness or overtime, if it has either.
+    """Return a request with the objectives that its prizes, and its times due or extra, are for.
 
-    The costs of the second objective become those of the clock.
+    They take the place of the second objective, whose costs become those of the clock.
     """
-    stops, vehicles = request["stops"], request["vehicles"]
-    if any("due" in stop for stop in stops):
-        measure, means = "lateness", "lateness after stops are due"
-    elif any("max_overtime" in vehicle for vehicle in vehicles):
-        measure, means = "overtime", "overtime beyond shifts"
-    else:
+    worthless = [str(stop["id"]) for stop in request["stops"] if stop.get("prize") == 0]
+    if worthless:
+        source.note(
+            "prize",
+            f"{listed(worthless)} may be left out for nothing, as the prize is 0. Without a prize a"
+            " stop must be visited.",
+        )
+    measures = dict(_measures(request["stops"], request["vehicles"]))
+    if not measures:
         return request
+    for number, means in zip(("second", "third"), measures.values(), strict=False):
+        source.note("objectives", f"The {number} objective is {means}.")
     first, times = request["objectives"]
-    source.note("objectives", f"The second objective is {means}.")
+    objectives = [first, *({"name": each, "measure": each} for each in measures)]
+    if "clock" not in request:
+        return {**request, "objectives": objectives}
     clock = {name: value for name, value in times.items() if name != "over"} | {"name": "time"}
-    objectives = [first, {"name": measure, "measure": measure}]
     return {**request, "objectives": objectives, "clock": clock}
+
+
+def _measures(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> Iterator[tuple[str, str]]:
+    """Yield the measures that stops and vehicles have data for, and what they are."""
+    if any(stop.get("prize") for stop in stops):
+        left = "the prizes of the stops that are left out: those with a prize may be"
+        yield "unassigned", left
+    if any("due" in stop for stop in stops):
+        yield "lateness", "lateness after stops are due"
+    elif any("max_overtime" in vehicle for vehicle in vehicles):
+        yield "overtime", "overtime beyond shifts"
 
 
 def numbers(loads: Sequence[int]) -> str:

@@ -178,7 +178,10 @@ def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> N
     """Add the cost of using a vehicle, converted to a length that costs the same."""
     rates = _rates(columns)
     if (at := columns.find("fixed")) is not None:
-        metre, means = 1.0, "added to the distance for each vehicle used"
+        metre, means = 1.0, "added to the length for each vehicle used"
+        if located:
+            unit = "as metres: if it is money, name a cost per km as well"
+            means = f"added to the distance for each vehicle used, {unit}"
         if len(rates) == 1 and located:
             metre, means = rates.pop() / _KILOMETRE, "converted to the metres that cost the same"
         columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")

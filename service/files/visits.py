@@ -36,7 +36,7 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
         "release": partial(seconds_in, columns),
         "skills": partial(texts_in, columns),
         "vehicle": lambda row, at: " ".join(columns.text(row, at).split()),
-        "prize": columns.number,
+        "prize": columns.amount,
     }
     for name, read in readers.items():
         if (at := columns.find(name)) is not None:

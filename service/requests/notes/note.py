@@ -11,7 +11,7 @@ class Note:
     """A note on a request.
 
     Args:
-        code: Tells notes apart: `place`, `swapped`, `far`, `outlier` or `large-costs`.
+        code: Tells notes apart: `place`, `swapped`, `far`, `outlier`, `large-costs` or `prizes`.
         text: A sentence.
         pointer: The JSON pointer of the part of the request; None where it has no such part.
     """

@@ -8,8 +8,9 @@ import numpy as np
 from service.requests.notes.costs import notes_on_costs
 from service.requests.notes.note import Note
 from service.requests.notes.places import doubtful_places
+from service.requests.notes.prizes import notes_on_prizes
 from service.requests.stops import Matrix, Slices, Stops, base_of
-from service.requests.task import Task
+from service.requests.task import Task, UnmeasuredFleet
 
 _MOST = 20
 
@@ -24,7 +25,7 @@ def with_notes(task: Task, *, has_parts: bool = True) -> Task:
     stops = task.stops
     if stops is None:
         return task
-    notes = [*_on_places(task, stops), *_on_costs(task, stops)][:_MOST]
+    notes = [*_on_places(task, stops), *_on_costs(task, stops), *_on_prizes(task)][:_MOST]
     if not has_parts:
         notes = [replace(note, pointer=None) for note in notes]
     return replace(task, notes=tuple(notes)) if notes else task
@@ -49,3 +50,12 @@ def _on_costs(task: Task, stops: Stops) -> Iterator[Note]:
         if isinstance(base, Matrix | Slices):
             for text in notes_on_costs(base.costs, name):
                 yield Note("large-costs", text, pointer)
+
+
+def _on_prizes(task: Task) -> Iterator[Note]:
+    subject, labels = task.subject, task.labels
+    if isinstance(subject, UnmeasuredFleet) and labels is not None and not subject.driven:
+        names = [stop.id for stop in labels.stops]
+        cost = labels.objectives[0].name
+        for text in notes_on_prizes(subject.rules, subject.stops, names, cost):
+            yield Note("prizes", text, "/stops")
