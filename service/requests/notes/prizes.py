@@ -34,11 +34,11 @@ def notes_on_prizes(rules: Rules, stops: Stops, names: Sequence[str], cost: str)
     if (alone <= prizes).any():
         return
     best = int(np.argmin(alone - prizes))
+    name, prize, least = names[rules.clients[best]], prizes[best], alone[best]
     yield (
-        f"No stop pays for itself: {names[rules.clients[best]]!r:.80} has a prize of"
-        f" {prizes[best]:g}, and a visit to it alone costs {alone[best]:.6g} or more in"
-        f" {cost!r:.80}. Prizes are in its unit. Where they are not, as money beside metres, make the measure"
-        " `unassigned` an objective."
+        f"No stop pays for itself: {name!r:.80} has a prize of {prize:g}, and a visit to it alone"
+        f" costs {least:.6g} or more in {cost!r:.80}. Prizes are in its unit. Where they are not, as"
+        " money beside metres, make the measure `unassigned` an objective."
     )
 
 
