@@ -37,8 +37,8 @@ def notes_on_prizes(rules: Rules, stops: Stops, names: Sequence[str], cost: str)
     name, prize, least = names[rules.clients[best]], prizes[best], alone[best]
     yield (
         f"No stop pays for itself: {name!r:.80} has a prize of {prize:g}, and a visit to it alone"
-        f" costs {least:.6g} or more in {cost!r:.80}. Prizes are in its unit. Where they are not, as"
-        " money beside metres, make the measure `unassigned` an objective."
+        f" costs {least:.6g} or more in {cost!r:.80}. Prizes are in its unit. If they are money"
+        " beside metres, make the measure `unassigned` an objective."
     )
 
 
