@@ -11,7 +11,8 @@ import json
 import sys
 from importlib import import_module
 
-from tests.benchmarks import provenance, render, shown
+# Not what renders tables: it needs packages that only those need who measure.
+from tests.benchmarks import provenance, shown
 
 _NAMES = (
     "ablation",
@@ -82,7 +83,10 @@ def main() -> None:
 
 def _print(name: str) -> None:
     """Print the stored rows of a benchmark; of `tables` the page of results."""
-    rows = render.page() if name == "tables" else shown.rows(provenance.load(name))
+    if name == "tables":
+        rows = provenance.PAGE.read_text(encoding="utf-8")
+    else:
+        rows = shown.rows(provenance.load(name))
     print(rows or f"Nothing is stored of {name}.")
     print(f"\nMeasure anew: python -m tests.benchmarks {name} --again", file=sys.stderr)
 
@@ -105,7 +109,8 @@ def _run(name: str, arguments: list[str]) -> None:
             print(json.dumps(unstored.rows, indent=2))
             print(f"{unstored_name} is not stored: {unstored.reason}", file=sys.stderr)
     if provenance.RUN.stores:
-        render.PAGE.write_text(render.page(), encoding="utf-8")
+        render = import_module("tests.benchmarks.render")
+        provenance.PAGE.write_text(render.page(), encoding="utf-8")
     else:
         _print_measured()
     if unmet:

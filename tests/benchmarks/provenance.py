@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 RESULTS = Path(__file__).parent / "results"
+PAGE = Path(__file__).parent / "RESULTS.md"
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "service/guide/pictures"
 ANEW = ROOT / "runs/benchmarks"  # where a run writes that does not store: git ignores it

@@ -3,7 +3,6 @@
 All figures of ours come from `results/*.json`, the printed ones from `printed.py`.
 """
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,6 @@ from tests.benchmarks.instances import SIZES, reference_points
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 
-PAGE = Path(__file__).parent / "RESULTS.md"
 PLACES = (40, 100, 200)
 ROWS = (
     *("NSGA-II (20K)", "NSGA-II (80K)", "MOEA/D (20K)", "MOEA/D (80K)"),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.benchmarks import __main__, concave, provenance, render
+from tests.benchmarks import __main__, concave, provenance
 from tests.benchmarks.provenance import RESULTS, ROOT, Run, Unstored, load
 
 STORED = [path.stem for path in RESULTS.glob("*.json")]
@@ -27,7 +27,7 @@ def anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(provenance, "RUN", Run())
     monkeypatch.setattr(provenance, "UNSTORED", {})
     monkeypatch.setattr(provenance, "changed_files", list)
-    monkeypatch.setattr(render, "PAGE", tracked / "RESULTS.md")
+    monkeypatch.setattr(provenance, "PAGE", tracked / "RESULTS.md")
     return tmp_path / "anew"
 
 
@@ -54,6 +54,21 @@ def test_stored_rows_are_printed_with_their_commits_and_machines(
     for key, entry in entries.items():
         assert f"{key}{': ' if key else ''}{entry['commit']}, {entry['cpu']}, " in printed.out
     assert f"python -m tests.benchmarks {name} --again" in printed.err
+
+
+def test_stored_rows_are_printed_without_what_measures_them() -> None:
+    """After README's first command to install, with which no extra comes."""
+    code = (
+        "import runpy, sys;"
+        "sys.modules |= dict.fromkeys(['matplotlib', 'ortools', 'psutil', 'pytest', 'tqdm']);"
+        "sys.argv = ['benchmarks', sys.argv[1]];"
+        "runpy.run_module('tests.benchmarks', run_name='__main__')"
+    )
+    for name in ("actors", "tables"):
+        command = [sys.executable, "-c", code, name]
+        ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
+        assert ran.returncode == 0, ran.stderr
+        assert "pa-one" in ran.stdout.lower()
 
 
 def test_what_is_not_stored_is_said_to_be_so(

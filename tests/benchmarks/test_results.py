@@ -9,11 +9,11 @@ from tests.benchmarks.instances import SIZES
 
 
 def test_the_page_is_what_the_renderer_makes_of_the_stored_results() -> None:
-    assert render.PAGE.read_text(encoding="utf-8") == render.page()
+    assert provenance.PAGE.read_text(encoding="utf-8") == render.page()
 
 
 def test_every_printed_row_is_on_the_page_beside_ours() -> None:
-    lines = render.PAGE.read_text(encoding="utf-8").splitlines()
+    lines = provenance.PAGE.read_text(encoding="utf-8").splitlines()
     for row, shares in printed.HYPERVOLUME.items():
         for share, seconds in zip(shares, printed.SECONDS[row], strict=True):
             found = [line for line in lines if line.startswith(f"| {row} | {share} | ")]
@@ -26,7 +26,7 @@ def test_the_command_writes_the_page_of_other_results(
 ) -> None:
     monkeypatch.setattr(provenance, "RESULTS", tmp_path)
     monkeypatch.setattr(provenance, "changed_files", list)
-    monkeypatch.setattr(render, "PAGE", tmp_path / "RESULTS.md")
+    monkeypatch.setattr(provenance, "PAGE", tmp_path / "RESULTS.md")
     share = {"(40, 40)": 60.0, "(50, 50)": 70.0}
     where = {"cpu": "abacus", "date": "today", "commit": "none", "busy": 2.0}
     entry = {**where, "instances": [{"seconds": 1.5, "hypervolume": share}]}
