@@ -172,7 +172,7 @@ TOOLS = (
     Tool(
         name="plan_fleet",
         description="Plan routes of several vehicles, with capacities, time windows and shipments,"
-        " under two objectives. The answer is a front of plans.",
+        " under two or three objectives. The answer is a front of plans.",
         arguments=PlanFleet,
         run=_plan_fleet,
     ),

@@ -161,7 +161,7 @@ class PlanFields(SearchFields):
         " two objectives, with matrices a third and at least 2",
     )
     arrivals: bool = Field(
-        default=False, description="whether each tour comes with both its lengths up to each stop"
+        default=False, description="whether each tour comes with all its lengths up to each stop"
     )
     bound: bool = Field(
         default=False,

@@ -134,7 +134,7 @@ class ReplanRequest(PlanFields):
     )
     objectives: OneEach[DayObjectiveItem] = Field(
         default_factory=list,
-        description="both objectives again, where more than single costs has changed: with the"
+        description="all objectives again, where more than single costs has changed: with the"
         " costs between the stops of the front, then those of `add`, then `position` if that"
         " is a place",
     )

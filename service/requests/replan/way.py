@@ -65,7 +65,7 @@ class EarlierFront:
         ends: Whether its tours are closed, and the ends of open routes.
         start: The stop that closed tours are reported from.
         tours: The stops of each tour in order, shape (m, n); closed tours begin at `start`.
-        lengths: The lengths of each tour, shape (m, 2).
+        lengths: The lengths of each of the m tours under each objective.
         hours: When its tours began, if costs change over the day.
     """
 
