@@ -18,6 +18,7 @@ FLOOR = (
     'AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
 )
 COSTS = pd.DataFrame([[0.0, 2.0], [3.0, 0.0]], index=["a", "b"], columns=["a", "b"])
+IDS = ["#1001", "7"]
 STOPS = pd.DataFrame(
     {
         "ID": ["#1001", 7],
@@ -75,7 +76,10 @@ def test_an_infinite_cost_of_a_frame_is_null() -> None:
         "stops": STOPS,
         "objectives": [
             {"name": "way", "from": "great_circle"},
-            {"name": "risk", "matrix": COSTS.replace(3.0, np.inf)},
+            {
+                "name": "risk",
+                "matrix": COSTS.replace(3.0, np.inf).set_axis(IDS).set_axis(IDS, axis=1),
+            },
         ],
     }
     body = json.loads(front_plan(request).json)

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.arrays import plain_array
+from paretour.labels import Labelled, aligned, check_same
 
 COSTS = ("matrices", "matrix", "second_matrix", "costs")  # members that hold costs
 _IDS = ("id", "name")
@@ -17,31 +19,54 @@ _LATITUDES = ("lat", "latitude")
 _NUMBERS = ("service", "prize", "due", "release")
 _OF_FLEETS = ("demand", *_NUMBERS, "window", "windows", "skills")
 _DEGREES = 4326  # the EPSG code of WGS84: longitude and latitude
+_SIDES = ("rows", "columns")
 _ENDS = 2  # of a window
 _SEPARATOR = re.compile(r"[;|,]")  # between skills in one text
 _MOST_SHOWN = 80  # characters of a wrong value in a sentence
 _Cells = list[tuple[str, Any]]  # the cells of a column: the position and the value of each
 
 
-def without_frames(value: Any, name: str = "") -> Any:
-    """Return the members of a request with arrays or stops in place of DataFrames.
+def without_frames(value: Any, name: str = "", ids: Sequence[str] = ()) -> Any:
+    """Return the members of a request with plain arrays or stops in place of DataFrames.
 
     A DataFrame of `stops` has columns id, lon and lat, or a GeoDataFrame points in place of the
     last two. For fleets it has those of their stops: `windows` are lists, and `skills` lists or a
     text with semicolons, commas or bars. Any other DataFrame is a table of numbers. Costs may be
-    infinite, and empty on the diagonal.
+    infinite, and empty on the diagonal. A matrix of costs is put in the order of the stops by its
+    labels. Where a masked array has masked costs, they are infinite.
+
+    Args:
+        value: The members, or one of them.
+        name: Its name; "" for all members.
+        ids: The ids of the stops of the request.
 
     Raises:
         ValueError: A column is missing, or a cell does not fit its column; the message names it. Or
-            points have no coordinate reference system, or none that is one of the earth.
+            points have no coordinate reference system, or none that is one of the earth; or labels
+            are not the ids of the stops; or an array has no numbers.
     """
     if isinstance(value, Mapping):
-        return {key: without_frames(each, key) for key, each in value.items()}
+        if not name and "stops" in value:
+            value = {**value, "stops": without_frames(value["stops"], "stops")}
+            ids = _ids_of(value["stops"])
+        return {key: without_frames(each, key, ids) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [without_frames(each, name) for each in value]
-    if not hasattr(value, "to_numpy"):
-        return value
-    return _stops(value) if name == "stops" else _numbers(value, name)
+        if name in COSTS and not ids:
+            check_same(name, [_labels(each) for each in value if hasattr(each, "to_numpy")])
+        return [without_frames(each, name, ids) for each in value]
+    if hasattr(value, "to_numpy"):
+        return _stops(value) if name == "stops" else _numbers(value, name, ids)
+    if isinstance(value, np.ndarray):
+        return plain_array(value, name, is_cost=name in COSTS)
+    return value
+
+
+def _ids_of(stops: Any) -> list[str]:
+    """Return the ids of stops, if each has one."""
+    if not isinstance(stops, list) or not all(isinstance(each, Mapping) for each in stops):
+        return []
+    ids = [str(each["id"]) for each in stops if "id" in each]
+    return ids if len(ids) == len(stops) else []
 
 
 def has_ids(frame: Any) -> bool:
@@ -49,11 +74,13 @@ def has_ids(frame: Any) -> bool:
     return hasattr(frame, "to_crs") or bool(_column(frame, _IDS, needed=False))
 
 
-def _numbers(frame: Any, name: str) -> NDArray[Any]:
+def _numbers(frame: Any, name: str, ids: Sequence[str]) -> NDArray[Any]:
     """Return the numbers of a DataFrame, or of one column, as an array."""
     cells = np.asarray(frame.to_numpy())
     rows, columns, costs = _labels(frame), list(getattr(frame, "columns", ())), name in COSTS
-    if costs and rows != columns and set(rows) == set(columns):
+    if costs and ids and cells.ndim == len(_SIDES):
+        cells, rows, columns = aligned(name, Labelled(cells, rows, columns), ids)
+    elif costs and rows != columns and set(rows) == set(columns):
         raise ValueError(f"{name} must have its rows and columns in the same order")
     numbers = cells if cells.dtype.kind in "iuf" else _as_floats(cells)
     wrong = ~(np.isfinite(numbers) | (costs & np.isposinf(numbers)))

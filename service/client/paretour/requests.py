@@ -3,12 +3,14 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from io import BytesIO
 from typing import Any
 from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.arrays import plain_object
 from paretour.frames import COSTS, has_ids, without_frames
 from paretour.members import (
     CoverageRequest,
@@ -65,9 +67,9 @@ class Plan:
     def json(self) -> bytes:
         """The members as JSON, without the file. Infinite costs become null."""
         try:
-            return json.dumps(self.request, default=_listed, allow_nan=False).encode()
+            return json.dumps(self.request, default=plain_object, allow_nan=False).encode()
         except ValueError:
-            return json.dumps(_with_null(self.request)).encode()
+            return json.dumps(_with_null(self.request), default=plain_object).encode()
 
     @property
     def body(self) -> dict[str, Any]:
@@ -175,11 +177,6 @@ def fleet_plan(request: FleetRequest) -> Plan:
     return Plan("/fleet", without_frames(request))
 
 
-def _listed(array: Any) -> Any:
-    """Return an array of NumPy as nested lists, and a scalar as a number."""
-    return array.tolist()
-
-
 def _with_null(value: Any, is_cost: bool = False) -> Any:
     """Return members of a request with None in place of infinite costs."""
     if is_cost and isinstance(value, float):
@@ -188,4 +185,7 @@ def _with_null(value: Any, is_cost: bool = False) -> Any:
         return {name: _with_null(each, is_cost or name in COSTS) for name, each in value.items()}
     if isinstance(value, list | tuple):
         return [_with_null(each, is_cost) for each in value]
-    return _with_null(value.tolist(), is_cost) if hasattr(value, "tolist") else value
+    if isinstance(value, Decimal) or hasattr(value, "tolist"):
+        plain = plain_object(value)
+        return _with_null(plain, is_cost) if plain is not value else value
+    return value
