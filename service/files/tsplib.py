@@ -80,6 +80,11 @@ class TsplibFile:
         return list(takewhile(lambda word: word != "-1", self.words(section)))
 
     @cached_property
+    def nodes(self) -> int:
+        """The number of cities, as `dimension`, which is checked once."""
+        return self.dimension
+
+    @cached_property
     def first_node(self) -> int:
         """The number of the first node: 1, or 0 where NODE_COORD_SECTION counts from 0."""
         numbers = self._nodes_of("NODE_COORD_SECTION")

@@ -32,7 +32,7 @@ class Depots:
         """Return the depots of a file: those that it lists, or the first node."""
         first = file.first_node
         words = file.listed("DEPOT_SECTION") or [str(first)]
-        stops = tuple(_index(file, "DEPOT_SECTION", word) for word in words)
+        stops = tuple(_index(file, "DEPOT_SECTION", number_in(word), word) for word in words)
         return cls(first, tuple(dict.fromkeys(stops)), open_routes)
 
     def name(self, at: int) -> str:
@@ -78,6 +78,7 @@ def vehicles_of(
     """
     count = _count(file)
     rows = _Rows(file, count)
+    rows.check()
     unit = _unit_cost(rows)
     kinds, alike = _alike(rows, depots, windows, unit)
     if count is None:
@@ -102,9 +103,8 @@ def _alike(
     """Return the first of each kind of equal vehicles, and how many there are of each kind."""
     kinds: dict[str, tuple[int, Vehicle, frozenset[int]]] = {}
     counts: dict[str, int] = {}
-    several = rows.count if rows.differ else 1
     clients_of = rows.lists("VEHICLES_ALLOWED_CLIENTS")
-    for at in range(several or 1):
+    for at in range(rows.several):
         vehicle, allowed = _vehicle(rows, depots, windows, unit, at), clients_of[at]
         key = repr((vehicle, sorted(allowed)))
         kinds.setdefault(key, (at, vehicle, allowed))
@@ -142,11 +142,22 @@ class _Rows:
     file: TsplibFile
     count: int | None
     parsed: dict[str, list[list[float]]] = field(default_factory=dict)
+    listed: dict[str, list[frozenset[int]]] = field(default_factory=dict)
 
     @property
     def differ(self) -> bool:
         """Whether vehicles may differ."""
         return bool(_sections(self.file))
+
+    @property
+    def several(self) -> int:
+        """How many vehicles there are that may differ; 1 if all are equal."""
+        return (self.count or 1) if self.differ else 1
+
+    def check(self) -> None:
+        """Raise UnreadableFile if there are more vehicles than rows of their sections."""
+        for section in _sections(self.file):
+            self._by_vehicle(section)
 
     def has(self, name: str) -> bool:
         """Return whether a keyword or its section stands in the file."""
@@ -173,11 +184,15 @@ class _Rows:
 
     def lists(self, name: str) -> list[frozenset[int]]:
         """Return the positions of the stops in the row of each vehicle."""
-        section = f"{name}_SECTION"
+        if name not in self.listed:
+            self.listed[name] = self._lists(f"{name}_SECTION")
+        return self.listed[name]
+
+    def _lists(self, section: str) -> list[frozenset[int]]:
         if section not in self.file.sections:
-            return [frozenset()] * (self.count or 1 if self.differ else 1)
+            return [frozenset()] * self.several
         return [
-            frozenset(_index(self.file, section, f"{each:g}") for each in row if each != -1)
+            frozenset(_index(self.file, section, each) for each in row if each != -1)
             for row in self._by_vehicle(section)
         ]
 
@@ -189,9 +204,11 @@ class _Rows:
         rows = [file.parsed(section, words).tolist() for words in file.sections[section]]
         if rows and rows[-1] == [-1]:
             rows.pop()
-        numbers = [row[0] if row else None for row in rows]
-        if sorted(numbers, key=str) != sorted(map(float, range(1, (self.count or 0) + 1)), key=str):
-            raise self._refusal(section, f"one row for each vehicle 1 to {self.count}", len(rows))
+        numbers = sorted(row[0] if row else 0.0 for row in rows)
+        if not rows or len(rows) != self.count or numbers != list(range(1, len(rows) + 1)):
+            raise self._refusal(
+                section, f"one row for each vehicle 1 to {self.count or 'the last'}", len(rows)
+            )
         self.parsed[section] = [row[1:] for row in sorted(rows)]
         return self.parsed[section]
 
@@ -250,16 +267,17 @@ def _start(rows: _Rows, depots: Depots, at: int) -> int:
     found = rows.number("VEHICLES_DEPOT", at)
     source = rows.file.source
     if found is not None:
-        start = _index(rows.file, "VEHICLES_DEPOT_SECTION", f"{found:g}")
+        start = _index(rows.file, "VEHICLES_DEPOT_SECTION", found)
         if start not in depots.stops:
             raise source.refusal("VEHICLES_DEPOT_SECTION must name a depot", f"{found:g}")
         return start
     first, *others = depots.stops
-    reloads = frozenset[int]().union(*rows.lists("VEHICLES_RELOAD_DEPOT"))
-    if not {*others} <= reloads:
-        demand = "DEPOT_SECTION must have one depot, or VEHICLES_DEPOT_SECTION one for each vehicle"
-        raise source.refusal(demand, " ".join(map(depots.name, depots.stops)))
     if others and at == 0:
+        reloads = {each for row in rows.lists("VEHICLES_RELOAD_DEPOT") for each in row}
+        if not {*others} <= reloads:
+            section = "VEHICLES_DEPOT_SECTION one for each vehicle"
+            came = " ".join(map(depots.name, depots.stops))
+            raise source.refusal(f"DEPOT_SECTION must have one depot, or {section}", came)
         source.note("vehicle", f"All vehicles start at the first depot, {depots.name(first)}.")
     return first
 
@@ -273,7 +291,7 @@ def _unit_cost(rows: _Rows) -> float:
     name = "VEHICLES_UNIT_DISTANCE_COST"
     if not rows.has(name):
         return 1.0
-    units = {rows.number(name, at) for at in range(rows.count or 1)}
+    units = {rows.number(name, at) for at in range(rows.several)}
     [unit, *others] = [each or 0.0 for each in units]
     if others or unit <= 0:
         came = ", ".join(sorted(f"{each or 0:g}" for each in units))
@@ -319,12 +337,14 @@ def _allowed(
     return told
 
 
-def _index(file: TsplibFile, section: str, word: str) -> int:
-    """Return the position of the stop that a word of a section numbers."""
-    first, last = file.first_node, file.first_node + file.dimension - 1
-    if not word.isdecimal() or not first <= int(word) <= last:
-        raise file.source.refusal(f"{section} must have numbers of nodes, {first} to {last}", word)
-    return int(word) - first
+def _index(file: TsplibFile, section: str, number: float | None, word: str = "") -> int:
+    """Return the position of the stop that a number of a section names."""
+    at = -1 if number is None or number % 1 else int(number) - file.first_node
+    if not 0 <= at < file.nodes:
+        nodes = f"{file.first_node} to {file.first_node + file.nodes - 1}"
+        demand = f"{section} must have numbers of nodes, {nodes}"
+        raise file.source.refusal(demand, word or f"{number:g}")
+    return at
 
 
 def _load(file: TsplibFile, number: float) -> int:

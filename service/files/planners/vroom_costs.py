@@ -260,8 +260,9 @@ def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[
 
 def _speed_factor(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> float:
     """Return how much faster than usual all vehicles are; 1, with a note, if they differ."""
-    factors = {each.get("speed_factor", 1) for each in vehicles}
-    if len(factors) != 1 or not all(_is_cost(each) and each for each in factors):
+    given = [each.get("speed_factor", 1) for each in vehicles]
+    factors = {each for each in given if _is_cost(each) and each}
+    if len(factors) != 1 or not all(each in factors for each in given):
         note_unused(source, "speed_factor", "vehicles", _DIFFER)
         return 1
     return float(factors.pop())

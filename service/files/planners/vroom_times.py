@@ -69,8 +69,9 @@ def load_of_jobs(source: Source, problem: Mapping[str, Any]) -> str:
 
     Vehicles that only bring things back have room for as much as those that only take things along.
     """
-    jobs = [each for each in problem.get("jobs") or () if isinstance(each, dict)]
-    if not any(any(each.get("pickup") or ()) for each in jobs):
+    found = problem.get("jobs")
+    jobs = [each for each in found if isinstance(each, dict)] if isinstance(found, list) else []
+    if not any(each.get("pickup") not in (None, []) and each["pickup"] != [0] for each in jobs):
         return "delivery"
     brought = any(each.get("delivery") or each.get("amount") for each in jobs)
     if brought or problem.get("shipments"):

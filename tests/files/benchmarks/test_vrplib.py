@@ -168,10 +168,11 @@ READ = {
     ),
     "fixed costs and prizes in units of distance": (
         text(
-            "VEHICLES_FIXED_COST : 6\nVEHICLES_UNIT_DISTANCE_COST : 2\n",
+            "VEHICLES : 999999\nVEHICLES_FIXED_COST : 6\nVEHICLES_UNIT_DISTANCE_COST : 2\n",
             "PRIZE_SECTION\n1 0\n2 8\n3 0\n4 4\n",
         ),
         ("vehicles", "fixed", [3]),
+        ("vehicles", "count", [999_999]),
         ("stops", "prize", [None, 4, None, 2]),
     ),
     "pick-ups and deliveries": (
@@ -301,6 +302,14 @@ REFUSED = {
     "a vehicle that is missing": (
         text("VEHICLES : 3\n", "VEHICLES_MAX_DURATION_SECTION\n1 50\n2 60\n"),
         "VEHICLES_MAX_DURATION_SECTION must have one row for each vehicle 1 to 3, got 2",
+    ),
+    "vehicles that are far too many": (
+        text("VEHICLES : 999999999\n", "CAPACITY_SECTION\n1 50\n2 60\n"),
+        "one row for each vehicle 1 to 999999999, got 2",
+    ),
+    "no vehicles": (
+        text(sections="CAPACITY_SECTION\n").replace("CAPACITY : 10\n", ""),
+        "CAPACITY_SECTION must have one row for each vehicle",
     ),
     "a client of no vehicle": (
         text("VEHICLES : 2\n", "VEHICLES_ALLOWED_CLIENTS_SECTION\n1 2\n2 3\n"),

@@ -240,6 +240,7 @@ REFUSED = [
     (problem(job={"service_per_type": 3}), "jobs/0/service_per_type must be an object"),
     (problem(matrices={"car": SECONDS}), "matrices/car must be an object"),
     (problem(matrix=[[0, 1], [1, 0]]), "must have a row and a column for each location_index"),
+    (problem({"speed_factor": [2]}, jobs=5), "jobs must be a list of objects"),
     ({"vehicles": [], "jobs": []}, "vehicles must be a list of one or more"),
 ]
 
