@@ -1,5 +1,7 @@
 """`python -m tests.fuzz --count 100000`: fuzz a service of its own, and watch its health.
 
+`python -m tests.fuzz files 2000`: mutate tables, and judge what they become (tests/fuzz/tables.py).
+
 Bodies of each generator are parsed in this process; one in fifty of them, and as many of extreme
 numbers, go to a real server. Exit status 1: health took longer than 100 ms, or there was too much
 memory or a lost worker.
@@ -20,6 +22,7 @@ from service.requests.replan.parser import ReplanSource
 from service.requests.task import TaskSource
 from tests.fuzz.attack import largest_memory, parse_many, post_many, watching_health
 from tests.fuzz.bodies import GENERATORS, extreme
+from tests.fuzz.tables import tried
 from tests.helpers.processes import serve_process
 from tests.helpers.serving import ACTORS, LIMITS
 
@@ -31,9 +34,13 @@ MEGABYTES = 1024
 def main() -> int:
     """Run the attack and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
+    parser.add_argument("what", nargs="?", choices=("bodies", "files"), default="bodies")
+    parser.add_argument("number", nargs="?", type=int, default=2000, help="of mutated files")
     parser.add_argument("--count", type=int, default=10_000, help="bodies of all generators")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
+    if options.what == "files":
+        return _try_files(options.number)
     began = time.monotonic()
     actors = {actor.info.name: actor.info for actor in ACTORS}
     each = options.count // len(GENERATORS)
@@ -51,6 +58,12 @@ def main() -> int:
     )
     print(f"{largest_memory():.0f} MB, {lost:g} workers lost, {time.monotonic() - began:.0f} s")
     return int(slowest > HEALTH_SECONDS or largest_memory() > MEGABYTES or lost > 0)
+
+
+def _try_files(number: int) -> int:
+    outcomes, faults = tried(number)
+    print("files", dict(outcomes), *faults, sep="\n")
+    return int(bool(faults))
 
 
 def _sample(count: int, seed: int) -> Iterator[TaskSource | ReplanSource]:
