@@ -33,7 +33,7 @@ class RequestNote:
     """A note on a request that was planned: something in it is likely to be a mistake.
 
     Attributes:
-        code: Tells notes apart: `place`, `swapped`, `far`, `outlier` or `large-costs`.
+        code: Tells notes apart, such as `swapped` or `large-costs`; the guide lists them.
         text: A sentence.
         pointer: The JSON pointer of the part of the request that it is about, if it has one.
     """
