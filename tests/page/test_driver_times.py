@@ -232,3 +232,36 @@ def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(
     assert sum(row["break"].count(" to ") for row in rows) == len(breaks)
     for row, following in pairwise(rows):
         assert at(following["arrives"]) == pytest.approx(at(row["leaves"]) + 600, abs=60), rows
+
+
+NOTE = """async (visits) => {
+  const { departureNote } = await import("./page/fleet/visit_sentence.js");
+  const minutes = (time) => String((time / 60) % 60).padStart(2, "0");
+  return departureNote(visits, (time) => `${Math.floor(time / 3600)}:${minutes(time)}`);
+}"""
+
+
+def visit(arrives: str, begins: str, opens: str = "", stop: str = "A") -> dict[str, Any]:
+    """What a vehicle does at a stop, which opens as it begins if that is said."""
+    arrival, begin = at(arrives), at(begins)
+    times = {"stop": stop, "arrival": arrival, "begin": begin, "waiting": begin - arrival}
+    return {**times, **({"opens": at(opens)} if opens else {})}
+
+
+@pytest.mark.parametrize(
+    ("visits", "why"),
+    [
+        ([visit("8:15", "8:15", "8:15")], ", to be at A when it opens at 8:15"),
+        ([visit("8:10", "8:10"), visit("8:15", "8:15", "8:15", "B")], ", to be at B when it opens"),
+        ([visit("8:10", "8:15", "8:15")], ""),  # it waits there
+        ([visit("8:10", "8:12"), visit("8:15", "8:15", "8:15", "B")], ""),  # or before
+        ([visit("8:15", "8:15")], ""),
+    ],
+)
+def test_a_vehicle_leaves_for_a_stop_that_opens_only_if_it_does_not_wait(
+    stored: Page, visits: list[dict[str, Any]], why: str
+) -> None:
+    start = {**visit("8:05", "8:05", stop="depot"), "shift": at("7:30"), "released": 0}
+    said = stored.evaluate(NOTE, [start, *visits])
+    assert said.startswith(f"Shift from 7:30; leaves at 8:05{why}")
+    assert why or said.endswith("8:05.")

@@ -33,12 +33,17 @@ export function departureNote(visits, said) {
 /** When the shift of a vehicle begins that leaves later; "" if none does. */
 const laterThanShift = ({ shift, arrival }, said) => (arrival > shift && said(arrival) !== said(shift) ? said(shift) : "");
 
-/** When a vehicle leaves, and what for, if it could leave earlier: it would wait at the first stop that opens when it is visited. */
+/**
+ * When a vehicle leaves, and what for, if it could leave earlier: it would wait at the first stop that opens when it is visited.
+ * That is not why if the vehicle waits all the same, there or before.
+ */
 function leaving(visits, said) {
   const { arrival, released } = visits[0];
   const loaded = waited(released, arrival);
-  const opening = laterThanShift(visits[0], said) && !loaded && visits.find(({ opens }) => opens !== undefined);
-  return `leaves at ${said(arrival)}${loaded}${opening ? `, to be at ${opening.stop} when it opens at ${said(opening.opens)}` : ""}`;
+  const opening = visits.find(({ opens, waiting }) => opens !== undefined || waiting);
+  const inTime = opening && opening.opens !== undefined && said(opening.arrival) === said(opening.begin);
+  const why = inTime && !loaded && laterThanShift(visits[0], said);
+  return `leaves at ${said(arrival)}${loaded}${why ? `, to be at ${opening.stop} when it opens at ${said(opening.opens)}` : ""}`;
 }
 
 /** What the stop asks for: when it is open, and when a visit is due. */
