@@ -218,6 +218,18 @@ def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, rel
         assert page.locator("#fleet-legend tfoot td").all_inner_texts()[-1] == "30 min, the longest"
 
 
+def test_the_column_of_an_imbalance_is_named_after_what_its_rows_have(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, "about:blank") as page:
+        open_stored(page, released, "imbalance", [13.0 * MINUTE, 0.0])
+        page.locator("#balance").press("Home")
+        titles = page.locator("#fleet-legend thead th").all_inner_texts()
+        assert titles[-1].startswith("Whole route")
+        last = page.locator("#fleet-legend tfoot td").last
+        expect(last).to_have_text("13 min, longest minus shortest")
+
+
 def test_lateness_is_said_as_a_time(late: Page) -> None:
     select(late, "End")
     expect(late.locator("#choice")).to_have_text(

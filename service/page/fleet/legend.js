@@ -22,11 +22,17 @@ export function showLegend(table, plan, movers, asked, objectives, names) {
   const all = counts.reduce((sum, count) => sum + count, 0);
   table.tHead.replaceChildren(line([movers.one, movers.stops, ...load("Load"), ...objectives.map(titleOf)].map((title) => made("th", { scope: "col" }, title))));
   table.tBodies[0].replaceChildren(...rows.map(line));
-  table.tFoot.replaceChildren(line([made("th", { scope: "row" }, "Plan"), ...cells([all, ...load(""), ...said(plan).map((value, axis) => `${value}${isLongest(objectives[axis]) ? ", the longest" : ""}`)])]));
+  table.tFoot.replaceChildren(line([made("th", { scope: "row" }, "Plan"), ...cells([all, ...load(""), ...said(plan).map((value, axis) => `${value}${ofRoutes(objectives[axis])}`)])]));
 }
 
-/** The title of a column: each row has the whole of its own route where the plan has the longest of all. */
-const titleOf = (objective) => withUnit(isLongest(objective) ? { ...objective, name: "whole route" } : objective);
+/** The title of a column: each row has the whole of its own route where the plan compares its routes. */
+const titleOf = (objective) => withUnit(ofRoutes(objective) ? { ...objective, name: "whole route" } : objective);
+
+/** What a plan has of the lengths of its routes, to be said behind it; "" if that is their sum. */
+function ofRoutes(objective) {
+  if (objective.measure === "imbalance") return ", longest minus shortest";
+  return isLongest(objective) ? ", the longest" : "";
+}
 
 const cells = (values) => values.map((value) => made("td", {}, value));
 const line = (parts) => made("tr", {}, ...parts);
