@@ -40,13 +40,13 @@ _OF_ORDERS = (*_TIMES, "demand", "prize", "skills", "vehicle")
 def depot_of(columns: Columns, stops: Sequence[Stop]) -> str | None:
     """Return the id of the stop from which vehicles start that are not told where; or None.
 
-    It is the first stop, unless that is an order; then the only stop that is called a depot.
+    It is the only row that is called a depot, or else the first one, unless that is an order.
     """
-    if not is_order(columns, stops, 0):
-        return str(stops[0]["id"])
-    called = [row for row in range(1, len(stops)) if _is_called_depot(columns, row)]
-    named = [row for row in called if not _is_loaded(stops[row])]
-    return str(stops[named[0]]["id"]) if len(named) == 1 else None
+    rows = range(len(columns.table.rows))
+    called = [row for row in rows if _is_called_depot(columns, row) and not _is_loaded(stops[row])]
+    if len(called) != 1 and is_order(columns, stops, 0):
+        return None
+    return str(stops[called[0] if len(called) == 1 else 0]["id"])
 
 
 def is_order(columns: Columns, stops: Sequence[Stop], row: int) -> bool:
@@ -115,16 +115,19 @@ def with_depots(
         plane: The points of the stops in the plane, if they are not on the earth. Those of stops
             that are added for vehicles are added here too.
     """
+    rows = {stops[row]["id"]: row for row in range(len(columns.table.rows))}
     are_free = [not each.keys() & {"start", "end"} for each in vehicles]
     home = depot_of(columns, stops) if any(are_free) else None
     if any(are_free) and home is None:
         _note_anywhere(columns, stops[0])
+    if home is not None and not _is_called_depot(columns, rows[home]):
+        text = f"{quoted(home)} has nothing to deliver or visit, so vehicles start and end there."
+        columns.source.note("depot", text)
     ends = {} if home is None else dict.fromkeys(("start", "end"), home)
     placed = [
         each | ends if is_free else each for each, is_free in zip(vehicles, are_free, strict=True)
     ]
     named = {stop for each in placed for stop in _depots_of(each)}
-    rows = {stops[row]["id"]: row for row in range(len(columns.table.rows))}
     orders = {each for each in named & rows.keys() if is_order(columns, stops, rows[each])}
     stops, moved = _with_stops_for(columns, stops, sorted(orders), plane)
     by_id = {stop["id"]: stop for stop in stops}

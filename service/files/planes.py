@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from service.files.column_names import PLANES
 from service.files.columns import Columns
 from service.files.reading import UnreadableFile, quoted
-from service.files.tables import number_in
+from service.files.tables import number_in, plain_numbers
 
 _MOST_ALIKE = 10  # how much wider the widest column of pasted planes may be than the narrowest
-_LEAST_DIGITS = 3  # behind the decimal sign of half the degrees of a pasted place
-_DIGITS = re.compile(r"[.,](\d+)")
+_EXACT = re.compile(r"[.,]\d{3}", re.ASCII)  # half of the degrees of a pasted place, or more
+_LONGEST_COUNT = 15  # digits of a number of a row
 
 
 def called_planes(columns: Columns) -> list[tuple[int, int]]:
@@ -53,12 +53,11 @@ def pasted_planes(columns: Columns, free: Sequence[int]) -> list[tuple[int, int]
     counted = [at for at, field in enumerate(columns.fields) if field == "id"] + [free[0]]
     if any(count_rows(columns, at) for at in counted) or degrees_in(columns, free):
         return []
-    cells = columns.table.rows
     widths = []
     for at in free:
-        numbers = [each for _, row in cells if (each := number_in(row[at])) is not None]
+        numbers = [each for each in _numbers(columns, at) if each is not None]
         widths.append(max(numbers) - min(numbers) if numbers else 0.0)
-    if len(cells) > 1 and max(widths) > _MOST_ALIKE * min(widths):
+    if len(columns.table.rows) > 1 and max(widths) > _MOST_ALIKE * min(widths):
         return []
     count = len(free) // 2
     columns.source.note(
@@ -97,10 +96,10 @@ def recognise_pasted(columns: Columns) -> None:
 def count_rows(columns: Columns, at: int) -> bool:
     """Return whether a column counts the rows, in whole numbers."""
     texts = [row[at] for _, row in columns.table.rows]
-    if len(texts) < 2 or not texts[0].isdecimal():
+    if len(texts) < 2 or not texts[0].isdecimal() or len(texts[0]) > _LONGEST_COUNT:
         return False
     first = int(texts[0])
-    return texts == [str(first + row) for row in range(len(texts))]
+    return texts[1] == str(first + 1) and texts == [str(first + row) for row in range(len(texts))]
 
 
 def degrees_in(columns: Columns, free: Sequence[int]) -> tuple[int, int] | None:
@@ -108,17 +107,23 @@ def degrees_in(columns: Columns, free: Sequence[int]) -> tuple[int, int] | None:
     if len(free) < 2:
         return None
     first, second = free[:2]
-    numbers = [[number_in(row[at]) for _, row in columns.table.rows] for at in (first, second)]
-    if any(each is None for column in numbers for each in column):
+    numbers = [_numbers(columns, at) for at in (first, second)]
+    if any(None in column for column in numbers):
+        return None
+    left, right = (max(abs(each or 0.0) for each in column) for column in numbers)
+    if max(left, right) <= 1 or max(left, right) > 180 or min(left, right) > 90:
         return None
     texts = [row[at] for _, row in columns.table.rows for at in (first, second)]
-    exact = [len(found[1]) >= _LEAST_DIGITS for each in texts if (found := _DIGITS.search(each))]
-    least, most = (max(abs(each or 0.0) for each in column) for column in numbers)
-    if len(exact) < len(texts) / 2 or sum(exact) < len(texts) / 2 or max(least, most) <= 1:
+    exact = [each for each in texts if _EXACT.search(each)]
+    if 2 * len(exact) < len(texts):
         return None
-    if least <= 90 and most <= 180:
-        return second, first
-    return (first, second) if least <= 180 and most <= 90 else None
+    return (second, first) if left <= 90 else (first, second)
+
+
+def _numbers(columns: Columns, at: int) -> list[float | None]:
+    """Return the number in each field of a column, or None."""
+    texts = [row[at] for _, row in columns.table.rows]
+    return [*(plain_numbers(texts) or map(number_in, texts))]
 
 
 def question(columns: Columns, free: Sequence[int]) -> UnreadableFile:

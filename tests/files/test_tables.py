@@ -226,6 +226,10 @@ DEPOTS: dict[str, tuple[list[str], Becomes | str]] = {
         stops("1 2 Depot", "from and to 'Depot'", window=[*WINDOWS, None],
               request={"vehicles": [{"id": "vehicle", "start": "Depot", "end": "Depot"}]}),
     ),
+    "the last row is the depot, though the first has no window": (
+        ["id,lat,lon,from,to\n1,60.169,24.952,,\n2,60.165,24.933,9:00,11:00\nWarehouse,60.171,24.941,,\n"],
+        stops("1 2 Warehouse", request={"vehicles": [{"id": "vehicle", "start": "Warehouse", "end": "Warehouse"}]}),
+    ),
     "two depots that are not first": (
         [f"{ORDERS}Depot 1,60.171,24.941,,,\nDepot 2,60.172,24.943,,,\n"],
         stops("1 2 Depot_1 Depot_2", ANYWHERE),
@@ -246,6 +250,10 @@ DEPOTS: dict[str, tuple[list[str], Becomes | str]] = {
     "a row with a customer is an order": (
         ["id,lat,lon,customer,demand\n7,60.171,24.941,Ann Lee,\n8,60.169,24.952,Bo,2\n"],
         stops("7 8", ANYWHERE),
+    ),
+    "a first row without demand is where vans start, with a note": (
+        ["order,lat,lon,qty\n1,60.171,24.941,0\n2,60.169,24.952,3\n", "vehicle,capacity\nv,9\n"],
+        stops("1 2", "'1' has nothing to deliver or visit, so vehicles start and end there"),
     ),
     "a shop is no depot": (
         ["name,lat,lon,open,close\nThe Home Depot,60.171,24.941,06:00,20:00\nAnn,60.169,24.952,09:00,11:00\n"],

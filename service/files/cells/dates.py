@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date
+from functools import lru_cache
 from typing import NamedTuple
 
 from service.files.reading import Source, UnreadableFile, quoted
@@ -21,6 +22,7 @@ _ZONE = re.compile(
 )
 _MIDNIGHT = re.compile(r"0?0:00(?::00(?:\.0+)?)?|12(?::00){1,2}\s?a\.?m\.?", re.IGNORECASE)
 _MOST_SHORT_YEAR = 99
+_LONGEST = 80  # characters of a time with its date
 
 
 class Parts(NamedTuple):
@@ -75,6 +77,11 @@ class TimeColumn(NamedTuple):
 
 def parts_of(text: str) -> Parts:
     """Return the date, the time and the zone in a text; only the time if it has no date."""
+    return _parts_of(text) if len(text) <= _LONGEST else Parts("", text, None)
+
+
+@lru_cache(maxsize=4096)
+def _parts_of(text: str) -> Parts:
     rest, zone = text.strip(), None
     found = _DATED.fullmatch(rest)
     day = ""
