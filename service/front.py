@@ -120,7 +120,7 @@ class Front:
         constructed: The number of tours that the network built.
         scale: The scale of the instance, shape (m,).
         reference_point: The reference point of the hypervolumes, shape (m,).
-        hypervolume: That of the tours kept.
+        hypervolume: The hypervolume of the tours kept.
         terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
         bound: A hypervolume that no front of the instance exceeds, if it was asked for.

@@ -25,7 +25,7 @@ def open_session(content: bytes, path: Path, threads: int) -> onnxruntime.Infere
 
     Args:
         content: The content.
-        path: Of the file: of one that is released the optimised graph is kept.
+        path: Where the file lies. The optimised graph of a released network is kept.
         threads: The number of threads.
 
     Raises:

@@ -150,7 +150,7 @@ class Signs:
     Args:
         separator: What separates its fields; None for white space, XLSX and JSON.
         own: The decimal signs that its numbers have for certain.
-        of_request: Those of all files of the request.
+        of_request: The decimal signs of all files of the request.
     """
 
     separator: str | None = None

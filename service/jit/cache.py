@@ -1,19 +1,19 @@
 """The cache of compiled code on disk, from which later processes load it.
 
-numba numbers what it compiles, from 1 in each process, to tell functions of one name apart: those
-inside np.sort from those inside np.argsort. Of two cached by different processes with the same
-number, whichever is loaded first is called in the other's place, and the process dies
-(numba#10486). So each process begins at a random number, far from those of all others. A standalone
-function has the same number in every process, as code of one process may call that of another.
+numba gives each compiled function a number, to tell functions of one name apart, such as those
+inside np.sort and np.argsort. It counts from 1 in every process. If two processes cache two such
+functions under one number, a later process calls the one that it loaded first in place of the
+other, and dies (numba#10486). So each process counts from a random number here. A standalone
+function has the same number in all processes, because code of one process may call it in another.
 
-numba compiles a function anew where its own module has changed, but not where a function that it
-calls has. So what is cached belongs to one state of all modules with compiled code.
+numba compiles a function again if its own module has changed, but not if only a function that it
+calls has changed. So cached code is valid for one state of all modules with compiled code.
 
-Nor does numba expect two processes to save code of one function at once: both would take the same
-file. So they do it one after another, and an index never names a file that is not written yet.
+If two processes save code of one function at the same time, numba lets both write the same file.
+So they save one after another here, and an index never names a file that is not written yet.
 
-A wheel or an image can carry compiled code in the folder PRECOMPILED. Its name says for which
-processes it is, and others do not look into it: they use numba's own cache.
+A wheel or an image can carry compiled code in the folder PRECOMPILED. The folder's name says which
+processes can use it; all others use numba's own cache.
 """
 
 import fcntl

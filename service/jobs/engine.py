@@ -20,7 +20,7 @@ class JobState:
 
     Args:
         record: The record.
-        progress: That of its search, if it runs.
+        progress: The progress of its search, if it runs.
         compiling: The progress of the compilation that it waits for, if it waits.
     """
 

@@ -14,8 +14,8 @@ class Delivery:
     """The end of a job, which is to be posted to its webhook.
 
     Attributes:
-        id: Of the job.
-        status: With which it ended.
+        id: The job's id.
+        status: The status with which the job ended.
         ended_at: When it ended, in seconds since 1970.
         attempts: How often it was tried, this time included.
     """

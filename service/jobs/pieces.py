@@ -21,7 +21,7 @@ class Work(NamedTuple):
     Args:
         whole: Compiles all of it.
         pieces: Compile most of it, and share little, so that processes do it side by side.
-        seconds: That it takes of a processor, about.
+        seconds: About how many seconds of a processor it takes.
     """
 
     whole: Compile

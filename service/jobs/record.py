@@ -22,7 +22,7 @@ class Record:
 
     Attributes:
         caller: The name of the API key, which alone may see the record.
-        request_id: Of the request that submitted the job; it is named in the problem document.
+        request_id: The id of the request that submitted the job; problem documents name it.
         front: The best front found so far.
         source: The task as it is stored; None where the job has failed. Stores return the source
             of a finished job apart from its record, if they have kept it.

@@ -69,7 +69,7 @@ def make_weighted_search(
         weights: The weight of each length.
         archive: Is offered every tour on the way.
         places: The first place that may change, and the one after the last.
-        seed: Of its random numbers.
+        seed: The seed of its random numbers.
     """
     n = means.shape[1]
     costs = np.tensordot(weights, means, axes=1)

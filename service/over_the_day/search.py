@@ -77,7 +77,7 @@ class DaySearch:
 
     Args:
         day: The day.
-        seed: Of all random choices.
+        seed: The seed of all random choices.
         start: The stop at which closed tours begin.
     """
 

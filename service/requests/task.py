@@ -30,7 +30,7 @@ class VehicleName:
     Args:
         id: Its id.
         shift: The number of its shift, if those of its id have several.
-        route: Of a vehicle on its way, the number of its route in the plan that is driven.
+        route: The number of its route in the plan that is driven, if it is on its way.
     """
 
     id: str
@@ -135,8 +135,8 @@ class Task:
         labels: The caller's names of stops and objectives.
         timings: Milliseconds of each step that was done for it after parsing, by name.
         earlier: What is left of the tours of the front that is replanned, if one is.
-        parts: Of a map that is replanned, the part of the request that names each place; places/2
-            is place 2 of the earlier front.
+        parts: The part of the request that names each place, if a map is replanned; places/2 is
+            place 2 of the earlier front.
         notes: What is likely to be a mistake, for answers.
     """
 

@@ -43,7 +43,7 @@ def closing_costs(instance: Instance, barrier: float) -> Array:
 
 
 def largest_steps(instance: Instance) -> Array:
-    """Return bounds, shape (2,), on what the search counts for a step, that to city 0 included."""
+    """Return the most that a step can cost in the search, shape (2,), also a step to city 0."""
     matrices = instance.kind == "matrices"
     largest = instance.penalised_matrices.max(axis=(1, 2)) if matrices else instance.extents
     scaled = np.ldexp(largest, instance.shifts)
@@ -51,7 +51,10 @@ def largest_steps(instance: Instance) -> Array:
 
 
 def _barrier(largest: Array) -> float:
-    """Return what kept and forbidden steps count: a power of two, more than a move gains."""
+    """Return the cost of a forbidden step, and less zero that of a kept one.
+
+    It is a power of two, and larger than what any move can gain.
+    """
     exponent = int(np.frexp(largest.max())[1])
     return float(np.ldexp(LEAST_BARRIER, max(0, exponent - 1)))
 

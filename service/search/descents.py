@@ -32,7 +32,7 @@ class Descents:
 
     Args:
         instance: The instance.
-        state: Of the search.
+        state: The state of the search.
         local_search: What descends.
         touched: The cities at which a descent begins where they are not all.
     """

@@ -35,8 +35,8 @@ def check_ways(
     Args:
         forbidden: Shape (n, n).
         ends: Whether tours are closed, and the fixed ends of open ones.
-        names: Of the cities.
-        code: Of the refusal.
+        names: The names of the cities.
+        code: The code of the refusal.
     """
     if not forbidden.any():
         return

@@ -63,7 +63,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         iterations: Number of local optima to visit; one by three-opt counts as several. None sets
             no limit. Without a deadline, the same seed and the same iterations give the
             same front.
-        seed: Of all random choices.
+        seed: The seed of all random choices.
         stop: Called every millisecond or two; True ends the search at once.
         report: Called about ten times a second with the progress, and with a function that copies
             the n best tours found so far, which is valid until the report returns.

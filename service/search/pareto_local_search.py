@@ -109,12 +109,11 @@ class Round(NamedTuple):
 def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
     """Return the rounds of a search for n cities, before weights and gaps compete.
 
-    Tours of an earlier front, which have touched cities, are good enough for gaps to be filled
-    between them at once, and for short rounds, in which one weight's gain soon serves the others:
-    at once those beside it, as weights come in their order there.
-    But to fill gaps alone brings more tours than a front is answered with, and none of them as
-    short as after a round. Of thousands of cities a round takes too long for that, unless the tours
-    may have become worse at most of them.
+    A search that starts from the tours of an earlier front, whose `touched` cities have changed,
+    has short rounds, and fills gaps after each. These tours are good enough for both. Weights come
+    in their order then, so that what one weight gains serves the next one at once. Filling gaps
+    without a round would find more tours than an answer returns, and none as short. Of thousands
+    of cities even a short round takes too long: there is one only if most cities are touched.
     """
     if touched is None:
         by_iterations = Round(4, 4 if n < LARGE else 0), Round(1, 0)

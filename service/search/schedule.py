@@ -1,12 +1,18 @@
-"""The schedule of a search: under which weight, and for how long, or where to fill the front.
+"""The schedule of a search: which weighted sum to improve next, or which gap of the front to fill.
 
-First every weight gets a tour by descent, then each gets iterated local search, twice, and gaps in
-the front are filled in between. From then on weights and gaps compete for the time, by the
-hypervolume that they lately gained. Half a thousand cities leave gaps too wide for that: when half
-of the weights have a tour, each other one, and then at its turn each of all, is first descended to
-from the best tours under both neighbouring weights, what lies between is offered as well, and what
-is best in all of these is put together. Where there are tours of an earlier front, descents begin
-at what has changed, and the rounds are others, or none.
+1. Every weight gets a tour by descent.
+2. Every weight gets iterated local search, in two rounds, between which gaps in the front are
+   filled.
+3. From then on weights and gaps compete for the time: whichever gained more hypervolume lately has
+   the next turn.
+
+Of 500 cities or more, the gaps are too wide to be filled. So only some weights get their first tour
+by descent. The others, and later every weight at its turn, first descend from the best tours under
+the two neighbouring weights: tours on the way are offered to the archive, and the best parts of
+these tours are put together (edge assembly).
+
+Where a search starts from the tours of an earlier front, descents begin at the cities that have
+changed, and there are other rounds, or none.
 """
 
 from collections.abc import Iterator
@@ -69,7 +75,7 @@ class Search:
 
     Args:
         instance: The instance.
-        seed: Of all random choices.
+        seed: The seed of all random choices.
         reference_point: Shape (2,), positive, in the instance's units.
         capacity: The most tours that the archive holds.
         touched: If the tours that are added are those of an earlier front: the cities of the

@@ -177,7 +177,7 @@ class RestOfWay:
         begin: The index of that stop in the rest.
         ends_in_rest: The ends as indexes in the rest.
         done: The stops visited, in order.
-        left: Those of its stops that are the front's, without the ends.
+        left: The front's stops among its own, without the ends.
     """
 
     stops: Indices

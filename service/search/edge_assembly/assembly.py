@@ -1,10 +1,10 @@
-"""Edge assembly: a tour takes what is better in another, each difference by itself.
+"""Edge assembly: improve a tour by those parts of another tour that are better.
 
-Local search finds improvements here and there, others under each weight and from each start. What
-two tours differ by is parted into alternating cycles. A tour takes the other's steps of each cycle
-that makes it shorter under its weighted sum; where it falls into several circuits then, these are
-joined again, each in turn from the smallest on, by the cheapest exchange of two steps, if enough of
-the gain is left. For costs that are the same in both directions.
+The steps in which two tours differ are divided into alternating cycles: a step of the one tour, a
+step of the other, and so on. For each cycle the tour takes the other's steps if that makes it
+shorter under its weighted sum. It may fall into several circuits then. These are joined again, the
+smallest first, by the cheapest exchange of two steps, if enough of the gain is left. Costs must be
+the same in both directions.
 """
 
 import numpy as np
@@ -32,8 +32,8 @@ Cities = NDArray[np.int32]
 
 LARGEST_CIRCUIT = 1_000  # cities: to look for a joint at each of them takes that long
 
-# What it costs to join two circuits, and of both steps that this exchanges where they begin and in
-# which direction they go; no directions where none is found.
+# The cost of joining two circuits; then, for each of the two steps that are exchanged, the city at
+# which it begins, and its direction. The directions are 0 where no joint was found.
 Joint = tuple[float, int, int, int, int]
 
 

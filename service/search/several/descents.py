@@ -37,7 +37,7 @@ class DescentsOfSeveral:
 
     Args:
         instance: The instance.
-        state: Of the search.
+        state: The state of the search.
         sums: The weighted sums, by the number of their weight.
         local_search: What descends.
         touched: The cities at which a descent begins where they are not all.

@@ -99,7 +99,7 @@ def search_from_points(
     """Iterate from `rounds` points, one after another, each chosen anew.
 
     Args:
-        state: Of the search.
+        state: The state of the search.
         scalarization: The weighted sum, in two costs.
         weights: Its weights, shape (m,).
         least: The least weighted sum found so far.

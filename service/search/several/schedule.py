@@ -60,7 +60,7 @@ class SearchOfSeveral:
 
     Args:
         instance: The instance.
-        seed: Of all random choices.
+        seed: The seed of all random choices.
         reference_point: Shape (m,), positive, in the instance's units.
         capacity: The most tours that the archive holds.
         touched: If the tours that are added are those of an earlier front: the cities of the

@@ -1,9 +1,9 @@
-"""The exchanges at a city: the best, and the one that promises most of a longer one.
+"""Find the best exchange at a city, and the most promising start of a longer one.
 
-All are sequential, and built step by step: what is removed so far must be longer than what is
-added, or no exchange from there on can gain (Lin and Kernighan, 1973). The last step added, which
-closes the tour, is the only one that is not chosen. Without it the tour is open, and what an
-exchange has gained until then is what a longer one could set out from.
+An exchange removes steps of the tour and adds others, one after another. At each point the steps
+removed must be longer than those added: else no exchange that goes on from there can gain (Lin and
+Kernighan, 1973). All added steps are chosen but the last, which closes the tour. Before it is
+added, the tour is open; what is gained by then is what a longer exchange begins with.
 """
 
 import numpy as np
@@ -25,7 +25,8 @@ from service.search.three_opt.exchanges import (
 )
 from service.search.three_opt.undoable_tour import UndoableTour
 
-# What the best gains, the best, what the promising one gains before it is closed, and that one.
+# The gain of the best exchange, that exchange; the gain of the promising one before it is closed,
+# and that exchange.
 Found = tuple[float, Exchange, float, Exchange]
 
 BREADTH = 5  # candidates that are tried for the second step added; for the first all are
@@ -171,7 +172,7 @@ def find_behind(
     Args:
         working: The tour.
         scalarization: The weighted sum.
-        opened: As of find_after(); the step before other is removed as well.
+        opened: As in find_after(); the step before other is removed as well.
         joined: The city before other, and the third, behind it, to which a step from there is
             added.
         gain: What all that gains.
