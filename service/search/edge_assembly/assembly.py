@@ -32,8 +32,8 @@ Cities = NDArray[np.int32]
 
 LARGEST_CIRCUIT = 1_000  # cities: to look for a joint at each of them takes that long
 
-# The cost of joining two circuits; then, for each of the two steps that are exchanged, the city at
-# which it begins, and its direction. The directions are 0 where no joint was found.
+# The cost of joining two circuits; then, for each of the two steps that are exchanged, the place in
+# the tour at which it begins, and its direction. The directions are 0 where no joint was found.
 Joint = tuple[float, int, int, int, int]
 
 
