@@ -339,6 +339,9 @@ def other_zip(name: str) -> bytes:
         (book()[:-30], "must be XLSX"),
         (book("<row><c"), "must be XLSX: xl/worksheets/sheet1.xml"),
         (book(""), "must have a sheet with rows"),
+        (book(TABLE + '<row r="3"><c r="A3"><v>1</v></c></row>'), "cell A3 must come once"),
+        (book(TABLE + '<row><c t="s"><v>7</v></c></row>'), "must have the shared text 7 of a"),
+        (book(TABLE + '<row><c t="s"><v>x</v></c></row>'), "cell A4 must be a shared text, got"),
         (book(rows_of(PLACED)), "must have a row for each stop below its heading"),
     ],
 )

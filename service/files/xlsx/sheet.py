@@ -16,6 +16,7 @@ _FIELD = 8  # units of work that a field earns: its tags, and some bytes
 _TEXT = 8  # units that a text earns which several cells may share
 _TRUE = ("1", "true")
 _BOOLEANS = {"0": "False", "1": "True"}
+_MOST_DIGITS = 9  # of the number of a shared text
 _FEW = 1000  # cells that are told at most
 _REF = re.compile("([A-Z]{1,3})([0-9]{1,7})")
 
@@ -195,11 +196,15 @@ class _SheetReader:
             self.sheet.rows[self._row] = self._cells
             if self._is_hidden:
                 self.sheet.hidden_rows.append(self._row)
+        if self._column in self._cells:
+            raise self._source.refusal(f"cell {self._name()} must come once, got it twice")
         self._cells[self._column] = cell
 
     def _content(self, text: str, kind: str) -> Cell:
         if kind == "s":
-            return int(text) if text.isdecimal() and len(text) < 10 else ""
+            if not text.isdecimal() or len(text) > _MOST_DIGITS:
+                raise self._source.refusal(f"cell {self._name()} must be a shared text", text)
+            return int(text)
         if kind == "n":
             return self._number(text)
         if kind == "b":
@@ -225,4 +230,7 @@ class _SheetReader:
 
     def _keep(self, cells: list[str]) -> None:
         if len(cells) < _FEW:
-            cells.append(f"{letters_of(self._column)}{self._row}")
+            cells.append(self._name())
+
+    def _name(self) -> str:
+        return f"{letters_of(self._column)}{self._row}"

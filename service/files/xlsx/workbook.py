@@ -85,7 +85,10 @@ class Workbook:
             return cell
         if self._texts is None:
             self._texts = self._shared_texts()
-        return self._texts[cell] if cell < len(self._texts) else ""
+        if cell >= len(self._texts):
+            demand = f"must have the shared text {cell} of a cell"
+            raise self.source.refusal(f"{demand}, got {len(self._texts)} texts")
+        return self._texts[cell]
 
     def _shared_texts(self) -> list[str]:
         reader = TextsReader()
