@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service.fleet.evaluation import route_lengths, route_violations, violations
+from service.fleet.evaluation import first_broken, route_lengths, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
@@ -83,7 +83,7 @@ def _first_routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> dict
     found: dict[Stops, Route] = {}
     for stops, route in _in_order(fleet.rules, vehicle, ended):
         visited = frozenset(stops)
-        if visited not in found and not any(route_violations(fleet, route)):
+        if visited not in found and not first_broken(fleet, route):
             found[visited] = route
     return found
 
@@ -117,7 +117,7 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
     fixed = rules.vehicles[vehicle].fixed
     found: dict[Stops, list[_Partial]] = defaultdict(list)
     for stops, route in _in_order(rules, vehicle, ended):
-        if not any(route_violations(fleet, route)):
+        if not first_broken(fleet, route):
             first, *others = _values(fleet, route)
             found[frozenset(stops)].append(_Partial((first + fixed, *others), (route,)))
     return _undominated(found)

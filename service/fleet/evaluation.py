@@ -5,6 +5,7 @@ Every plan is checked with this code, which shares nothing with the engine that 
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import accumulate
 from math import inf
 from typing import NamedTuple
@@ -15,9 +16,10 @@ from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
-from service.fleet.schedule import Schedule, legs, schedule, trips_of
+from service.fleet.schedule import REMEMBERED, Schedule, legs, schedule, trips_of
 
 
+@lru_cache(REMEMBERED)
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
     """Return the lengths of a route, before prizes and fixed costs.
 
@@ -42,21 +44,21 @@ def joined_lengths(
 ) -> tuple[float, ...]:
     """Return the lengths of a plan, given those of its routes."""
     rules = fleet.rules
-    columns = np.reshape(of_routes, (-1, len(rules.over))).T
-    lengths = [_joined(over, column) for over, column in zip(rules.over, columns, strict=True)]
+    columns = list(zip(*of_routes, strict=True)) or [()] * len(rules.over)
+    lengths = [joined(over, column) for over, column in zip(rules.over, columns, strict=True)]
     lengths[0] += fixed_costs(rules, plan)
     paid = rules.over.index("unassigned") if "unassigned" in rules.over else 0
     lengths[paid] += lost_prizes(rules, plan)
     return tuple(lengths)
 
 
-def _joined(over: Over | Measure, lengths: Array) -> float:
-    """Return the length of a plan whose routes have these lengths, shape (k,)."""
-    if over == "sum" or not len(lengths):
-        return float(lengths.sum())
+def joined(over: Over | Measure, lengths: Sequence[float]) -> float:
+    """Return the length of a plan whose routes have these lengths."""
     if over == "max":
-        return float(lengths.max())
-    return float(np.ptp(lengths) if over == "imbalance" else lengths.sum())
+        return max(lengths, default=0.0)
+    if over == "imbalance" and lengths:
+        return max(lengths) - min(lengths)
+    return float(sum(lengths))
 
 
 def fixed_costs(rules: Rules, plan: Plan) -> float:
@@ -134,6 +136,7 @@ def violations(fleet: Fleet, plan: Plan) -> list[str]:
         *(
             f"a vehicle of type {route.vehicle} {broken.detail}"
             for route in plan.routes
+            if first_broken(fleet, route)
             for broken in route_violations(fleet, route)
         ),
     ]
@@ -168,6 +171,7 @@ def cost_length(fleet: Fleet, route: Route, layer: int) -> float:
     return sum(legs(fleet, route, layer))
 
 
+@lru_cache(REMEMBERED)
 def load_distance(fleet: Fleet, route: Route) -> float:
     """Return the sum over the legs of the first costs times the load, in its first dimension."""
     vehicle = fleet.rules.vehicles[route.vehicle]
@@ -225,6 +229,12 @@ class Broken(NamedTuple):
 
     rule: Rule
     detail: str
+
+
+@lru_cache(REMEMBERED)
+def first_broken(fleet: Fleet, route: Route) -> Broken | None:
+    """Return the first rule that a route breaks by itself, or None."""
+    return next(route_violations(fleet, route), None)
 
 
 def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:

@@ -78,7 +78,7 @@ class Fleet:
         legs: Array = least_paths(self.costs[self.rules.clock], places)
         return np.where(np.isfinite(legs), legs, 0.0)
 
-    @property
+    @cached_property
     def scale(self) -> Array:
         """The unit of each of m objectives, shape (m,), 1 if that would be 0.
 

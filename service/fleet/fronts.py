@@ -19,8 +19,8 @@ class FleetOptions:
     """The options of plan_fleet(...).
 
     Args:
-        time_limit: The most seconds for everything, or up to 0.4 s more where hardly a plan is
-            found by then. At 0 there is no search: plans are made by cutting the tours of the
+        time_limit: The most seconds for everything, or some 0.1 s more where no plan is found by
+            then. At 0 there is no search: plans are made by cutting the tours of the
             network into routes.
         size: The greatest number of plans of the front.
         seed: The seed of all random choices.

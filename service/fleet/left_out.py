@@ -1,14 +1,17 @@
 """Why plans leave stops out: the price of serving each, or what keeps each vehicle from it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from operator import truediv
 from typing import NamedTuple, get_args
 
 import numpy as np
 
 from service.fleet.evaluation import (
     Broken,
+    first_broken,
+    joined,
     plan_lengths,
-    route_violations,
+    route_lengths,
     unassigned,
 )
 from service.fleet.fleet import Array, Fleet
@@ -17,6 +20,9 @@ from service.fleet.rules import Rule
 
 _RULES: tuple[Rule, ...] = get_args(Rule)  # from those that never change to those that may
 _SAME_EVERYWHERE = ("skills", "vehicle", "capacity", "max_stops")  # wherever the stop is inserted
+
+
+_Inserted = tuple[int, Route]  # the number of a route, and the route with one more stop
 
 
 class Reason(NamedTuple):
@@ -35,7 +41,7 @@ class Serving(NamedTuple):
             no plan does.
         price: What the lengths grow by, in that plan or with the stop inserted where it costs the
             least. None if it cannot be inserted.
-        reasons: If it cannot, a reason for each type of vehicles.
+        reasons: If it cannot, a reason for each type of vehicles; none if there was no time to try.
     """
 
     stop: int
@@ -44,7 +50,12 @@ class Serving(NamedTuple):
     reasons: tuple[Reason, ...] = ()
 
 
-def explain(fleet: Fleet, plans: Sequence[Plan], points: Array) -> list[list[Serving]]:
+def explain(
+    fleet: Fleet,
+    plans: Sequence[Plan],
+    points: Array,
+    ended: Callable[[], bool] = lambda: False,
+) -> list[list[Serving]]:
     """Return for each plan of a front how the stops that it leaves out can be served, in order.
 
     A stop that no plan serves is inserted into the plan that leaves out the fewest.
@@ -53,13 +64,18 @@ def explain(fleet: Fleet, plans: Sequence[Plan], points: Array) -> list[list[Ser
         fleet: The fleet.
         plans: The m plans.
         points: Their lengths under d objectives, shape (m, d).
+        ended: Called before each insertion; once it returns True, the other stops that no plan
+            serves have neither a price nor reasons.
     """
     left_out = [unassigned(fleet.rules, plan) for plan in plans]
     if not any(left_out):
         return [[] for _ in plans]
     fullest = min(range(len(plans)), key=lambda index: len(left_out[index]))
     served_by_none = set.intersection(*map(set, left_out))
-    inserted = {stop: _inserted(fleet, plans[fullest], stop) for stop in served_by_none}
+    inserted = {
+        stop: Serving(stop, None, None) if ended() else _inserted(fleet, plans[fullest], stop)
+        for stop in sorted(served_by_none)
+    }
     outside = [set(stops) for stops in left_out]
     return [
         [
@@ -96,38 +112,55 @@ def with_stop(fleet: Fleet, plan: Plan, stop: int) -> Plan | None:
 
     All lengths count in units of the fleet's scale.
     """
-    found, _ = _insertions(fleet, plan, stop)
-    return min(found, key=lambda each: _cost(fleet, each), default=None)
+    routes, _ = _insertions(fleet, plan, stop)
+    return _cheapest(fleet, plan, routes)
 
 
-def _cost(fleet: Fleet, plan: Plan) -> float:
-    with np.errstate(over="ignore"):
-        return float((np.array(plan_lengths(fleet, plan)) / fleet.scale).sum())
+def _cheapest(fleet: Fleet, plan: Plan, routes: Sequence[_Inserted]) -> Plan | None:
+    """Return the plan with one of its routes exchanged for the one with which it is the shortest.
+
+    All lengths count in units of the fleet's scale. The same prizes are lost with each route.
+    """
+    known = [route_lengths(fleet, each) for each in plan.routes]
+
+    def cost(inserted: _Inserted) -> float:
+        number, route = inserted
+        of_routes = [*known[:number], route_lengths(fleet, route), *known[number + 1 :]]
+        columns = zip(*of_routes, strict=True)
+        lengths = [joined(*each) for each in zip(fleet.rules.over, columns, strict=True)]
+        if number == len(known):
+            lengths[0] += fleet.rules.vehicles[route.vehicle].fixed
+        return sum(map(truediv, lengths, scale))
+
+    scale = fleet.scale.tolist()
+    if not routes:
+        return None
+    number, route = min(routes, key=cost)
+    return Plan((*plan.routes[:number], route, *plan.routes[number + 1 :]))
 
 
 def _inserted(fleet: Fleet, plan: Plan, stop: int) -> Serving:
     """Return the cheapest insertion of a stop into a plan, or what forbids each."""
-    found, reasons = _insertions(fleet, plan, stop)
-    if not found:
+    routes, reasons = _insertions(fleet, plan, stop)
+    cheapest = _cheapest(fleet, plan, routes)
+    if cheapest is None:
         return Serving(stop, None, None, tuple(Reason(*each) for each in sorted(reasons.items())))
-    cheapest = plan_lengths(fleet, min(found, key=lambda each: _cost(fleet, each)))
-    price = np.subtract(cheapest, plan_lengths(fleet, plan))
+    price = np.subtract(plan_lengths(fleet, cheapest), plan_lengths(fleet, plan))
     return Serving(stop, None, tuple(price.tolist()))
 
 
-def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[Plan], dict[int, Broken]]:
-    """Return all plans with one more stop, and by type the rule that forbids others.
+def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[_Inserted], dict[int, Broken]]:
+    """Return all routes with one more stop, and by type the rule that forbids others.
 
     Of several rules it is the one that the fewest insertions get as far as.
     """
-    found: list[Plan] = []
+    found: list[_Inserted] = []
     reasons: dict[int, Broken] = {}
     for number, route in _routes(fleet, plan):
         for extended in _extensions(fleet, route, stop):
-            broken = next(route_violations(fleet, extended), None)
+            broken = first_broken(fleet, extended)
             if broken is None:
-                routes = (*plan.routes[:number], extended, *plan.routes[number + 1 :])
-                found.append(Plan(routes))
+                found.append((number, extended))
                 continue
             known = reasons.setdefault(route.vehicle, broken)
             if _RULES.index(broken.rule) > _RULES.index(known.rule):

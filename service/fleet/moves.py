@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.archive import SolutionArchive
-from service.fleet.evaluation import joined_lengths, route_lengths, route_violations, violations
+from service.fleet.evaluation import first_broken, joined_lengths, route_lengths, violations
 from service.fleet.fleet import Array
 from service.fleet.goal import FREE
 from service.fleet.plans import Plan, Route
@@ -111,7 +111,7 @@ class Mover:
                 continue
             routes.append(route)
             if number in changes:
-                if any(route_violations(self._fleet, route)):
+                if first_broken(self._fleet, route):
                     return None
                 lengths.append(route_lengths(self._fleet, route))
             else:

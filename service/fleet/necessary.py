@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import CityNames, NoTour, Obstacle, Refusal
-from service.fleet.evaluation import route_violations
+from service.fleet.evaluation import first_broken
 from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.plans import Route
 from service.fleet.rounding import is_over
@@ -145,7 +145,7 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
             for vehicle in different.values()
             for reload in [(), *((stop,) for stop in rules.vehicles[vehicle].reload)]
         )
-        served = any(ended() or not any(route_violations(fleet, route)) for route in routes)
+        served = any(ended() or not first_broken(fleet, route) for route in routes)
         if not served and triangle():
             sentence = (
                 f"{{cities}} cannot be reached within {_bounds_of(rules, stop)} by any vehicle that"

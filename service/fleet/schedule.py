@@ -49,11 +49,11 @@ class Schedule:
         return self.end - self.arrivals[0]
 
 
-_REMEMBERED = 64  # routes: the rules and the lengths of a plan ask for the times of each
+REMEMBERED = 4096  # latest routes whose times and lengths are known: plans share many routes
 _FREE = Stay((ALWAYS,), 0.0, inf)
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(REMEMBERED)
 def schedule(fleet: Fleet, route: Route) -> Schedule:
     """Return the times of a route whose vehicle is done as early as possible.
 

@@ -23,6 +23,9 @@ from service.pareto import balances, losses
 from service.requests.limits import check_reference_point
 from service.requests.task import Task, UnmeasuredFleet, VehicleName
 
+_LEAST_EXPLAINING = 0.01  # seconds to say how stops can be served that are left out
+_UNLIMITED_EXPLAINING = 0.5  # seconds without a time limit
+
 
 class Names(NamedTuple):
     """The names of types of vehicles, and the ids of stops."""
@@ -43,7 +46,9 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
     def encoded(front: FleetFront) -> FrontDocument:
         # While the search runs, plans come without reasons for what they leave out.
         ended = front.terminated is not None
-        servings = iter(explain(front.fleet, front.plans, front.points) if ended else ())
+        until = max(deadline, time.perf_counter() + _LEAST_EXPLAINING)
+        explained = partial(explain, ended=lambda: stop() or time.perf_counter() > until)
+        servings = iter(explained(front.fleet, front.plans, front.points) if ended else ())
         return document_of_plans(
             front,
             lambda plan, members: _encode_plan(
@@ -56,6 +61,7 @@ def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
         )
 
     began = time.perf_counter()
+    deadline = began + (task.options.time_limit or _UNLIMITED_EXPLAINING)
     fleet = subject.fleet()
     timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
     try:
