@@ -138,7 +138,8 @@ class TsplibFile:
 
 def is_tsplib(text: str) -> bool:
     """Return whether a line of a text begins with a keyword of TSPLIB."""
-    return any(re.search(rf"^[ \t]*{word}\b", text, re.MULTILINE) for word in _TELLING)
+    flags = re.MULTILINE | re.IGNORECASE
+    return any(re.search(rf"^[ \t]*{word}\b", text, flags) for word in _TELLING)
 
 
 def split_tsplib(source: Source, text: str) -> TsplibFile:

@@ -117,6 +117,7 @@ PLANNED = [
     "due-in-a-plane.csv",
     "several-windows.json",
     "vroom-skills.json",
+    "vroom-between-towns.json",
     "vroom-shipments.json",
 ]
 

@@ -149,6 +149,9 @@ OTHERS = {
         "depot_1 depot_2 1414 1515",
         vehicles=[{"id": "0", "start": "depot 1", "end": "depot 2"}],
     ),
+    "vroom-between-towns.json": fleet(
+        "depot_1 1 2 5 6 pickup_4 delivery_3", "objectives", clock="time"
+    ),
     "vroom-skills.json": fleet("depot_1 1 2 3", "left-out ids", clock="time"),
     "vroom-shipments.json": fleet(
         "depot_1 pickup_1000 delivery_1",

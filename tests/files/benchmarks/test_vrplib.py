@@ -203,6 +203,10 @@ READ = {
         ("stops", "id", ["0", "1", "2", "3"]),
         ("vehicles", "start", ["0"]),
     ),
+    "keywords in small letters": (
+        text("SERVICE_TIME : 3\n").lower().replace("euc_2d", "EUC_2D"),
+        ("stops", "service", [None, 3, 3, 3]),
+    ),
     "comments behind a number sign": (
         text("SERVICE_TIME : 4  # minutes\n# to be checked\n").replace("2 1\n", "2 1 # bakery\n"),
         ("stops", "service", [None, 4, 4, 4]),
