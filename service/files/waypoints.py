@@ -22,6 +22,7 @@ _LONGEST_TAG = 2**17  # bytes
 _DEEPEST = 50
 _LONGEST = 2000  # characters of a text
 _MOST_COLUMNS = 50
+_MOST_NAMED, _LONGEST_NAME = 8, 40
 _PLACES = ("id", "longitude", "latitude", "place", "x", "y")
 _OTHER_SHAPES = {"LineString", "LinearRing", "Polygon", "Track", "MultiTrack", "Model"}
 _TEXTS = {"name": "id", "desc": "description", "cmt": "comment", "description": "description"}
@@ -66,6 +67,7 @@ class _Points:
         self.points: list[_Point] = []
         self.links = False
         self.recorded = 0  # points of tracks
+        self.unused: dict[str, None] = {}  # names of elements in points of GPX
         self._path: list[str] = []
         self._open: _Point | None = None
         self._column: str | None = None  # what the text of the current element is
@@ -133,6 +135,8 @@ class _Points:
             self.points.append(self._open)
         elif self._open is not None and len(self._path) >= 2 and self._path[-2] == self._open.kind:
             self._column = _TEXTS.get(name)
+            if self._column is None and len(self.unused) < _MOST_COLUMNS:
+                self.unused[name] = None
 
     def _start_kml(self, name: str, attributes: Mapping[str, str]) -> None:
         parent = self._path[-2] if len(self._path) > 1 else ""
@@ -191,6 +195,9 @@ class _Points:
         if waypoints and of_routes:
             text = f"{len(of_routes)} points of routes were not used: stops are waypoints."
             self.source.note("left-out", text)
+        if self.unused:
+            named = ", ".join(name[:_LONGEST_NAME] for name in list(self.unused)[:_MOST_NAMED])
+            self.source.note("columns", f"{named} of points was not used.")
         if self.recorded:
             self.source.note("left-out", f"{self.recorded} points of tracks were not used.")
         return stops if waypoints else self._one_way(stops)

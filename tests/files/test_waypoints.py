@@ -101,6 +101,7 @@ NOTED = {
     "Points that share a name were numbered, as 'x'": gpx(
         f"{A}><name>x</name></wpt>{B}><name>x</name></wpt>"
     ),
+    "ele, time of points was not used": gpx(f"{A}><ele>4</ele><time>2026</time></wpt>{B}/>"),
     "2 points of routes were not used": gpx(f"{A}/>{B}/>{ROUTE}"),
     "1 points of tracks were not used": gpx(f"{A}/>{B}/>{TRACK}"),
     "1 placemarks of lines and areas were not used": kml(
