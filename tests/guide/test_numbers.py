@@ -18,6 +18,7 @@ from service.api import mcp, request_headers, stored_fronts
 from service.cli.commands import app
 from service.coverage import grid
 from service.errors import Refusal
+from service.files import fleets
 from service.fleet import conflicts
 from service.fleet import enumeration as all_plans
 from service.jobs import outbox
@@ -83,6 +84,10 @@ def cells(page: Path, heading: str) -> list[list[str]]:
         (r"lie more than ([\d,]+) km from the middle", [places._FAR / 1000]),
         (r"a stop more than (\d+) km from any other one", [places._APART / 1000]),
         (r"at least ([\d,]+) times the median", [costs._TIMES]),
+        (
+            r"(\d+) km/h, or (\d+) km/h if half of the stops are more than (\d+) km",
+            [fleets._SPEED, fleets._SPEED_BETWEEN_TOWNS, fleets._CITY / 1000],
+        ),
     ],
 )
 def test_a_number_in_a_sentence_is_that_of_the_code(sentence: str, numbers: list[float]) -> None:
