@@ -47,7 +47,8 @@ _NAMES = {
     "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
     " timeatstop timeonsite visittime visitduration unloadingtime unloadtime loadingtime"
     " jobduration taskduration stopduration orderduration deliveryduration"
-    " estimatedtimeatstop averagetimeatstop timeatlocation timeatcustomer onsitetime"
+    " estimatedtimeatstop esttimeatstop averagetimeatstop"
+    " estimatedservicetime averageservicetime timeatlocation timeatcustomer onsitetime"
     " dwelltime estimateddeliverytime minutes mins minutesonsite minutesatstop"
     " minutesperstop"
     " servicezeit standzeit entladezeit tempsservice tempsdeservice duree temposervizio"
@@ -135,6 +136,7 @@ SECONDS: Mapping[str, float] = {  # by the names of units
     **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), 3600),
     **dict.fromkeys(("std", "stunden", "heures", "ore", "horas", "uren", "tuntia"), 3600),
 }
+_DAYS = ("d", "day", "days")  # in brackets; else they are no units, as in `working days`
 # Headings of visits that route planners write. What they hold is in minutes.
 _USUALLY_MINUTES = frozenset(_NAMES["service"].split()) - {"service"}
 # Fields that a table may have several times.
@@ -235,7 +237,8 @@ def seconds_of(name: str) -> float | None:
     """Return the seconds of the unit in a heading, as in `service [min]`; None without a unit."""
     for unit in _UNIT.findall(name):
         words = re.split(r"[\s_.]+", unit.strip(" .").casefold())
-        if found := next((SECONDS[word] for word in reversed(words) if word in SECONDS), None):
+        known = {**SECONDS, **dict.fromkeys(_DAYS, 86400)}
+        if found := next((known[word] for word in reversed(words) if word in known), None):
             return found
     words = re.split(r"[\s_.,]+", _CAMEL.sub(" ", _UNIT.sub("", name)).casefold().strip(" ._"))
     return SECONDS.get(words[-1], 60 if words[0] in _MINUTES else None)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from service.errors.printable import printable
-from service.files.cells.dates import Calendar
+from service.files.cells.dates import Calendar, are_days
 from service.files.cells.ids import are_names, is_list_of_cities, numbered
 from service.files.cells.signs import decimals_of, is_number, is_numeric, with_plain_numbers
 from service.files.cells.totals import is_total, is_total_of_vehicles, without_totals
@@ -36,6 +36,7 @@ _HAS_DIGITS = re.compile(r"\d")
 _OF_PLACES = ("point", "location", "position")  # which may have names
 _INDEX = ("", "index", "unnamed: 0")
 _MOST_DETAILS = 10  # columns
+_MOST_NAMED = 20  # columns in a note
 _LONGEST_DETAIL = 200  # characters of a text
 
 
@@ -244,8 +245,13 @@ class Columns:
         pairs = [(each.name, each.taken_for) for each in self.source.columns]
         used = [f"{quoted(name)} ({field})" for name, field in pairs if field not in _UNUSED]
         unused = [quoted(name) for name, field in pairs if field in _UNUSED]
-        not_used = f" Not used: {', '.join(unused)}." if unused else ""
-        self.source.note("columns", f"Columns were taken for: {', '.join(used)}.{not_used}"[:1000])
+        not_used = f" Not used: {_listed(unused)}." if unused else ""
+        self.source.note("columns", f"Columns were taken for: {_listed(used)}.{not_used}")
+        for at, taken_for in enumerate(self.fields):
+            if taken_for is None and are_days([row[at] for _, row in self.table.rows]):
+                name = quoted(self.names[at])
+                text = f"{name} has several dates, which were not used: all is of one day."
+                self.source.note("dates", text)
 
     def _report_details(self) -> None:
         """Add the texts of details to the source, by the ids of their stops or their numbers."""
@@ -256,6 +262,12 @@ class Columns:
                 short = [printable(" ".join(text.split()))[:_LONGEST_DETAIL] for text in texts]
                 by_id = dict(zip(ids, short, strict=True))
                 self.source.details.append((printable(name)[:LONGEST_NAME], by_id))
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return the first names for a sentence, and how many more there are."""
+    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+    return f"{', '.join(names[:_MOST_NAMED])}{more}"
 
 
 def columns_of(source: Source, table: Table) -> Columns:

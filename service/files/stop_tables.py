@@ -17,6 +17,7 @@ from service.files.fleets import Stop, fleet_request, have_times, measured, plan
 from service.files.places import note_places, out_of_range, weighted
 from service.files.planes import (
     called_planes,
+    count_rows,
     degrees_in,
     is_nameless,
     pasted_planes,
@@ -31,6 +32,7 @@ from service.objectives import MOST_OBJECTIVES, NTH, OBJECTIVES
 Array = NDArray[np.float64]
 _ON_EARTH = ("longitude", "latitude", "place")
 _NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none", "x", "∞"}
+_FREE = {"0", "0.0", "0,0", *_NO_WAY}
 
 
 @dataclass(frozen=True)
@@ -278,6 +280,9 @@ def part_of(source: Source, table: Table) -> Part:
         columns.report()
         return Part(name, count, [stop["id"] for stop in stops], stops=stops)
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
+    if table.heading is None and len(free) == table.width and _is_numbered(columns):
+        columns.fields[0] = "id"
+        del free[0]
     if len(free) not in (2, count) and table.width == count and columns.are_numbers(0):
         free = list(range(count))
         columns.fields[0] = None
@@ -295,6 +300,20 @@ def part_of(source: Source, table: Table) -> Part:
         return Part(name, count, ids, {"coordinates": columns.numbers(free)})
     source.check_count("cities", source.bounds.matrix_cities, count)
     return Part(name, count, ids, {"matrix": _costs(columns, free)})
+
+
+def _is_numbered(columns: Columns) -> bool:
+    """Return whether the first column counts rows, before a plane or before costs.
+
+    A square of numbers is one of costs, unless it costs something to stay.
+    """
+    table = columns.table
+    count = len(table.rows)
+    if not count_rows(columns, 0) or table.width not in (3, count + 1):
+        return False
+    return table.width != count or any(
+        row[at] not in _FREE for at, (_, row) in enumerate(table.rows)
+    )
 
 
 def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:

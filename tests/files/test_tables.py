@@ -179,6 +179,14 @@ PLANES: dict[str, tuple[list[str], Becomes | str]] = {
         planes([0.12, 0.55, 0.91, 0.33], [0.97, 0.05, 0.42, 0.78], [0.3, 0.61, 0.08, 0.4],
                notes=("4 columns without names were taken for x and y of 2 planes",)),
     ),
+    "two lists of places with numbers": (
+        ["1 565.0 575.0\n2 25.0 185.0\n3 345.0 750.0\n", "1 5 75\n2 25 15\n3 45 50\n"],
+        Becomes("1 2 3", notes=()),
+    ),
+    "two squares of costs, one of which counts": (
+        ["0 1 2\n1 0 3\n2 3 0\n", "0 5 6\n5 0 7\n6 7 0\n"],
+        Becomes(members={"matrices": [[[0, 1, 2], [1, 0, 3], [2, 3, 0]], [[0, 5, 6], [5, 0, 7], [6, 7, 0]]]}),
+    ),
     "coordinates pasted": (
         ["60.171, 24.941\n60.169, 24.952\n"],
         stops("1 2", "Two columns without names were taken for latitude, then longitude",
@@ -299,6 +307,10 @@ DATES: dict[str, tuple[list[str], Becomes | str]] = {
     "dates of either order": (
         [DUE.format("01/02/2026", "03/02/2026")],
         "column 'due' has dates such as '01/02/2026', which may be 2026-02-01 or 2026-01-02",
+    ),
+    "dates beside times": (
+        [f"id,lat,lon,Delivery Date,from,to\n{DEPOT},,,\na,60.169,24.952,2026-11-30,9:00,11:00\nb,60.165,24.933,2026-12-01,9:00,11:00\n"],
+        stops("depot a b", "'Delivery Date' has several dates, which were not used: all is of one day"),
     ),
     "no date": ([DUE.format("2026-02-30", "2026-02-01")], "must have dates of the calendar, got '2026-02-30'"),
     "one time zone": (

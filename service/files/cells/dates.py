@@ -97,6 +97,12 @@ def _parts_of(text: str) -> Parts:
     return Parts(day, rest.strip(), zone)
 
 
+def are_days(texts: Sequence[str]) -> bool:
+    """Return whether texts are dates without times, and of more than one day."""
+    filled = [text for text in texts if text]
+    return len({*filled}) > 1 and all((p := parts_of(each)).date and not p.time for each in filled)
+
+
 def calendar_of(columns: Sequence[TimeColumn]) -> Calendar:
     """Return how the dates in all columns of times of a request are read, and note it.
 
