@@ -9,6 +9,7 @@ from io import TextIOWrapper
 from service.own_code import keep_for_children
 
 _INTERRUPTED = 130
+_USAGE = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -38,8 +39,13 @@ def _start_fork_server() -> None:
     """Start the process that workers are forked from: it imports as long as this process does."""
     from service.jobs.workers import fork_server
 
-    if not any(name.upper() == "PARETOUR_REDIS_URL" for name in os.environ):
+    if any(name.upper() == "PARETOUR_REDIS_URL" for name in os.environ):
+        return
+    try:
         fork_server.start()
+    except OSError as error:  # there is no folder for its socket
+        sys.stderr.write(f"paretour: TMPDIR must be a folder that can be written: {error}\n")
+        sys.exit(_USAGE)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -37,6 +38,16 @@ def test_what_keeps_a_service_from_starting_is_said_at_once(
     ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, timeout=60)
     assert ended.returncode == status
     assert sentence in ended.stderr.decode()
+
+
+def test_a_service_without_a_folder_for_its_sockets_says_so() -> None:
+    code = (
+        "import tempfile; from service.__main__ import main;"
+        "tempfile._candidate_tempdir_list = lambda: ['/proc']; main(['serve'])"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, timeout=60)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith(b"paretour: TMPDIR must be a folder that can be written: ")
 
 
 def test_names_are_printed_in_any_locale(tmp_path: Path) -> None:

@@ -273,10 +273,11 @@ def _linked(document: dict[str, Any], link: str | None) -> dict[str, Any]:
 def _fitted(document: Named) -> str:
     """Return the text of a document, shortened if long names make it too long.
 
-    The last trade-offs are left out first, then the last tours, and then all ranges.
+    The last trade-offs are left out first, then the last tours, then all ranges, and then the last
+    sentences on the file and on the request.
     """
     members = dict(document)
-    for name in ("trades", "tours", "ranges"):
+    for name in ("trades", "tours", "ranges", "assumed", "notes"):
         while len(_text(members).encode()) > MOST_BYTES and members.get(name):
             members[name] = members[name][:-1] if isinstance(members[name], list) else {}
     return _text(members)
