@@ -30,6 +30,7 @@ HOSTILE: Mapping[str, Callable[[], tuple[str, bytes]]] = {
     "names": lambda: ("a.xlsx", book(names='<definedName name="a">1</definedName>' * 500_000)),
     "a row of cells": lambda: ("a.xlsx", book(f"<row>{'<c/>' * 1_000_000}</row>")),
     "a row of numbers": lambda: ("a.xlsx", book(f"<row>{'<c><v>1</v></c>' * 100_000}</row>")),
+    "rows of ones": lambda: ("a.xlsx", book(f"<row>{'<c><v>1</v></c>' * 1000}</row>" * 600)),
     "strings": lambda: ("a.xlsx", book(SHARED, more=_texts(600_000, "a" * 100))),
     "a long string": lambda: ("a.xlsx", book(SHARED, more=_one_text(f"<t>{'a' * 80_000_000}</t>"))),
     "runs of a string": lambda: (

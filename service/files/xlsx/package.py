@@ -13,6 +13,7 @@ _MOST_PARTS = 2000
 _ENTRY = b"PK\x01\x02"  # of each part, in the list at the end of a zip file
 _PIECE = 2**14  # bytes
 _LONGEST_TAG = 2**17  # bytes: a cell has a few attributes, and expat keeps a tag whole
+_MOST_EARNED = 32  # units of work for each byte: packed cells have half a byte or more
 _COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _ROOT = "xl/workbook.xml"
 # By a part that only such files have.
@@ -47,6 +48,7 @@ class Package:
         except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
             raise source.refusal(f"must be XLSX: {error}") from None
         self._parts = {_plain(each.filename): each for each in self._zip.infolist()}
+        self._earned_at_most = _MOST_EARNED * len(source.file.data)
         self.root = self._root()
 
     def _root(self) -> str:
@@ -80,6 +82,12 @@ class Package:
         parser = expat.ParserCreate()
         _attach(parser, start, end)
         self.feed(part, parser)
+
+    def earn(self, units: int) -> None:
+        """Earn units of work for a cell with text, as many as a file of this length may have."""
+        self._earned_at_most -= units
+        if self._earned_at_most >= 0:
+            self.source.work.earn(units)
 
     def feed(self, part: str, parser: "expat.XMLParserType") -> None:
         """Parse a part, if there is one.

@@ -6,12 +6,12 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from service.files.reading import Source
 from service.files.xlsx.formats import GENERAL, MOST_DIGITS, Format, text_of
 from service.files.xlsx.package import Package, local
 
 MOST_COLUMNS = 16384  # of a spreadsheet
 _MOST_ROWS = 2**20
+_READ = 10  # units of work to read a field, and later the table
 _FIELD = 8  # units of work that a field earns: its tags, and some bytes
 _TEXT = 8  # units that a text earns which several cells may share
 _TRUE = ("1", "true")
@@ -71,7 +71,7 @@ def read_sheet(
     package: Package, part: str, title: str, styles: "Styles", most_rows: int = _MOST_ROWS
 ) -> Sheet:
     """Return the cells of the sheet in a part; only those of its first rows, if there are more."""
-    reader = _SheetReader(package.source, Sheet(title), styles, most_rows)
+    reader = _SheetReader(package, Sheet(title), styles, most_rows)
     with suppress(_EnoughError):
         package.feed(part, reader.parser)
     return reader.sheet
@@ -92,10 +92,10 @@ class Styles:
 class _SheetReader:
     """The handlers of the tags of a sheet."""
 
-    def __init__(self, source: Source, sheet: Sheet, styles: Styles, most_rows: int) -> None:
+    def __init__(self, package: Package, sheet: Sheet, styles: Styles, most_rows: int) -> None:
         self._rows_left = most_rows
         self.sheet = sheet
-        self._source = source
+        self._package, self._source = package, package.source
         self._formats, self._from_1904 = styles.formats, styles.from_1904
         self.parser = parser = expat.ParserCreate()
         parser.buffer_text = True
@@ -191,7 +191,8 @@ class _SheetReader:
             return
         self._count += 1
         self._source.check_count("fields", self._source.bounds.cells // 2, self._count)
-        self._source.work.earn(_FIELD + (_TEXT if kind == "s" else 0))
+        self._source.spend(_READ)
+        self._package.earn(_READ + _FIELD + (_TEXT if kind == "s" else 0))
         if not self._cells:
             self.sheet.rows[self._row] = self._cells
             if self._is_hidden:
