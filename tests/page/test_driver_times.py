@@ -255,6 +255,7 @@ def visit(arrives: str, begins: str, opens: str = "", stop: str = "A") -> dict[s
         ([visit("8:10", "8:10"), visit("8:15", "8:15", "8:15", "B")], ", to be at B when it opens"),
         ([visit("8:10", "8:15", "8:15")], ""),  # it waits there
         ([visit("8:10", "8:12"), visit("8:15", "8:15", "8:15", "B")], ""),  # or before
+        ([{**visit("8:15", "8:15", "8:15"), "waiting": 20}], ""),  # for some seconds
         ([visit("8:15", "8:15")], ""),
     ],
 )

@@ -41,7 +41,7 @@ function leaving(visits, said) {
   const { arrival, released } = visits[0];
   const loaded = waited(released, arrival);
   const opening = visits.find(({ opens, waiting }) => opens !== undefined || waiting);
-  const inTime = opening && opening.opens !== undefined && said(opening.arrival) === said(opening.begin);
+  const inTime = opening && opening.opens !== undefined && !opening.waiting;
   const why = inTime && !loaded && laterThanShift(visits[0], said);
   return `leaves at ${said(arrival)}${loaded}${why ? `, to be at ${opening.stop} when it opens at ${said(opening.opens)}` : ""}`;
 }
