@@ -33,7 +33,6 @@ from service.cluster import check_cluster
 from service.errors import NoWorker
 from service.extensions.constructors import constructor_infos, load_constructors
 from service.extensions.names import NO_EXTENSIONS
-from service.extensions.searches import load_search
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.sqlite_store import SqliteStore
@@ -345,6 +344,7 @@ def _checked_actors(settings: Settings) -> Mapping[str, ActorInfo]:
 
 def _load_own_code(settings: Settings) -> None:
     from service.actor import load_actors
+    from service.extensions.searches import load_search  # which imports compiled code
 
     load_actors(settings.actors, settings.threads, settings.own_actors)
     load_constructors(settings.constructors)
