@@ -18,6 +18,7 @@ _KEYWORD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)[ \t]*(?:[:=](.*))?")
 _IN_HEAD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)(?:[ \t]*[:=]|[ \t])?(.*)")  # as LKH reads it
 _COMMENT = re.compile(r"(^|[ \t]+)#.*")
 _REPEATED = {"COMMENT"}  # in several lines
+_KEYWORD_LINE = 8  # units of work
 _LAYOUTS = {
     "FULL_MATRIX": "full",
     "UPPER_ROW": "upper",
@@ -161,6 +162,7 @@ def _fill(file: TsplibFile, text: str) -> None:
             if lines is not None and line:
                 lines.append(line.split())
             continue
+        file.source.spend(_KEYWORD_LINE)
         name, value = keyword[1].upper(), (keyword[2] or "").strip()
         if name == "EOF":
             break

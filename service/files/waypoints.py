@@ -67,6 +67,7 @@ class _Points:
         self.points: list[_Point] = []
         self.links = False
         self.recorded = 0  # points of tracks
+        self._places = 0
         self.unused: dict[str, None] = {}  # names of elements in points of GPX
         self._path: list[str] = []
         self._open: _Point | None = None
@@ -133,6 +134,8 @@ class _Points:
         if name in ("wpt", "rtept"):
             self._open = _Point(name, [(attributes.get("lon", ""), attributes.get("lat", ""))])
             self.points.append(self._open)
+            if name == self.points[0].kind:
+                self._count_place()
         elif self._open is not None and len(self._path) >= 2 and self._path[-2] == self._open.kind:
             self._column = _TEXTS.get(name)
             if self._column is None and len(self.unused) < _MOST_COLUMNS:
@@ -178,10 +181,17 @@ class _Points:
         if column == "coordinates":
             longitude, _, rest = text.partition(",")
             point.places.append((longitude.strip(), rest.partition(",")[0].strip()))
+            self._count_place()
         elif column == "address":
             point.address = text
         elif text and (column in point.texts or len(point.texts) <= _MOST_COLUMNS + 1):
             point.texts.setdefault(column, text)
+
+    def _count_place(self) -> None:
+        """Count a place, and refuse too many at once; of a round trip the last is the first."""
+        self._places += 1
+        if self._places > self.source.bounds.cities + 1:
+            self.source.check_count("stops", self.source.bounds.cities, self._places)
 
     def of_gpx(self) -> list[_Point]:
         """Return the waypoints; without any, the points of routes; and note the others."""

@@ -23,7 +23,11 @@ def _parts(count: int) -> bytes:
     return book(more={f"docProps/{at}.xml": "" for at in range(count)})
 
 
+TSPLIB = b"TYPE : TSP\nDIMENSION : 3\nEDGE_WEIGHT_TYPE : EUC_2D\n"
+
 HOSTILE: Mapping[str, Callable[[], tuple[str, bytes]]] = {
+    "waypoints": lambda: ("a.gpx", b"<gpx>" + b'<wpt lat="1" lon="2"/>' * 300_000 + b"</gpx>"),
+    "keywords": lambda: ("a.tsp", TSPLIB + b"A : b\n" * 1_000_000),
     "empty rows": lambda: ("a.xlsx", book(TABLE + "<row/>" * 1_500_000)),
     "sheets": lambda: ("a.xlsx", book("", sheets=map(str, range(1, 3_001)))),
     "styles": lambda: ("a.xlsx", book(more=_styles(1_000_000))),
