@@ -126,7 +126,7 @@ def test_what_was_taken_for_granted_is_said_and_dismissed(opened: Page) -> None:
 
 
 def test_a_name_and_a_note_are_text(opened: Page) -> None:
-    open_files(opened, {"<img src=x>.csv": "<b>,lon,lat\n<i>a</i>,0,0\nb,0,1\n"})
+    open_files(opened, {"<img src=x>.csv": "lon,lat,<b>\n0,0,<i>a</i>\n0,1,b\n"})
     expect(opened.locator("#file-notes p")).to_contain_text("<img src=x>.csv")
     expect(opened.locator("#file-notes").locator("img, b, i")).to_have_count(0)
 
