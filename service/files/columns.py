@@ -31,7 +31,6 @@ _POINT = re.compile(
 )
 # As web maps show a place: latitude first.
 _PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
-_OTHER_ROWS = 10  # of totals, at most
 _UNUSED = (DETAIL, IGNORED)
 _HAS_DIGITS = re.compile(r"\d")
 _OF_PLACES = ("point", "location", "position")  # which may have names
@@ -279,7 +278,7 @@ def columns_of(source: Source, table: Table) -> Columns:
     Raises:
         UnreadableFile: The columns cannot be taken for what was chosen.
     """
-    _check_rows(source, table)
+    source.check_rows(len(table.rows))
     table = without_unused(source, table, (*NAMES_OF_STOPS, *PLANES[2:], DETAIL))
     names = table.heading or table.numbered
     chosen = chosen_fields(source.file, names)
@@ -364,12 +363,6 @@ def place_in(text: str) -> list[float] | None:
 def _is_index(table: Table) -> bool:
     """Return whether the first column is the index that pandas writes, or names of rows."""
     return table.heading is not None and table.heading[0].strip().casefold() in _INDEX
-
-
-def _check_rows(source: Source, table: Table) -> None:
-    """Raise FileTooLarge if there are more rows than stops may be, before their cells are read."""
-    if len(table.rows) > source.bounds.cities + _OTHER_ROWS:
-        source.check_count("stops", source.bounds.cities, len(table.rows))
 
 
 def columns_of_vehicles(source: Source, table: Table) -> Columns:

@@ -14,6 +14,7 @@ _PICTURES = (b"\x89PNG", b"P5", b"P2")
 _PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
 LONGEST_NAME = 200  # characters of the name of a column by which it is known
 _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
+_OTHER_ROWS = 10  # of totals, at most
 MOST_WRONG = 1000  # cells; a table with more of them is not read any further
 
 
@@ -268,6 +269,11 @@ class Source:
             f"{self.name}: must have less beside its texts and numbers (empty rows and cells,"
             " formats, names, sheets): copy the table alone into a new file"
         )
+
+    def check_rows(self, count: int) -> None:
+        """Raise FileTooLarge if there are more rows than stops may be, before they are read."""
+        if count > self.bounds.cities + _OTHER_ROWS:
+            self.check_count("stops", self.bounds.cities, count)
 
     def reading(self, kind: Kind, request: Request) -> Reading:
         """Return the reading of this file alone."""
