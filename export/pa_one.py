@@ -54,7 +54,7 @@ def to_onnx(actor: OneActor) -> ModelProto:
     """Return the actor as one graph: an instance, preferences (k, m), repairs () to tours (k, n).
 
     The instance is cities (n, 2m) or matrices (m, n, n), as the actor reads it. A second output,
-    visited (k, n), has for each preference another tour that repairs visited.
+    visited (k, n), has as many other tours that repairs visited.
     """
     names = MATRICES if isinstance(actor, OneMatrixActor) else COORDINATES
     first, again = (_parts(actor, names, sizes) for sizes in (_TRACED, _AGAIN))

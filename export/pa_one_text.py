@@ -127,8 +127,10 @@ actor ($instance $given, float[k, m] preferences, int64 repairs)
             to_cut = Min (most_cut, n)
             near = ConstantOfShape (to_look_at)
             count = ConstantOfShape (to_cut)
-            cut_cities, turned, places, gaps, $between, $after_cut, is_cut = paretour.Cut
+            cut_cities, turned, places, gaps, $between, $given_to_rejoin, is_given = paretour.Cut
                 ($problem, least, tours_in, freshness_in, number, near, count)
+            $slices_of_given
+            $after_cut, is_cut = paretour.RejoinFirst ($between, $sliced_given)
             $rejoining
             tours_out, points_out, visited_out, visited_points_out, freshness_out = paretour.Keep
                 ($tables, weights, tours_in, points_in, visited_in, visited_points_in,

@@ -74,7 +74,7 @@ class Rejoin(nn.Module):
 
 
 class Keep(nn.Module):
-    """The state after a repair: the shorter one of two tours in each row."""
+    """The state after a repair: the best of all tours for each row."""
 
     def forward(
         self,
@@ -154,6 +154,12 @@ def repair_parts(
             ["cities", *CUTS, *names.costs, *names.after_round],
         ),
         "Rejoin": (
+            Rejoin(actor, actor.last_joinings),
+            (present(between), present(joined)),
+            [*names.costs, *names.fragments],
+            names.after_round,
+        ),
+        "RejoinFirst": (
             Rejoin(actor, actor.repair_joinings),
             (present(between), present(joined)),
             [*names.costs, *names.fragments],

@@ -108,9 +108,7 @@ def _learned(
     loss = (torch.cat(advantages) * likelihoods).mean()
     update(run, loss)
     with torch.no_grad():
-        best = split(
-            actor.joined_to_one(costs, fragments.trimmed(), actor.repair_joinings), len(chains)
-        )
+        best = split(actor.rejoined(costs, fragments), len(chains))
         tours = map(laid_out, cuts, best)
         after = [_after(*each) for each in zip(chains, cities, tours, strict=True)]
     return after, loss.item()

@@ -2,23 +2,25 @@
 
 All tours of a front are repaired at once, each at a place of its own, where its edges are long
 for what the edges to its cities' nearest neighbours would cost. PA-One joins what the cuts have
-left, and the new tour replaces the old one if it is shorter under its row's weights. Of the other
-tours that it visits, each row remembers one that no tour of the front dominates.
+left. Then every row takes the best of all tours for its preference, of the old ones and the new
+ones, and as many others are remembered as there are rows: see `models.shared_tours`.
 
 PA-One joins the same cities in the same way each time. So every repair has a pattern of its own,
-by which it takes some of the cities near its place and leaves others. Late repairs, when those of
-few cities hardly gain any more, cut out more.
+by which it takes some of the cities near its place and leaves others. Rows have different patterns
+at the same time, as several may have the same tour. Late repairs, when those of few cities hardly
+gain any more, cut out more.
 """
 
 from typing import NamedTuple, cast
 
 import torch
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 from torch import Generator, Tensor, nn
 
 from models.networks.joining.candidates import Candidates
 from models.networks.joining.costs import Matrices, Planes, Problem, along, weighted_sums
 from models.networks.joining.fragments import NEVER
+from models.shared_tours import best_for_rows, worth_remembering
 
 
 class Cut(NamedTuple):
@@ -32,7 +34,6 @@ EARLY, LATE = Cut(16, 8), Cut(24, 12)
 LATE_FROM = 64  # repairs, after which they are late; each as many late ones have the same patterns
 _NEARNESS = 0.15  # how much less a city counts than the next nearer one
 _AFTER_A_CUT = 0.5  # of a city's freshness
-_ROUNDING = 2e-6  # of a length: the error of sums of float32
 
 
 def _patterns(near: int, seed: int) -> Float[Tensor, "p near"]:
@@ -50,7 +51,7 @@ _PATTERNS = torch.cat((_patterns(EARLY.near, seed=5), _patterns(LATE.near, seed=
 
 
 class RepairState(NamedTuple):
-    """The best tour of each row, another one that it visited, and the freshness of its cities.
+    """The best tour for each row, as many others, and the freshness of each row's cities.
 
     Points are the lengths of each tour. A city's freshness falls each time that it is cut out,
     so that others have their turn.
@@ -106,10 +107,11 @@ def cities_to_cut(
     as of `sizes_of_cut`, or tensors while the graph is traced for its export.
     """
     near, count = sizes
-    early_or_late = torch.minimum(number, LATE_FROM + number % LATE_FROM)
-    pattern = _PATTERNS.index_select(0, early_or_late[None])  # exported as it is written
-    ranks = pattern[0, : cast(int, near)].topk(cast(int, count)).indices
-    return _cities_near(problem, least, places, near).index_select(1, ranks)
+    rows = torch.arange(least.shape[0], device=least.device)
+    first = torch.minimum(number - number % LATE_FROM, torch.full_like(number, LATE_FROM))
+    patterns = _PATTERNS.index_select(0, first + (number + rows) % LATE_FROM)
+    ranks = patterns[:, : cast(int, near)].topk(cast(int, count)).indices
+    return _cities_near(problem, least, places, near).gather(1, ranks)
 
 
 def _cities_near(
@@ -154,20 +156,21 @@ def state_after_repair(
     cities: Int[Tensor, "r m"],
     tours: Int[Tensor, "r n"],
 ) -> RepairState:
-    """Return the state with the shorter tour of each row, after these cities were cut out."""
+    """Return the state with the best tour for each row, after these cities were cut out."""
     tours, points = cheaper_way(costs, weights, tours)
-    before = (state.points * weights).sum(dim=1)
-    shorter = (before - (points * weights).sum(dim=1) > _ROUNDING * before)[:, None]
-    best = torch.where(shorter, points, state.points)
-    other = torch.where(shorter, state.points, points)
-    remember = _worth_remembering(weights, best, state.visited_points, other)[:, None]
-    others = torch.where(shorter, state.tours, tours)
+    all_tours, all_points = torch.cat((state.tours, tours)), torch.cat((state.points, points))
+    taken = best_for_rows(weights, all_points)
+    best = all_points.index_select(0, taken)
+    is_left = (taken != torch.arange(taken.shape[0], device=taken.device))[:, None]
+    others = torch.cat((state.visited, torch.where(is_left, state.tours, tours)))
+    other_points = torch.cat((state.visited_points, torch.where(is_left, state.points, points)))
+    remembered = worth_remembering(best, other_points)
     freshness = _AFTER_A_CUT * state.freshness.gather(1, cities)
     return RepairState(
-        torch.where(shorter, tours, state.tours),
+        all_tours.index_select(0, taken),
         best,
-        torch.where(remember, others, state.visited),
-        torch.where(remember, other, state.visited_points),
+        others.index_select(0, remembered),
+        other_points.index_select(0, remembered),
         state.freshness.scatter(1, cities, freshness),
     )
 
@@ -183,27 +186,3 @@ def cheaper_way(
     there, back = ((means + part).sum(dim=2).T for part in (leans, -leans))
     is_back = ((there - back) * weights).sum(dim=1, keepdim=True) > 0
     return torch.where(is_back, tours.flip(1), tours), torch.where(is_back, back, there)
-
-
-def _worth_remembering(
-    weights: Float[Tensor, "r o"],
-    best: Float[Tensor, "r o"],
-    visited: Float[Tensor, "r o"],
-    other: Float[Tensor, "r o"],
-) -> Bool[Tensor, " r"]:
-    """Return whether each row's other tour should replace the one that it remembers."""
-    index = torch.arange(other.shape[0], device=other.device)
-    earlier = index < index[:, None]
-    repeated = _weakly_dominated(other, other) & earlier
-    useless = _weakly_dominated(other, best) | _weakly_dominated(other, visited) | repeated
-    shorter = (other * weights).sum(dim=1) < (visited * weights).sum(dim=1)
-    return ~useless.any(dim=1) & (shorter | _weakly_dominated(visited, best).any(dim=1))
-
-
-def _weakly_dominated(
-    points: Float[Tensor, "r o"], by: Float[Tensor, "q o"]
-) -> Bool[Tensor, "r q"]:
-    """Return whether each other point dominates or equals each point, up to rounding."""
-    low = (points + _ROUNDING * points).T
-    # The greatest difference, objectives first: ONNX Runtime is slow at `all`, and at short axes.
-    return (by.T[:, None] - low[..., None]).amax(dim=0) <= 0

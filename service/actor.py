@@ -64,7 +64,7 @@ class OnnxActor:
 
         The network sees cities at one place as one city; in the tours they follow one another.
         With repairs, each tour is repaired that many times, and the shape is (2k, n): the k last
-        rows are other tours for the same preferences, which the repairs found on the way.
+        rows are other tours, which the repairs found on the way.
 
         Raises:
             ValueError: Repairs are asked for, and the file has no input for them.

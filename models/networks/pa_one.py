@@ -26,11 +26,12 @@ from models.networks.joining.candidates import (
     no_more_possible,
     partner_costs,
     toured,
+    without_impossible,
 )
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.features import features_seen
-from models.networks.joining.fragments import NEVER, Fragments, all_alone, mutual_best
+from models.networks.joining.fragments import Fragments, all_alone, mutual_best
 from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
 from models.networks.joining.prices import priced_problem
@@ -93,7 +94,8 @@ class OneActor(Actor):
     # cities after the first evaluation, and in repairing tours.
     joinings: ClassVar[int] = 2
     joinings_of_many: ClassVar[int] = 3  # an eighth less time for 0.01 of hypervolume at most
-    repair_joinings: ClassVar[int] = 4  # two evaluations do for nearly every repair
+    repair_joinings: ClassVar[int] = 4
+    last_joinings: ClassVar[int] = 6  # after the first evaluation: one more does for most repairs
     list_sizes: ClassVar[Sizes] = Sizes(5, length=48, short=16, ends=256, share=32)
 
     def __init__(self, config: Architecture) -> None:
@@ -130,7 +132,7 @@ class OneActor(Actor):
         hidden = hidden + self.project_edge(seen.of_edges.flatten(0, 1))
         relative = seen.relative_costs
         logits = self.judge(hidden.relu()).view_as(relative) - _STEEPNESS * relative
-        return torch.where(candidates.real, logits, -NEVER)
+        return without_impossible(logits, ~candidates.real)
 
     @torch.no_grad()
     def tours(self, instances: Tensor, preferences: Float[Tensor, "k m"]) -> Int[Tensor, "b k n"]:
@@ -142,7 +144,7 @@ class OneActor(Actor):
     def repaired_tours(
         self, instances: Tensor, preferences: Float[Tensor, "k m"], repairs: int
     ) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
-        """Return the greedy tours after the repairs, and for each another that they visited."""
+        """Return the greedy tours after the repairs, and as many others that they visited."""
         rows = rows_of(preferences)
         built = self.tours(instances, preferences)
         states = [
@@ -161,7 +163,7 @@ class OneActor(Actor):
             cities = cities_to_cut(problem, least, places, number, sizes)
             cuts = cut(state.tours, cities)
             between, fragments = repair_problem(problem, cuts)
-            joined = self.joined_to_one(between, fragments.trimmed(), self.repair_joinings)
+            joined = self.rejoined(between, fragments)
             new = laid_out(cuts, joined)
             state = state_after_repair(problem.costs, problem.weights, state, cities, new)
         return state
@@ -268,6 +270,11 @@ class OneActor(Actor):
             fragments = self.round_of_few(costs, fragments, joinings).trimmed()
         return last_two_joined(costs, fragments)
 
+    def rejoined(self, costs: Costs, fragments: Fragments) -> Fragments:
+        """Join what a repair has left of each row to one fragment."""
+        after = self.round_of_few(costs, fragments.trimmed(), self.repair_joinings)
+        return self.joined_to_one(costs, after.trimmed(), self.last_joinings)
+
     def round_of_few(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
         """Return the fragments after a round in rows in which more than two are left."""
         more = (fragments.left > ENOUGH)[:, None]
@@ -287,7 +294,7 @@ class OneActor(Actor):
         mates = mutual_best(fragments, candidates.positions, logits)
         after = joined_at_cost(costs, fragments, mates)
         for _ in range(joinings - 1):
-            logits = torch.where(no_more_possible(candidates, fragments, after), -NEVER, logits)
+            logits = without_impossible(logits, no_more_possible(candidates, fragments, after))
             mates = mutual_best(after, candidates.positions, logits)
             after = joined_at_cost(costs, after, mates)
         return after

@@ -23,6 +23,7 @@ class OneMatrixActor(OneActor):
     candidates = 5
     joinings = 3
     repair_joinings = 2
+    last_joinings = 2
     list_sizes = Sizes(KNOTS, length=24, short=24, ends=24, share=2)
 
     def costs(self, instance: Float[Tensor, "m n n"]) -> Matrices:

@@ -35,7 +35,7 @@ class Constructor(Protocol):
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
         """Return closed tours, shape (k, n), one a preference (k, m), or raise Cancelled.
 
-        With repairs, each is repaired that many times, and other tours for the same preferences may
+        With repairs, each is repaired that many times, and other tours, found on the way, may
         follow in as many rows again.
         """
 

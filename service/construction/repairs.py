@@ -2,17 +2,19 @@
 
 from service.instance import Kind
 
-TOURS_REPAIRED = 2  # for each preference: the tour, and one that was visited on the way
+TOURS_REPAIRED = 2  # for each preference: its tour, and another one that was found on the way
 
-# With these, a call takes two to three times as long as without, with matrices of up to 100
+# With these, a call takes two to five times as long as without, with matrices of up to 100
 # cities five to eight times, and has most of what repairs gain: `python -m tests.benchmarks
 # literature`, `actors`, `asymmetric`, `behind`. A repair lays out whole tours, so it takes longer
 # where there are many cities, and fewer of them are worth it.
 _LEAST: dict[Kind, int] = {"coordinates": 3, "matrices": 2}
-_CITIES: dict[Kind, int] = {"coordinates": 8, "matrices": 3}  # for each repair of few
+_CITIES = 3  # for each repair of few
 # Under more than two objectives repairs gain more: `python -m tests.benchmarks tri`.
-_CITIES_UNDER_SEVERAL: dict[Kind, int] = {"coordinates": 5, "matrices": 3}
-_FIRST, _CITIES_OF_MANY = 20, 40  # of many: these, and cities for each one more
+_CITIES_UNDER_SEVERAL: dict[Kind, int] = {"coordinates": 2, "matrices": 3}
+# Of many: these, and cities for each one more.
+_FIRST: dict[Kind, int] = {"coordinates": 50, "matrices": 20}
+_CITIES_OF_MANY: dict[Kind, int] = {"coordinates": 70, "matrices": 40}
 _MOST = 75
 
 
@@ -25,10 +27,10 @@ def repairs_worth(inputs: Kind, n: int, objectives: int) -> int:
         objectives: The number of objectives.
 
     >>> [repairs_worth("coordinates", n, objectives=2) for n in (20, 200, 1000, 5000)]
-    [3, 25, 45, 75]
+    [6, 52, 64, 75]
     >>> [repairs_worth("coordinates", n, objectives=3) for n in (20, 200, 1000, 5000)]
-    [4, 25, 45, 75]
+    [10, 52, 64, 75]
     """
-    cities = _CITIES if objectives == 2 else _CITIES_UNDER_SEVERAL
-    of_few, of_many = n // cities[inputs], _FIRST + n // _CITIES_OF_MANY
+    cities = _CITIES if objectives == 2 else _CITIES_UNDER_SEVERAL[inputs]
+    of_few, of_many = n // cities, _FIRST[inputs] + n // _CITIES_OF_MANY[inputs]
     return max(_LEAST[inputs], min(of_few, of_many, _MOST))

@@ -74,6 +74,11 @@ class Planes(NamedTuple):
         """Return the costs of steps, (o, r, e)."""
         return Costs(_distances(self._of(starts), self._of(stops)))
 
+    def along(self, tours: Int[Tensor, "r n"]) -> Costs:
+        """Return the costs of the steps from each place of a tour to the next, (o, r, n)."""
+        places = self._of(tours)  # exported, rolling them takes less time than looking up others
+        return Costs(_distances(places, places.roll(-1, dims=2)))
+
     def between(self, cities: Int[Tensor, "r e"]) -> Costs:
         """Return the costs of the steps between these cities of each row, (o, r, e, e)."""
         places = self._of(cities)
@@ -107,6 +112,10 @@ class Matrices(NamedTuple):
     def steps(self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]) -> Costs:
         """Return the costs of steps, (o, r, e)."""
         return self._at(starts * self.means.shape[2] + stops)
+
+    def along(self, tours: Int[Tensor, "r n"]) -> Costs:
+        """Return the costs of the steps from each place of a tour to the next, (o, r, n)."""
+        return self.steps(tours, tours.roll(-1, dims=1))
 
     def between(self, cities: Int[Tensor, "r e"]) -> Costs:
         """Return the costs of the steps between these cities of each row, (o, r, e, e)."""
@@ -167,7 +176,7 @@ class Problem(NamedTuple):
 
 def along(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Costs:
     """Return the costs in each objective from each place of a tour to the next, (o, r, n)."""
-    return costs.steps(tours, tours.roll(-1, dims=1))
+    return costs.along(tours)
 
 
 def padded_matrices(matrices: Float[Tensor, "o n n"]) -> Matrices:

@@ -54,7 +54,7 @@ def features_seen(
     inverse = 1 / scale
     known = torch.cat((inverse[..., None], nearest, on_paths[..., None]), dim=-1)
     theirs = in_units * candidates.theirs(inverse)
-    theirs = torch.where(candidates.real, theirs, _MOST).clamp(max=_MOST)
+    theirs = theirs.clamp(max=_MOST)  # which those of impossible edges exceed
     of_ends = [
         *(own, theirs, near.side_by_side(known.flatten(0, 1)).view(*scale.shape, -1)),
         *(scale.log()[..., None], on_paths[..., None]),
@@ -78,8 +78,8 @@ def features_seen(
 
 def _scales(candidates: Candidates) -> _Scales:
     costs = candidates.costs.clamp(min=0.0)  # prices may be a little too high
-    total = torch.where(candidates.real, costs, 0.0).sum(dim=-1)
-    count = candidates.real.to(total).sum(dim=-1)
+    are_real = candidates.real.to(costs)
+    total, count = (costs * are_real).sum(dim=-1), are_real.sum(dim=-1)
     unit = total.sum(dim=-1, keepdim=True) / count.sum(dim=-1, keepdim=True).clamp(min=1)
     unit = unit.clamp(min=1 / NEVER)
     scale = total / unit / count.clamp(min=1) + _LEAST_SCALE

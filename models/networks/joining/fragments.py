@@ -141,7 +141,7 @@ def joined(
     at = mates >= 0
     second = fragments.on_paths
     n = (links.shape[1] - 1) // 2
-    places = torch.where(at, torch.where(second, ends + n, ends), 2 * n)
+    places = torch.where(at, ends + n * second, 2 * n)
     links = links.scatter(1, places, ends.gather(1, mates.clamp(min=0)))
     beyond = mates.gather(1, partners)
     if leans is not None and edge_leans is not None:

@@ -142,7 +142,7 @@ def test_ends_that_a_cut_leaves_lean_as_their_paths_do() -> None:
 
 
 @pytest.mark.parametrize("n", [2, 3, 5, 9, 40])
-def test_every_tour_visits_every_city_once_and_repairs_make_none_longer(n: int) -> None:
+def test_every_tour_visits_every_city_once_and_repairs_make_none_worse(n: int) -> None:
     actor, preferences = small_actor("pa-one-matrix").double(), fan_of_preferences(5, CPU).double()
     assert isinstance(actor, OneMatrixActor)
     drawn = matrices(n, n)
@@ -154,10 +154,10 @@ def test_every_tour_visits_every_city_once_and_repairs_make_none_longer(n: int) 
         after, _ = actor.repaired_tours(instance, preferences, 3)
         assert torch.equal(after.sort(dim=-1).values, every)
         rows = weights(turned_outwards(preferences))
-        shorter, longer = (
-            (tour_lengths(instance, tours)[0] * rows).sum(dim=1) for tours in (after, before)
+        better, worse = (
+            (tour_lengths(instance, tours)[0] * rows).norm(p=8, dim=1) for tours in (after, before)
         )
-        assert (shorter <= longer + 1e-9).all()
+        assert (better <= 1.00001 * worse).all()
 
 
 def test_numbering_the_cities_otherwise_changes_the_length_of_no_tour() -> None:

@@ -1,0 +1,62 @@
+"""Which tours the rows of a front keep between repairs, of all tours that any of them has found.
+
+A tour that one row finds may be better for another row. So after each repair every row takes the
+best of all tours for its own preference. Taken by their weighted sums alone, most rows would soon
+share a few tours. So the lengths, times the weights, are compared by a norm with a high exponent:
+it prefers tours that lie along the preference of the row.
+
+The tours that no row keeps are candidates for a memory of as many tours as there are rows. It
+keeps those that the other tours come least close to dominating.
+"""
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor
+
+ROUNDING = 2e-6  # of a length: the error of sums of float32
+_ROUNDING_OF_NORMS = 2e-5  # of sums of eighth powers
+_FLAT = 2.5  # objectives: fewer are two
+_LEAST_LENGTH = 1e-9
+_FAR = 1e3  # times as long
+
+
+def best_for_rows(weights: Float[Tensor, "r o"], points: Float[Tensor, "p o"]) -> Int[Tensor, " r"]:
+    """Return which of all points is the best for each row, by number.
+
+    The first point is of the first row's own tour, and so on: each row keeps its own unless another
+    is better. Of equally good ones it takes the first. The exponent of the norm is eight under two
+    objectives. Under more it is two, as rows are further apart there.
+    """
+    r = weights.shape[0]
+    own = (points[:r] * weights).sum(dim=1, keepdim=True)
+    parts = (weights / own)[..., None] * points.T
+    squares = parts * parts
+    fourths = squares * squares
+    has_two = torch.ones_like(weights[0]).sum() < _FLAT  # exported as it is written
+    norms = torch.where(has_two, fourths * fourths, squares).sum(dim=1)
+    least = norms.amin(dim=1, keepdim=True)
+    own_norms = norms.gather(1, _numbers(own))
+    others = (norms <= (1 + _ROUNDING_OF_NORMS) * least).long().argmax(dim=1, keepdim=True)
+    is_better = own_norms > (1 + _ROUNDING_OF_NORMS) * least
+    return torch.where(is_better, others, _numbers(own))[:, 0]
+
+
+def worth_remembering(
+    kept: Float[Tensor, "r o"], others: Float[Tensor, "q o"]
+) -> Int[Tensor, " r"]:
+    """Return as many of the other points as are kept, by number, that tell most of the front.
+
+    For each other point, the point that comes closest to dominating it counts, of the kept ones
+    and of the others before it: the factor by which it would have to be shorter.
+    """
+    points = torch.cat((kept, others))
+    r = kept.shape[0]
+    factors = points.T / others.clamp(min=_LEAST_LENGTH)[..., None]
+    index = torch.arange(points.shape[0], device=points.device)
+    is_later = index >= index[r:, None]
+    closest = (factors.amax(dim=1) + _FAR * is_later.to(factors)).amin(dim=1)
+    return closest.topk(r).indices
+
+
+def _numbers(rows: Float[Tensor, "r 1"]) -> Int[Tensor, "r 1"]:
+    return torch.arange(rows.shape[0], device=rows.device)[:, None]
