@@ -183,8 +183,10 @@ class OneActor(Actor):
         ties = (tours == expected).all(dim=1)
         if ties.all():
             return ties
-        preferences, expected = preferences[~ties], expected[~ties]  # rows are apart
-        moved_away = torch.zeros(len(expected), dtype=torch.bool)
+        differ = ~ties
+        if repairs == 0:  # rows are apart
+            preferences, expected, differ = preferences[differ], expected[differ], differ[differ]
+        moved_away = ~differ
         rounding = max(_LEAST_ROUNDING, _ROUNDING_OF_A_CITY * tours.shape[1])
         generator = Generator().manual_seed(0)
         for _ in range(_ROUNDINGS):
@@ -195,7 +197,7 @@ class OneActor(Actor):
             moved_away |= (again != expected).any(dim=1)
             if moved_away.all():
                 break
-        ties[~ties] = moved_away
+        ties[~ties] = moved_away[differ]
         return ties
 
     def problem(self, instance: Tensor, weights: Float[Tensor, "r m"]) -> Problem:
