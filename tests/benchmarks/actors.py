@@ -4,8 +4,8 @@ By default the released ones; with `--own FOLDER` actors of that folder may be n
 
 For each: one inference call with 100 preferences an instance, the network alone and greedy; and
 where it can, the best 100 of the tours of a call with as many repairs as the service makes by
-default. The plain construction heuristics stand beside them, with 100 weights. Prints a table and
-stores `results/actors.json`.
+default. The plain construction heuristics stand beside them, with 100 weights. Seconds are those of
+the processor, of all threads. Prints a table and stores `results/actors.json`.
 """
 
 import argparse
@@ -83,9 +83,9 @@ def measure(build: Build, n: int, count: int) -> dict[str, Any]:
     instances = [Instance(coordinates=cities) for cities in paper_instances(n, count)]
     build(instances[0])  # compiles, and fills caches
     for instance in tqdm(instances, desc=f"{n} cities", leave=False):
-        began = time.perf_counter()
+        began = time.process_time()
         tours = build(instance)
-        seconds.append(time.perf_counter() - began)
+        seconds.append(time.process_time() - began)
         check_tours(tours, n)
         points = tour_lengths(instance, tours)
         for name, reference_point in reference_points(n).items():
