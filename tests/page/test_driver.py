@@ -106,7 +106,7 @@ def test_a_tour_over_the_day_has_its_hours(window: Page) -> None:
 
 
 def test_stops_without_places_have_no_gpx(window: Page) -> None:
-    planned(window, {"rows.csv": "0,0,1,1\n1,1,0,0\n2,0,2,2\n"})
+    planned(window, {"rows.csv": "x1,y1,x2,y2\n0,0,1,1\n1,1,0,0\n2,0,2,2\n"})
     expect(window.get_by_role("button", name="Save the selected tour as GPX")).to_be_disabled()
     text = given(window, "Save the stops of the selected tour")
     assert text.splitlines()[0] == "position,stop"

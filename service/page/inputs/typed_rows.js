@@ -5,6 +5,7 @@ import { Problem } from "../planning/service.js";
 
 const PAUSE = 250; // ms without a key
 const ABOUT_TEXT = ["unreadable-file", "file-too-large"]; // codes of refusals
+const PLANES = ["x", "y", "second x", "second y"];
 const FOUR = "each stop must have 4 items: x and y in the first plane, then in the second";
 
 export class TypedRows {
@@ -50,8 +51,9 @@ export class TypedRows {
   }
 
   async #read(text, signal) {
-    const file = new File([prepared(text)], "rows");
-    const { request } = await this.#service.read([file], signal).catch((error) => {
+    const rows = prepared(text);
+    const file = new File([rows], "rows");
+    const { request } = await this.#service.read([file], signal, columnsOf(rows)).catch((error) => {
       throw ABOUT_TEXT.includes(error.code) ? aboutRow(error) : error;
     });
     const found = inRows(request);
@@ -63,6 +65,19 @@ export class TypedRows {
 
 /** Without empty lines a row's number is its stop's; its sign keeps `0, 1, 2, 3` from being a heading, as pandas writes it. */
 const prepared = (text) => text.replace(/^\s*\n/gm, "").replace(/^\s*(?=\d)/, "+");
+
+/** What rows of four numbers are taken for, maybe behind a name: the box says it, where a file would be asked about. */
+function columnsOf(rows) {
+  const [first] = rows.trimStart().split("\n");
+  const separator = [";", "\t", "|", ","].find((sign) => first.includes(sign)) ?? /\s+/;
+  const fields = first.trim().split(separator).map((field) => field.trim());
+  const named = fields.length === PLANES.length + 1 && !isNumber(fields[0]);
+  if (!fields.slice(named ? 1 : 0).every(isNumber) || fields.length - named !== PLANES.length) return [];
+  const taken = named ? ["id", ...PLANES] : PLANES;
+  return taken.map((field, at) => ({ file: "rows", name: `${at + 1}`, taken_for: field }));
+}
+
+const isNumber = (field) => /^[-+\u2212]?[\d.,]*\d[\d.,]*(e[-+]?\d+)?$/i.test(field);
 
 /** The same refusal, of the stop and the number that it is about. */
 function aboutRow({ message }) {
