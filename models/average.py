@@ -16,7 +16,7 @@ def average(trained: list[Trained]) -> Trained:
     """Return the mean of the weights; the configuration and steps of the last, the seconds of all.
 
     Raises:
-        ValueError: there is no checkpoint, or their networks differ.
+        ValueError: a checkpoint is missing, or their networks differ.
     """
     networks = {checkpoint.config.network for checkpoint in trained}
     if len(networks) != 1:

@@ -45,10 +45,10 @@ class BodyBudget:
         Args:
             client: The client that sends the body, or gets it.
             count: The bytes to take at once.
-            always: Whether to take them even where there is no room.
+            always: Whether to take them even where no room is left.
 
         Raises:
-            Refusal: There is no room.
+            Refusal: No room is left.
         """
         return BodyAllowance(self, client, self.take(client, 0, count, always=always))
 
@@ -56,7 +56,7 @@ class BodyBudget:
         """Take bytes for a body that holds some already, and return how many it holds then.
 
         Raises:
-            Refusal: There is no room.
+            Refusal: No room is left.
         """
         small = count <= _SMALL
         if count <= held or (small and self._answers):

@@ -67,7 +67,7 @@ def read_request(
     Raises:
         UnreadableFile: A file cannot be read; the message names it.
         UsageError: It holds what another command plans.
-        OSError: There is no such file.
+        OSError: The file does not exist.
     """
     files = [path for path in paths if path is not None]
     check_inputs(*files)
@@ -111,7 +111,7 @@ def read_object(path: Path) -> Request:
 
     Raises:
         UnreadableFile: The file is not a JSON object; the message names it.
-        OSError: There is no such file.
+        OSError: The file does not exist.
     """
     return object_in(Source(_content(path), _bounds()))
 
@@ -121,7 +121,7 @@ def read_layer(path: Path) -> Array:
 
     Raises:
         UnreadableFile: The file is not a table of numbers; the message names it.
-        OSError: There is no such file.
+        OSError: The file does not exist.
     """
     source, table = read_table(_content(path), _bounds())
     costs = numbers_of(source, table)

@@ -136,7 +136,7 @@ SECONDS: Mapping[str, float] = {  # by the names of units
     **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), 3600),
     **dict.fromkeys(("std", "stunden", "heures", "ore", "horas", "uren", "tuntia"), 3600),
 }
-_DAYS = ("d", "day", "days")  # in brackets; else they are no units, as in `working days`
+_DAYS = ("d", "day", "days")  # in brackets; else they are not units, as in `working days`
 # Headings of visits that route planners write. What they hold is in minutes.
 _USUALLY_MINUTES = frozenset(_NAMES["service"].split()) - {"service"}
 # Fields that a table may have several times.

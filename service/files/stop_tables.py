@@ -176,7 +176,7 @@ def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
     """Return the stops of a fleet; and their points in the plane, if they are not on the earth.
 
     Raises:
-        UnreadableFile: There are no places.
+        UnreadableFile: It has no places.
     """
     source, fields = columns.source, columns.fields
     if _is_located(columns):

@@ -204,7 +204,7 @@ def _csv_rows(source: Source, text: str, separator: str) -> Iterator[list[str]]:
 def _take_titles(source: Source, rows: list[Row]) -> None:
     """Take away rows of a single text that stand above a heading of several words, with a note.
 
-    The row below the heading must have a number, so that the words are no row of the table.
+    The row below the heading must have a number, so that the words are not a row of the table.
     """
     first = next((at for at, (_, row) in enumerate(rows) if sum(map(bool, row)) > 1), 0)
     if not 0 < first < len(rows) - 1:

@@ -79,7 +79,7 @@ class _Points:
         """Parse the document.
 
         Raises:
-            UnreadableFile: It is no XML, or hostile.
+            UnreadableFile: It is not XML, or hostile.
         """
         parser = expat.ParserCreate()
         parser.buffer_text = True

@@ -103,7 +103,7 @@ class MixedSweep(Searches):
     def _vehicles(self) -> tuple[int, ...] | None:
         """Return the most vehicles of each type: those that a solution uses, or one fewer.
 
-        None if there is no such limit.
+        None without such a limit.
         """
         if "vehicles" not in self._rules.over or self._random.random() < _UNLIMITED:
             return None

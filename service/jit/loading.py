@@ -1,7 +1,7 @@
 """Load compiled code without what compiles it.
 
 Before numba loads a function from its cache, it imports all that it could compile. And it imports
-the modules of its own whose code the function contains, one of which imports half of scipy. That
+the modules of its own whose code the function contains. One of these imports half of scipy. That
 takes longer than to load a search. A process that compiles imports all of it then.
 """
 

@@ -150,7 +150,7 @@ def iterate(search: WeightedSearch, steps: int) -> None:
 
 @compiled
 def perturb(search: WeightedSearch) -> bool:
-    """Swap two parts that are near to each other; return False where there are no two."""
+    """Swap two parts that are near to each other; return False where it has fewer than two."""
     lowest, highest = search.places
     if highest - lowest < 2:
         return False

@@ -83,7 +83,7 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
     """Return rows of numbers as an array, shape (rows, columns), NaN where they have null.
 
     Raises:
-        Refusal: There are no numbers, or the rows differ in length.
+        Refusal: It has no numbers, or the rows differ in length.
     """
     if not rows or not rows[0]:
         raise invalid(name, "must have a row of numbers or more, got none")

@@ -10,7 +10,7 @@ BYTES_OF_ENTRY = 512  # of an array, its key and its entry, in addition to its n
 
 
 class ArrayCache:
-    """Arrays by their keys; when there is no room, the least recently used is dropped.
+    """Arrays by their keys; when no room is left, the least recently used is dropped.
 
     Args:
         most_bytes: The most bytes of all arrays together.

@@ -45,7 +45,7 @@ def check_ways(
 
 
 def find_obstacles(forbidden: Mask, ends: RouteEnds) -> list[Obstacle]:
-    """Return why there is no tour, several reasons where cities lack ways in or out."""
+    """Return why no tour exists, several reasons where cities lack ways in or out."""
     if len(forbidden) == 1:
         return []
     allowed = ~forbidden

@@ -15,7 +15,7 @@ _MOST_SHOWN = 80  # characters of a wrong value in a sentence
 def plain_array(array: NDArray[Any], name: str, *, is_cost: bool) -> NDArray[Any]:
     """Return an array of numbers, of texts, or of numbers and None.
 
-    Where costs are masked there is no way: they become infinite.
+    A masked cost means that no way leads there: it becomes infinite.
 
     Raises:
         ValueError: It has another type, or is masked and has no costs.
@@ -64,7 +64,7 @@ def plain_object(value: Any) -> Any:
     """Return a value that JSON does not know as one that it does.
 
     Raises:
-        ValueError: It is no number, text, array, list or mapping.
+        ValueError: It is not a number, text, array, list or mapping.
     """
     if isinstance(value, Decimal):
         return float(value)

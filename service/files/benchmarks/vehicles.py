@@ -71,7 +71,7 @@ def vehicles_of(
         file: The file.
         depots: Its depots.
         clients: The other stops.
-        windows: The windows of all stops, of which those of depots are shifts.
+        windows: The windows of all stops; those of depots are shifts.
 
     Raises:
         UnreadableFile: A section does not have a row for each vehicle, or cannot be said.

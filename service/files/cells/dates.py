@@ -55,7 +55,7 @@ class Calendar:
         """Return how many days a date is after the first one; 0 if all times are of one day.
 
         Raises:
-            ValueError: There is no such date.
+            ValueError: The date does not exist.
         """
         found = _date_in(parts.date, self.day_first)
         return (found - self.first).days if self.are_several and self.first else 0

@@ -1,4 +1,4 @@
-"""Ids of stops: names that come twice are numbered, and cities are no ids of orders."""
+"""Ids of stops: names that come twice are numbered, and cities are not ids of orders."""
 
 from collections.abc import Sequence
 
@@ -29,7 +29,7 @@ def is_list_of_cities(cities: Sequence[str], others: Sequence[Sequence[str]]) ->
 
 
 def numbered(source: Source, heading: str, names: Sequence[str]) -> list[str]:
-    """Return names of which none is missing or comes twice, with a note on those that are new."""
+    """Return names, each of them once and none missing, with a note on those that are new."""
     taken = {name for name in names if name}
     seen: set[str] = set()
     ids: list[str] = []

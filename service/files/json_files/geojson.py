@@ -26,11 +26,11 @@ from service.files.visits import add_visits
 _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
 _LONGEST_CRS = 200  # characters of its name
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
-_GEOMETRY = ("id", "longitude", "latitude")  # the columns that are no properties
+_GEOMETRY = ("id", "longitude", "latitude")  # the columns that are not properties
 _CLOSE = 0.001  # degrees: about 100 m
 _UNITS_OF_TIME = ("s", "sec", "seconds", "min", "minutes", "h", "hours")
 _TIMED = re.compile(r"time|duration|dauer|zeit", re.IGNORECASE)
-_OF_OBJECTIVES = ("cost", "x", "y")  # columns that are no objectives beside `objectives`
+_OF_OBJECTIVES = ("cost", "x", "y")  # columns that are not objectives beside `objectives`
 
 
 class _Record(NamedTuple):

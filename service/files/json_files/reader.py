@@ -87,7 +87,7 @@ def _parsed(source: Source, text: str) -> Any:
 
 
 def _check_characters(source: Source, text: str) -> None:
-    """Raise UnreadableFile if a text that is no JSON has half of a character of UTF-16."""
+    """Raise UnreadableFile if a text that is not JSON has half of a character of UTF-16."""
     halves = _HALF.search(text)
     if halves:
         raise source.refusal(f"must be text, got {halves[0].lower()}, which is half a character")
