@@ -43,6 +43,7 @@ _NAMES = (
     "routing",
     "scale",
     "search",
+    "served",
     "several",
     "shapes",
     "soak",
