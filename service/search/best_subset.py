@@ -23,8 +23,8 @@ _LEAST_SECONDS, _LEAST_SHARE, _SHARE = 0.05, 0.2, 0.045  # of the time limit, fo
 _A_PAIR = 1.5e-8
 # For a look at one of several objectives: at all, and by a power of the number chosen already.
 _A_LOOK, _A_CHOSEN = 1.5e-7, {3: (2.5e-9, 1.0), 4: (4.5e-9, 1.22)}
-_PATIENCE = 2.0  # times as long as it may take, the choice goes on
-_LESS = 0.125  # of the seconds, with which it begins again where the machine is too slow
+_PATIENCE = 4.0  # times as long as it may take, the choice goes on
+_LESS = 0.3  # of the seconds, with which it begins again where the machine is too slow
 _LOOKS = 1.5  # at each point, where as many points are chosen as the number e; with the logarithm
 _COLLECTING = 1e-6  # for each point found: to sort the archive, and to copy the points
 

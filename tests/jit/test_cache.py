@@ -135,7 +135,7 @@ def test_code_that_cannot_be_kept_is_used_all_the_same_and_said_once(tmp_path: P
     full = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)); "
 
     def run(code: str) -> tuple[str, str]:
-        command = [sys.executable, "-c", code, "0"]
+        command = [sys.executable, "-B", "-c", code, "0"]  # else the module would be cut short, too
         ran = subprocess.run(command, env=environment, capture_output=True, text=True)
         return ran.stdout, ran.stderr
 

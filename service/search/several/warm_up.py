@@ -11,6 +11,7 @@ from service.search.best_subset import best_subset
 from service.search.bound.several import lowest_lengths
 from service.search.enumeration import exact_tours
 from service.search.front_points import FrontPoints
+from service.search.hypervolume import hypervolume
 from service.search.improve import improve
 
 _N = 12  # cities: too many to enumerate
@@ -33,6 +34,7 @@ def beside_local_search() -> None:
     for objectives in (3, 4):
         front = FrontPoints.among(np.eye(objectives), np.full(objectives, 2.0))[1]
         best_subset(front, 2)
+        hypervolume(front.points, front.reference_point)
         exact_tours(Instance(coordinates=_planes(objectives)[:5]))
 
 

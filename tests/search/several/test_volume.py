@@ -76,7 +76,7 @@ def test_a_choice_in_little_time_loses_little(objectives: int, size: int) -> Non
     front = in_order(shell(20_000, objectives))
     best, quick = best_subset(front, size), best_subset(front, size, seconds=0.02)
     assert len(set(quick.tolist())) == size
-    assert front.at(quick).hypervolume > 0.985 * front.at(best).hypervolume
+    assert front.at(quick).hypervolume > 0.96 * front.at(best).hypervolume
 
 
 @several
