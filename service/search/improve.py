@@ -30,6 +30,9 @@ LONGEST_REPORTS = 10  # times as long as a report takes, the search goes on befo
 # cities: a process that was not run for a moment else answers with one tour. It goes on until there
 # is one: of 10,000 cities some 50 to 100 ms after it began, half of what nearest neighbours take.
 LEAST_POINTS, LEAST_BLOCKS = 10, 50
+# Where other programs share the core, what follows the search takes longer, too. The search assumes
+# the factor by which it was slowed itself: up to this one, and once it has computed for a while.
+MOST_SLOWED, LEAST_COMPUTED = 4.0, 0.02
 
 
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
@@ -105,6 +108,7 @@ def _run(
 ) -> Termination:
     """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
     began = reported = looked = time.monotonic()
+    computed = time.thread_time()
     pause, step = REPORT_EVERY, 0.0
     spent = 0
     for block, done in enumerate(search.run()):
@@ -116,7 +120,8 @@ def _run(
         before, step, looked = step, now - looked, now
         begun = search.size >= (LEAST_POINTS if block < LEAST_BLOCKS else 1)
         next_step = min(before, step)  # the process may not have run during one of the two
-        late = begun and left <= reserve(search.size) + next_step
+        slowed = _slowed(now - began, time.thread_time() - computed)
+        late = begun and left <= slowed * reserve(search.size) + next_step
         if late or (iterations is not None and spent >= iterations):
             return "time_limit"
         # A report takes time; shortly before the deadline it could break it.
@@ -127,6 +132,13 @@ def _run(
             reported = looked = time.monotonic()
             pause = max(REPORT_EVERY, LONGEST_REPORTS * (reported - now))
     return "converged"
+
+
+def _slowed(seconds: float, computed: float) -> float:
+    """Return how many times as long as it computes this thread takes, 1 or more."""
+    if computed < LEAST_COMPUTED:
+        return 1.0
+    return min(MOST_SLOWED, max(1.0, seconds / computed))
 
 
 def _enumerated(
