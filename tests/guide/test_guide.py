@@ -15,8 +15,7 @@ from service.errors import PROBLEMS
 from service.settings import Settings
 from tests.guide.codes import codes
 from tests.guide.figures import figures
-from tests.guide.member_sentences import FILE as MEMBERS_FILE
-from tests.guide.member_sentences import member_lines
+from tests.guide.members import SENTENCES, TYPES, sentence_file, type_file
 from tests.guide.pages import (
     GUIDE,
     PAGES,
@@ -273,8 +272,9 @@ def test_the_table_of_codes_is_that_of_the_service() -> None:
     assert table == codes(), "run python -m tests.guide"
 
 
-def test_the_help_of_the_client_has_the_sentences_of_the_service() -> None:
-    assert MEMBERS_FILE.read_text() == member_lines(), "run python -m tests.guide"
+def test_the_client_has_the_members_of_the_forms() -> None:
+    assert TYPES.read_text() == type_file(), "run python -m tests.guide"
+    assert SENTENCES.read_text() == sentence_file(), "run python -m tests.guide"
 
 
 def test_every_setting_is_described() -> None:

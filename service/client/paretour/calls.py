@@ -18,20 +18,20 @@ from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
+from paretour.explaining import explaining
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.listing import PAGE, ListedFront, next_page, parse_listed
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
-    Instance,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
-    explaining,
 )
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.requests import (
+    Instance,
     Plan,
     coverage_plan,
     fleet_plan,

@@ -5,10 +5,10 @@ import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from paretour.arrays import plain_array
 from paretour.labels import Labelled, aligned, check_same
 
@@ -23,7 +23,16 @@ _SIDES = ("rows", "columns")
 _ENDS = 2  # of a window
 _SEPARATOR = re.compile(r"[;|,]")  # between skills in one text
 _MOST_SHOWN = 80  # characters of a wrong value in a sentence
+# A row for each city, with its costs to all cities; None or infinity if there is no way.
+Costs = ArrayLike | Sequence[Sequence[float | None] | ArrayLike]
 _Cells = list[tuple[str, Any]]  # the cells of a column: the position and the value of each
+
+
+class Frame(Protocol):
+    """A DataFrame of any library."""
+
+    def to_numpy(self) -> Any:
+        """Return its cells as an array."""
 
 
 def without_frames(value: Any, name: str = "", ids: Sequence[str] = ()) -> Any:

@@ -13,19 +13,18 @@ from typing import Any, Unpack, cast, overload
 from weakref import WeakKeyDictionary
 
 from paretour.bars import Bars, Display, Silent, bar_class
+from paretour.explaining import explaining
 from paretour.kinds import FrontOfAnyKind
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
-    Instance,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
-    explaining,
 )
 from paretour.plans import FleetFront, RobotFront
-from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
+from paretour.requests import Instance, Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.values import Front
 
 _planned: WeakKeyDictionary[FrontOfAnyKind, Any] = WeakKeyDictionary()  # what `replan` starts from

@@ -1,65 +1,49 @@
-"""The members of requests, as types of dictionaries."""
+"""The members of requests, as types of dictionaries: made of the service's forms.
 
-import json
-from collections.abc import Callable, Mapping, Sequence
-from inspect import cleandoc
-from pkgutil import get_data
-from typing import Any, Literal, Protocol, Required, TypedDict, TypeVar
+`python -m tests.guide` writes this module. Types are calls where a member is called `from`.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Required, TypedDict
 
 from numpy.typing import ArrayLike
-
-# A row for each city, with its costs to all cities; None or infinity if there is no way.
-Costs = ArrayLike | Sequence[Sequence[float | None]]
+from paretour.frames import Costs, Frame
 
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-# The lines of the help on each type below, from the service: `python -m tests.guide` writes them.
-_HELP = json.loads(get_data("paretour", "members.json") or b"")
+class DepartureRangeRequest(TypedDict, total=False):
+    """The times at which a tour may begin."""
 
-
-class Frame(Protocol):
-    """A DataFrame of any library."""
-
-    def to_numpy(self) -> Any:
-        """Return its cells as an array."""
-
-
-class PlanOptions(TypedDict, total=False):
-    """The members that every request to plan may have; the service's /docs explains them."""
-
-    preferences: int | ArrayLike
-    time_limit: float
-    size: int
-    repairs: int
-    reference_point: ArrayLike
-    arrivals: bool
-    bound: bool
-    actor: str
-    seed: int
-
-
-class PlanRequest(PlanOptions, total=False):
-    """The members that every request to plan new cities may have."""
-
-    closed: bool
-    initial_tours: ArrayLike
+    earliest: Required[float]
+    latest: Required[float]
 
 
 class StopRequest(TypedDict, total=False):
-    """A stop: an id that the caller chooses, and maybe longitude and latitude in degrees."""
+    """A stop, and how long a visit takes."""
 
     id: Required[str]
     location: ArrayLike | None
-
-
-class ServedStopRequest(StopRequest, total=False):
-    """A stop of a front over the day, and the seconds of a visit."""
-
     service: float
 
 
-# Written as a call because `from` is a keyword. It is great_circle, road_time or road_distance.
-# With a speed in km/h, great_circle is seconds, not metres.
+# A slice of the day, and the costs in it.
+SliceRequest = TypedDict(
+    "SliceRequest",
+    {
+        "from": Required[float],
+        "matrix": Required[Costs],
+    },
+    total=False,
+)
+
+
+class TrafficRequest(TypedDict, total=False):
+    """Which times of travel a routing engine is asked for."""
+
+    date: Required[str]
+    at: Required[ArrayLike]
+
+
+# An objective, whose costs may change over the day.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
@@ -67,13 +51,111 @@ ObjectiveRequest = TypedDict(
         "unit": str | None,
         "matrix": Costs,
         "coordinates": ArrayLike,
-        "from": str,
+        "from": Literal["great_circle", "road_time", "road_distance"],
         "speed": float | None,
         "over_the_day": ArrayLike,
-        "slices": Sequence[Mapping[str, Any]],
+        "slices": Sequence[SliceRequest],
+        "traffic": TrafficRequest | None,
     },
     total=False,
 )
+
+
+class FrontRequest(TypedDict, total=False):
+    """Cities or stops under two to four objectives, and the options of their front."""
+
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    seed: int
+    preferences: int | ArrayLike
+    repairs: int
+    arrivals: bool
+    bound: bool
+    actor: str
+    closed: bool
+    start: int | str | None
+    end: int | str | None
+    initial_tours: Sequence[Sequence[int | str] | ArrayLike] | ArrayLike
+    departure: float | DepartureRangeRequest | None
+    clock: str | None
+    coordinates: ArrayLike
+    matrices: Sequence[Costs] | ArrayLike
+    stops: Sequence[StopRequest] | Frame
+    objectives: Sequence[ObjectiveRequest]
+    augment: int
+    geometry: Literal["straight", "roads"]
+
+
+class FleetStopRequest(TypedDict, total=False):
+    """A stop, and its demands on the vehicle that visits it."""
+
+    id: Required[str]
+    location: ArrayLike | None
+    demand: ArrayLike
+    service: float
+    window: ArrayLike | None
+    windows: ArrayLike
+    due: float | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
+    prize: float | None
+
+
+class BreakRequest(TypedDict, total=False):
+    """A break that a driver takes who is on the way then."""
+
+    window: Required[ArrayLike]
+    length: Required[float]
+
+
+class VehicleRequest(TypedDict, total=False):
+    """A type of vehicle, and how many of it there are."""
+
+    id: Required[str]
+    count: int
+    start: int | str | None
+    end: int | str | None
+    capacity: ArrayLike
+    shift: ArrayLike | None
+    shifts: ArrayLike
+    max_overtime: float
+    breaks: Sequence[BreakRequest]
+    skills: Sequence[str]
+    max_stops: int | None
+    reload: Sequence[int | str] | ArrayLike
+    max_trips: int | None
+    initial_load: ArrayLike
+    longest: float | None
+    fixed: float
+
+
+Measure = Literal["vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"]
+
+
+# An objective by its name: costs with their source, or another measure of plans.
+FleetObjectiveRequest = TypedDict(
+    "FleetObjectiveRequest",
+    {
+        "name": Required[str],
+        "unit": str | None,
+        "matrix": Costs,
+        "coordinates": ArrayLike,
+        "from": Literal["great_circle", "road_time", "road_distance"],
+        "speed": float | None,
+        "measure": Measure | None,
+        "over": Literal["sum", "max"],
+    },
+    total=False,
+)
+
+
+class ShipmentRequest(TypedDict, total=False):
+    """Two stops that one vehicle visits: the pick-up, and later the delivery."""
+
+    pickup: Required[int | str]
+    delivery: Required[int | str]
 
 
 # The source of travel times that are not an objective.
@@ -84,122 +166,54 @@ ClockRequest = TypedDict(
         "unit": str | None,
         "matrix": Costs,
         "coordinates": ArrayLike,
-        "from": str,
+        "from": Literal["great_circle", "road_time", "road_distance"],
         "speed": float | None,
     },
     total=False,
 )
 
 
-class FrontRequest(PlanRequest, total=False):
-    """The members of a request to POST /front: coordinates, matrices, or stops with objectives.
-
-    With stops, `start` and `initial_tours` may name them by id. `augment` has no effect. Where
-    there is no way from one city to another, its cost is None or infinite.
-    """
-
-    coordinates: ArrayLike
-    matrices: ArrayLike | Sequence[Costs]
-    stops: Sequence[ServedStopRequest] | Frame
-    objectives: Sequence[ObjectiveRequest]
-    start: int | str | None
-    end: int | str | None
-    departure: float | Mapping[str, float]
-    clock: str
-    augment: int
-    geometry: Literal["straight", "roads"]
-
-
-# Coordinates, matrices or stops.
-Instance = ArrayLike | Sequence[Costs] | Sequence[ServedStopRequest] | Frame
-
-
-class FleetStopRequest(StopRequest, total=False):
-    """A stop of a fleet, with its demands on the vehicle that visits it."""
-
-    demand: Sequence[int]
-    service: float
-    window: ArrayLike | None
-    windows: Sequence[ArrayLike]
-    prize: float | None
-    due: float | None
-    release: float
-    skills: Sequence[str]
-    vehicle: str | None
-
-
-class ShipmentRequest(TypedDict):
-    """Two stops, by index or id, that one vehicle visits in this order."""
-
-    pickup: int | str
-    delivery: int | str
-
-
-class BreakRequest(TypedDict):
-    """A break of a vehicle's driver: when it may begin, from and to, and how long it takes."""
-
-    window: ArrayLike
-    length: float
-
-
-class VehicleRequest(TypedDict, total=False):
-    """A number of equal vehicles."""
-
-    id: Required[str]
-    count: int
-    start: int | str | None
-    end: int | str | None
-    capacity: Sequence[int]
-    shift: ArrayLike | None
-    shifts: Sequence[ArrayLike]
-    max_overtime: float
-    longest: float | None
-    fixed: float
-    skills: Sequence[str]
-    max_stops: int | None
-    reload: Sequence[int | str]
-    max_trips: int | None
-    initial_load: Sequence[int]
-    breaks: Sequence[BreakRequest]
-
-
-class FleetObjectiveRequest(ObjectiveRequest, total=False):
-    """An objective: the sum of costs, those of the longest route, or another measure."""
-
-    over: Literal["sum", "max"]
-    measure: Literal["vehicles", "unassigned", "overtime", "lateness"]
-
-
 class FleetRequest(TypedDict, total=False):
-    """The members of a request to POST /fleet; the service's /docs explains them."""
+    """Stops, vehicles and two or three objectives, and the options of their front of plans."""
 
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    seed: int
     stops: Required[Sequence[FleetStopRequest] | Frame]
     vehicles: Required[Sequence[VehicleRequest]]
     objectives: Required[Sequence[FleetObjectiveRequest]]
     shipments: Sequence[ShipmentRequest]
     clock: str | ClockRequest | None
-    time_limit: float
-    size: int
-    reference_point: ArrayLike
     geometry: Literal["straight", "roads"]
-    seed: int
 
 
 class LayerRequest(TypedDict, total=False):
-    """A cost layer on a map: an objective with a name."""
+    """A cost layer with its name: an objective of its own."""
 
     name: Required[str]
-    unit: str
+    unit: str | None
     layer: Required[ArrayLike]
 
 
-class CoverageRequest(PlanRequest, total=False):
-    """The members of a request to POST /coverage: map, places, and costs beside the metres."""
+class CoverageRequest(TypedDict, total=False):
+    """Places on a map, the objectives between them, and the options of their front."""
 
-    grid: ArrayLike
-    occupancy_grid: Mapping[str, Any]
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    seed: int
+    preferences: int | ArrayLike
+    repairs: int
+    arrivals: bool
+    bound: bool
+    actor: str
+    closed: bool
     start: int | None
     end: int | None
+    initial_tours: ArrayLike
+    grid: ArrayLike
+    occupancy_grid: Mapping[str, Any]
     cell_size: float
     origin: ArrayLike
     mode: Literal["trinary", "scale", "raw"]
@@ -222,7 +236,7 @@ class CoverageRequest(PlanRequest, total=False):
 
 
 class RobotRequest(TypedDict, total=False):
-    """A robot: where it starts, and with `closed` false also where it ends."""
+    """A robot: where it starts and, where robots do not return, maybe where it ends."""
 
     id: Required[str]
     start: int
@@ -232,54 +246,68 @@ class RobotRequest(TypedDict, total=False):
 
 
 class RobotsRequest(CoverageRequest, total=False):
-    """The members of a request to POST /coverage for several robots that share the places."""
+    """Places that several robots share."""
 
     robots: Required[Sequence[RobotRequest]]
     over: Sequence[Literal["sum", "max"]]
 
 
-class RouteRequest(TypedDict, total=False):
-    """A route of the plan that is driven, whose vehicle has left."""
+# The costs of one objective between a new stop and all others.
+StopCostsRequest = TypedDict(
+    "StopCostsRequest",
+    {
+        "to": Required[Sequence[float | None] | ArrayLike],
+        "from": Sequence[float | None] | ArrayLike,
+    },
+    total=False,
+)
 
-    route: Required[int]
-    done: Sequence[int | str]
-    position: int | str | Mapping[str, Any] | None
-    broken_down: bool
+
+class NewStopRequest(TypedDict, total=False):
+    """A stop that the front does not have, and how to reach it under each objective."""
+
+    coordinates: Sequence[ArrayLike | None] | ArrayLike
+    costs: Sequence[StopCostsRequest | None]
+    id: Required[str]
+    location: ArrayLike | None
+    service: float | None
 
 
-class ReplanFleetRequest(TypedDict, total=False):
-    """The members of a request to POST /front/{id}/replan about a fleet."""
+# One cost that has changed, in one direction.
+CostEntryRequest = TypedDict(
+    "CostEntryRequest",
+    {
+        "objective": Required[int | str],
+        "from": Required[int | str],
+        "to": Required[int | str],
+        "cost": Required[float | None],
+    },
+    total=False,
+)
 
-    plan: int | None
-    now: float | None
-    routes: Sequence[RouteRequest]
-    add: Sequence[Mapping[str, Any]]
-    remove: Sequence[int | str]
-    costs: Sequence[Mapping[str, Any]]
+
+class ReplanRequest(TypedDict, total=False):
+    """The changes since a front was planned, and the options of the front of the rest."""
+
     time_limit: float
     size: int
     reference_point: ArrayLike
-    geometry: Literal["straight", "roads"]
     seed: int
-
-
-class ReplanRequest(PlanOptions, total=False):
-    """The members of a request to POST /front/{id}/replan: what has changed since.
-
-    Stops are named by their ids, or by their indexes in the front. On a map, a new place and the
-    position of the robot are given as row and column.
-    """
-
+    preferences: int | ArrayLike
+    repairs: int
+    arrivals: bool
+    bound: bool
+    actor: str
     done: Sequence[int | str] | ArrayLike
-    position: int | str | Mapping[str, Any] | ArrayLike
-    add: Sequence[Mapping[str, Any]] | ArrayLike
+    position: int | str | NewStopRequest | ArrayLike | None
+    add: Sequence[NewStopRequest | ArrayLike] | ArrayLike
     remove: Sequence[int | str] | ArrayLike
-    costs: Sequence[Mapping[str, Any]]
+    costs: Sequence[CostEntryRequest]
     objectives: Sequence[ObjectiveRequest]
-    now: float
+    now: float | None
     tour: Sequence[int | str] | ArrayLike
-    min_kept: float
     geometry: Literal["straight", "roads"]
+    min_kept: float
     pose: ArrayLike
     grid: ArrayLike
     blocked: ArrayLike
@@ -289,15 +317,44 @@ class ReplanRequest(PlanOptions, total=False):
     paths: bool
 
 
-def explaining(*requests: type) -> Callable[[Function], Function]:
-    """Return a decorator that adds what the members of these requests are to a function's help."""
+class RouteOnTheWayRequest(TypedDict, total=False):
+    """A route of the plan that is driven, whose vehicle has left."""
 
-    def decorate(function: Function) -> Function:
-        sections = [cleandoc(function.__doc__ or "")]
-        for request in requests:
-            title = f"Members of the request ({request.__name__}):"
-            sections.append("\n    ".join((title, *_HELP[request.__name__])))
-        function.__doc__ = "\n\n".join(sections)
-        return function
+    route: Required[int]
+    done: Sequence[int | str] | ArrayLike
+    position: int | str | NewStopRequest | None
+    broken_down: bool
 
-    return decorate
+
+class NewFleetStopRequest(TypedDict, total=False):
+    """A new stop of a fleet, with its demands, and how to reach it under each objective."""
+
+    coordinates: Sequence[ArrayLike | None] | ArrayLike
+    costs: Sequence[StopCostsRequest | None]
+    id: Required[str]
+    location: ArrayLike | None
+    demand: ArrayLike
+    service: float
+    window: ArrayLike | None
+    windows: ArrayLike
+    due: float | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
+    prize: float | None
+
+
+class ReplanFleetRequest(TypedDict, total=False):
+    """The changes since a fleet was planned, and the options of the front of the rest."""
+
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    seed: int
+    plan: int | None
+    now: float | None
+    routes: Sequence[RouteOnTheWayRequest]
+    add: Sequence[NewFleetStopRequest]
+    remove: Sequence[int | str] | ArrayLike
+    costs: Sequence[CostEntryRequest]
+    geometry: Literal["straight", "roads"]

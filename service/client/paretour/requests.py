@@ -9,20 +9,23 @@ from typing import Any
 from urllib.parse import quote
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from paretour.arrays import plain_object
-from paretour.frames import COSTS, has_ids, without_frames
+from paretour.frames import COSTS, Costs, Frame, has_ids, without_frames
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
-    Instance,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
+    StopRequest,
 )
 from paretour.plans import FleetFront
 from paretour.values import Front
+
+# Coordinates, matrices or stops.
+Instance = ArrayLike | Sequence[Costs] | Sequence[StopRequest] | Frame
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the default of the service
 _OBJECTIVES = (2, 3, 4)

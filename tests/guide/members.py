@@ -1,0 +1,179 @@
+"""The members of requests in the client, made of the service's forms: their types and sentences."""
+
+import json
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from pydantic import BaseModel
+
+from service.requests.coverage import CoverageRequest
+from service.requests.fleet import FleetRequest
+from service.requests.front import FrontRequest
+from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.fleet_fields import ReplanFleetRequest
+from tests.guide.pages import ROOT
+
+SENTENCES = ROOT / "service/client/paretour/members.json"
+TYPES = ROOT / "service/client/paretour/members.py"
+FORMS: Mapping[str, type[BaseModel]] = {
+    "FrontRequest": FrontRequest,
+    "FleetRequest": FleetRequest,
+    "CoverageRequest": CoverageRequest,
+    "RobotsRequest": CoverageRequest,
+    "ReplanRequest": ReplanRequest,
+    "ReplanFleetRequest": ReplanFleetRequest,
+}
+_OF_ROBOTS = ("robots", "over")
+_PLAIN = {
+    "integer": "int",
+    "number": "float",
+    "string": "str",
+    "boolean": "bool",
+    "null": "None",
+}
+_SHORT = 3  # names in a Literal, which fit into a line
+_NUMBERS = {"int", "float", "ArrayLike", "Costs"}  # which an array of any library may hold
+_ROWS = "Sequence[Sequence[float | None] | ArrayLike] | ArrayLike"
+_HEAD = '''\
+"""The members of requests, as types of dictionaries: made of the service's forms.
+
+`python -m tests.guide` writes this module. Types are calls where a member is called `from`.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Required, TypedDict
+
+from numpy.typing import ArrayLike
+from paretour.frames import Costs, Frame
+'''
+_WRAPPER = textwrap.TextWrapper(width=84, subsequent_indent="    ", break_on_hyphens=False)
+
+
+def sentences(request: str) -> dict[str, str]:
+    """Return the sentence of each member of a request, and as `stops.id` of those inside it."""
+    schema = _form(request)
+    return dict(_described(schema, schema["$defs"]))
+
+
+def sentence_file() -> str:
+    """Return the lines of the help on each request as JSON, by the name of its type."""
+    lines = {
+        request: [
+            line
+            for name, sentence in sentences(request).items()
+            for line in _WRAPPER.wrap(f"{name}: {sentence}")
+        ]
+        for request in FORMS
+    }
+    return json.dumps(lines, indent=1, ensure_ascii=False) + "\n"
+
+
+def type_file() -> str:
+    """Return the module with the type of each request, and of all that is in it."""
+    types: dict[str, str] = {}
+    for request in FORMS:
+        schema = _form(request)
+        _add(types, request, schema, schema["$defs"])
+    return "\n\n".join((_HEAD, *types.values()))
+
+
+def _form(request: str) -> dict[str, Any]:
+    """Return the JSON schema of a request; the one for a single robot has no others."""
+    schema = FORMS[request].model_json_schema()
+    if request == "CoverageRequest":
+        for name in _OF_ROBOTS:
+            del schema["properties"][name]
+    elif request == "RobotsRequest":
+        schema |= {"required": ["robots"], "description": "Places that several robots share."}
+    return schema
+
+
+def _add(types: dict[str, str], name: str, form: Any, parts: Mapping[str, Any]) -> None:
+    """Add the type of a form, after the types that it consists of."""
+    for part in _parts(form["properties"]):
+        if _type_name(part, parts) not in types and _is_closed(parts[part]):
+            _add(types, _type_name(part, parts), parts[part], parts)
+    base, fields = "TypedDict", form["properties"]
+    if name == "RobotsRequest":
+        base, fields = "CoverageRequest", {each: fields[each] for each in _OF_ROBOTS}
+    members = {}
+    for member, schema in fields.items():
+        choices = _choices(schema, parts)
+        if len(schema.get("enum", _enumerated(schema))) > _SHORT:
+            types[member] = f"{member.title()} = {choices[0]}\n"
+            choices[0] = member.title()
+        of = " | ".join([*choices, *(["Frame"] if member == "stops" else [])])
+        members[member] = f"Required[{of}]" if member in form.get("required", ()) else of
+    types[name] = _typed_dict(name, base, form["description"].partition("\n")[0], members)
+
+
+def _typed_dict(name: str, base: str, sentence: str, members: Mapping[str, str]) -> str:
+    if "from" not in members:
+        lines = [f"class {name}({base}, total=False):", f'    """{sentence}"""', ""]
+        lines += [f"    {member}: {of}" for member, of in members.items()]
+    else:
+        lines = [f"# {sentence}", f"{name} = TypedDict(", f'    "{name}",', "    {"]
+        lines += [f'        "{member}": {of},' for member, of in members.items()]
+        lines += ["    },", "    total=False,", ")"]
+    return "\n".join(lines) + "\n"
+
+
+def _type_name(form: str, parts: Mapping[str, Any]) -> str:
+    """Return the name of the client's type for a part of a form."""
+    if not _is_closed(parts[form]):
+        return "Mapping[str, Any]"
+    return f"{form.removesuffix('Item').removeprefix('Day').removesuffix('Request')}Request"
+
+
+def _is_closed(form: Any) -> bool:
+    """Return whether a form has no other members than those that are listed."""
+    return form.get("additionalProperties") is False
+
+
+def _enumerated(schema: Any) -> list[str]:
+    return [name for each in schema.get("anyOf", ()) for name in each.get("enum", ())]
+
+
+def _choices(schema: Any, parts: Mapping[str, Any]) -> list[str]:
+    """Return the types of which a member of this schema has one."""
+    for key in ("anyOf", "oneOf"):
+        if key in schema:
+            found = [of for each in schema[key] for of in _choices(each, parts)]
+            return list(dict.fromkeys(found))
+    if "$ref" in schema:
+        return [_type_name(schema["$ref"].rpartition("/")[2], parts)]
+    if "enum" in schema:
+        return [f"Literal[{', '.join(map(json.dumps, schema['enum']))}]"]
+    if schema["type"] == "array":
+        return _array(_choices(schema.get("items") or {"anyOf": schema["prefixItems"]}, parts))
+    return [_PLAIN[schema["type"]]]
+
+
+def _array(each: Sequence[str]) -> list[str]:
+    """Return the types of an array of these. Those of numbers may be of any library."""
+    if set(each) <= _NUMBERS - {"Costs"}:
+        return ["ArrayLike"]
+    found = [f"Sequence[{' | '.join(each)}]", *(["ArrayLike"] if _NUMBERS & set(each) else [])]
+    return ["Costs"] if " | ".join(found) == _ROWS else found
+
+
+def _described(schema: Any, parts: Mapping[str, Any], of: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the members of a schema with their sentences, and what they consist of."""
+    for name, member in schema.get("properties", {}).items():
+        if "description" not in member:
+            continue
+        yield f"{of}{name}", member["description"]
+        for part in _parts(member):
+            yield from _described(parts[part], parts, of=f"{of}{name}.")
+
+
+def _parts(schema: Any) -> Iterator[str]:
+    """Yield the names of the schemas to which a schema refers."""
+    if isinstance(schema, list):
+        for each in schema:
+            yield from _parts(each)
+    elif isinstance(schema, Mapping):
+        if "$ref" in schema:
+            yield schema["$ref"].rpartition("/")[2]
+        yield from _parts(list(schema.values()))
