@@ -1,7 +1,7 @@
-"""Plan, print and draw a front of any kind for the command; a table has what differs by kind."""
+"""Plan, print and draw a front of any kind for the command."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from typing import Any
 from paretour import Front, FrontOfAnyKind, Plan
 from paretour.choice import the_way
 from paretour.expect import unexpected
-from paretour.kinds import kind_of
+from paretour.kinds import Kind, kind_of
 from rich.console import Console
 
 from service.cli.backends import Backend
@@ -19,9 +19,6 @@ from service.cli.inputs import Ids
 from service.cli.notes import print_request_notes
 from service.cli.options import OutputFormat, Ways, ways_of
 from service.cli.output import (
-    ROBOTS,
-    VEHICLES,
-    Movers,
     actors_as_table,
     front_as_rows,
     front_as_table,
@@ -46,15 +43,6 @@ _MORE_PLANS = "--csv prints every route"
 BuildPlan = Callable[[], tuple[Plan, Ids | None]]
 
 
-# The movers on the routes of a kind's plans; None for fronts of tours.
-_MOVERS: Mapping[str, Movers | None] = {
-    "front": None,
-    "coverage": None,
-    "fleet": VEHICLES,
-    "robots": ROBOTS,
-}
-
-
 def run_front(
     build_plan: BuildPlan, backend: Backend, output: OutputFormat, path_folder: Path | None = None
 ) -> None:
@@ -65,15 +53,14 @@ def run_front(
             check_path_folder(path_folder)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
-        movers = _MOVERS[kind_of(front.document)]
-        noun = "tours" if movers is None else "plans"
-        _print(front, movers, ids, output)
+        kind = kind_of(front.document)
+        _print(front, kind, ids, output)
         if output.plot is not None:
-            _draw(front, plan, output.plot, noun)
+            _draw(front, plan, output.plot, kind)
         if path_folder is not None:
-            write_paths(front, path_folder)
+            write_paths(front, kind, path_folder)
     print_request_notes(front.notes)
-    _print_line(front_summary(front, noun))
+    _print_line(front_summary(front, kind.item))
     if line := uncovered_summary(front):
         _print_line(line)
 
@@ -127,29 +114,31 @@ def _usage_errors() -> Iterator[None]:
         raise UsageError(str(error)) from None
 
 
-def _print(front: Any, movers: Movers | None, ids: Ids | None, output: OutputFormat) -> None:
+def _print(front: Any, kind: Kind, ids: Ids | None, output: OutputFormat) -> None:
     """Print a front of any kind: on a terminal as a chart, unless another format is asked for."""
     console = Console()
     chart = console.is_terminal and len(front.lengths) and not output.as_table
     if output.as_json:
         print_data(json.dumps(front.document))
     elif output.as_csv:
-        ids = ids or ids_of(front) if movers is None else None
-        print_csv(front_as_rows(front, ids) if movers is None else plans_as_rows(front, movers))
+        rows = (
+            plans_as_rows(front, kind) if kind.mover else front_as_rows(front, ids or ids_of(front))
+        )
+        print_csv(rows)
     elif not chart:
-        console.print(front_as_table(front) if movers is None else plans_as_table(front, movers))
+        console.print(plans_as_table(front, kind) if kind.mover else front_as_table(front))
     else:
         print_chart(front, console)
-        console.print(named_tours(front) if movers is None else plans_as_table(front, movers))
-        _print_line(_MORE_TOURS if movers is None else _MORE_PLANS)
+        console.print(plans_as_table(front, kind) if kind.mover else named_tours(front))
+        _print_line(_MORE_PLANS if kind.mover else _MORE_TOURS)
 
 
-def _draw(front: Any, plan: Plan, path: Path, noun: str) -> None:
+def _draw(front: Any, plan: Plan, path: Path, kind: Kind) -> None:
     """Draw a front of any kind into a file; if it has paths over a map, three of them as well."""
     from service.cli.plot import plot_front, plot_map
 
-    if plan.path != "/coverage" or (noun == "tours" and front.paths is None):
-        return plot_front(front, path, noun)
+    if plan.path != "/coverage" or (not kind.mover and front.paths is None):
+        return plot_front(front, path, f"{kind.item}s")
     names = [each.name for each in front.objectives or ()] or LABELS
     return plot_map(front, plan, path, named_points(front.lengths, names))
 

@@ -1,8 +1,7 @@
 """Make rows for CSV, tables and sentences from fronts, with names, units and ids."""
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from paretour import (
     Tour,
 )
 from paretour.choice import losses
+from paretour.kinds import Kind
 from rich.markup import escape
 from rich.table import Table
 
@@ -35,44 +35,6 @@ _TERMINATED: Mapping[str | None, str] = {
     "time_limit": "stopped at the time limit",
     "cancelled": "stopped before its time",
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class Movers:
-    """The movers on the routes of a plan: vehicles, or robots.
-
-    Args:
-        heading: The heading of the column with the mover of a route.
-        visited: The heading of the column with what a route visits, in order.
-        mover: Returns the mover of a route.
-        visits: Returns the visits of a route, in order.
-        counts: Functions that return a number of a plan, by the headings of further columns.
-    """
-
-    heading: str
-    visited: str
-    mover: Callable[[Any], str]
-    visits: Callable[[Any], Sequence[object]]
-    counts: dict[str, Callable[[Any], int]]
-
-
-VEHICLES = Movers(
-    heading="vehicle",
-    visited="stops",
-    mover=lambda route: route.vehicle,
-    visits=lambda route: route.stops,
-    counts={
-        "vehicles": lambda plan: len(plan.routes),
-        "left out": lambda plan: len(plan.unassigned),
-    },
-)
-ROBOTS = Movers(
-    heading="robot",
-    visited="places",
-    mover=lambda route: route.robot,
-    visits=lambda route: route.tour.tolist(),
-    counts={"robots": lambda plan: len(plan.routes)},
-)
 
 
 def labels_of(front: FrontOfAnyKind) -> tuple[str, ...]:
@@ -112,19 +74,19 @@ def _cities(tour: NDArray[np.int64], ids: Ids | None) -> str:
     return csv_text([stops_of(tour, ids)], delimiter=" ")
 
 
-def plans_as_rows(front: FrontOfPlans, movers: Movers) -> Rows:
+def plans_as_rows(front: FrontOfPlans, kind: Kind) -> Rows:
     """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops."""
     names = front.names
     of_routes = [f"route {name}" for name in names]
     flat = len(names) == OBJECTIVES
     standing = ("balance",) if flat else ()
-    rows: Rows = [("plan", *standing, *names, movers.heading, *of_routes, movers.visited)]
-    plans: Sequence[FleetPlan | RobotPlan] = front.plans
+    rows: Rows = [("plan", *standing, *names, kind.mover, *of_routes, kind.visits)]
+    plans: Sequence[Any] = front.plans
     for number, plan in enumerate(plans):
-        for route in plan.routes:
-            lengths = (*plan.lengths.tolist(), movers.mover(route), *route.lengths.tolist())
-            visits = csv_text([movers.visits(route)], delimiter=" ")
-            rows.append((number, *((plan.balance,) if flat else ()), *lengths, visits))
+        for route, (mover, visits) in zip(plan.routes, kind.routes(plan), strict=True):
+            lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
+            text = csv_text([visits], delimiter=" ")
+            rows.append((number, *((plan.balance,) if flat else ()), *lengths, text))
     return rows
 
 
@@ -148,18 +110,18 @@ def named_tours(front: Front) -> Table:
     return table
 
 
-def plans_as_table(front: FrontOfPlans, movers: Movers) -> Table:
+def plans_as_table(front: FrontOfPlans, kind: Kind) -> Table:
     """Return a table with a row for each plan."""
     flat = front.lengths.shape[1] == OBJECTIVES
     rows = []
     plans: Sequence[FleetPlan | RobotPlan] = front.plans
     for number, plan in enumerate(plans):
         lengths = (f"{length:.6g}" for length in plan.lengths)
-        counts = (str(count(plan)) for count in movers.counts.values())
+        counts = (str(count(plan)) for count in kind.counts.values())
         balance = (f"{plan.balance:.3f}",) if flat else ()
         rows.append((str(number), *balance, *lengths, *counts))
     standing = ("balance",) if flat else ()
-    return _table(("plan", *standing, *labels_of(front), *movers.counts), rows)
+    return _table(("plan", *standing, *labels_of(front), *kind.counts), rows)
 
 
 def actors_as_table(actors: Iterable[Actor]) -> Table:
@@ -245,10 +207,10 @@ def tour_summary(front: Front, tour: Tour) -> str:
     return f"balance {tour.balance:.3f}, angle {tour.angle:.2f}, {lengths}"
 
 
-def front_summary(front: FrontOfAnyKind, noun: str = "tours") -> str:
+def front_summary(front: FrontOfAnyKind, item: str = "tour") -> str:
     """Return a line about a front: its size, its hypervolume, and how its search ended."""
-    found = f"{len(front.lengths)} of {front.points} {noun} found"
-    bound = front.hypervolume_bound if isinstance(front, Front) else None
+    found = f"{len(front.lengths)} of {front.points} {item}s found"
+    bound = front.document.get("hypervolume_bound")
     most = "" if bound is None else f", and no front has more than {bound:.2%}"
     return f"{found}, hypervolume {front.hypervolume:.2%}{most}; {end_of_search(front.terminated)}"
 

@@ -5,9 +5,11 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
-from paretour import Front, FrontOfAnyKind, RobotFront
+from paretour import FrontOfAnyKind
 from paretour import Path as MapPath
+from paretour.kinds import Kind
 
 from service.cli.errors import UsageError
 
@@ -45,32 +47,32 @@ def write_path(path: MapPath | None, file: Path) -> None:
     file.write_text(_WRITERS[file.suffix](_located(path)), newline="", encoding="utf-8")
 
 
-def write_paths(front: FrontOfAnyKind, folder: Path) -> None:
+def write_paths(front: FrontOfAnyKind, kind: Kind, folder: Path) -> None:
     """Write all paths of a front into a folder, each as JSON and as CSV. Make the folder.
 
     Raises:
         UsageError: There are no paths, or no origin of their map.
     """
     folder.mkdir(exist_ok=True)
-    for name, path in _named_paths(front):
+    for name, path in _named_paths(front, kind):
         located = _located(path)
         for suffix, written in _WRITERS.items():
             (folder / f"{name}{suffix}").write_text(written(located), newline="", encoding="utf-8")
 
 
-def _named_paths(front: FrontOfAnyKind) -> Iterator[tuple[str, MapPath | None]]:
+def _named_paths(front: Any, kind: Kind) -> Iterator[tuple[str, MapPath | None]]:
     """Yield each path of a front and the name of its file, without the ending."""
-    if isinstance(front, Front):
-        yield from ((f"tour-{number}", tour.path) for number, tour in enumerate(front))
-    elif isinstance(front, RobotFront):
-        for number, plan in enumerate(front.plans):
-            named: Counter[str] = Counter()
-            for route in plan.routes:
-                name = _file_name(route.robot)
-                named[name] += 1
-                # Other ids may have the same letters; a dot is in no name.
-                further = f".{named[name]}" if named[name] > 1 else ""
-                yield f"plan-{number}-{name}{further}", route.path
+    for number, item in enumerate(front):
+        if not kind.mover:
+            yield f"tour-{number}", item.path
+            continue
+        named: Counter[str] = Counter()
+        for route, (mover, _) in zip(item.routes, kind.routes(item), strict=True):
+            name = _file_name(mover)
+            named[name] += 1
+            # Other ids may have the same letters; a dot is in no name.
+            further = f".{named[name]}" if named[name] > 1 else ""
+            yield f"plan-{number}-{name}{further}", route.path
 
 
 def _file_name(robot: str) -> str:

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from paretour import FleetFront, Front, FrontOfAnyKind, Refused
+from paretour import FrontOfAnyKind, Refused
 from paretour.display import shown
+from paretour.kinds import Routes, kind_of
 
 from service.objectives import OBJECTIVES
 
@@ -93,8 +94,8 @@ def _heading(front: FrontOfAnyKind, link: str | None) -> dict[str, Any]:
 
 def _summary(front: FrontOfAnyKind) -> str:
     count = f"{len(front)} {_noun(front)}{'' if len(front) == 1 else 's'}"
-    if isinstance(front, Front):
-        count += f" of {front.tours.shape[1]} stops"
+    if not kind_of(front.document).mover:
+        count += f" of {front.document['cities']} stops"
     if not len(front):
         return f"{count}, {front.status}"
     ends = zip(front.labels, front.lengths.min(axis=0), front.lengths.max(axis=0), strict=True)
@@ -167,7 +168,7 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
 
     The first `first` stops are left out.
     """
-    routes = _routes(front, number)
+    routes = kind_of(front.document).routes(front[number])
     pairs = [(route, stop) for route, (_, stops) in enumerate(routes) for stop in stops]
     rest = pairs[first:]
 
@@ -185,19 +186,9 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
     return text_of(count) if count > 0 else _fitted(document)
 
 
-def _routes(front: FrontOfAnyKind, number: int) -> list[tuple[str, Sequence[Any]]]:
-    """Return the routes of a plan: vehicle and stops. A tour is one route; its vehicle is ""."""
-    item = front[number]
-    if isinstance(front, Front):
-        return [("", front.stops[number] if front.stops else front.tours[number].tolist())]
-    if isinstance(front, FleetFront):
-        return [(route.vehicle, route.stops) for route in front.plans[number].routes]
-    return [(route.robot, route.tour.tolist()) for route in item.routes]  # type: ignore[union-attr]
-
-
 def _stops(
     front: FrontOfAnyKind,
-    routes: Sequence[tuple[str, Sequence[Any]]],
+    routes: Routes,
     kept: Sequence[tuple[int, Any]],
 ) -> Named:
     """Return the stops that have room, as a member of the document.
@@ -207,7 +198,7 @@ def _stops(
         routes: The vehicle and all stops of each route.
         kept: The stops that have room, each with the number of its route.
     """
-    if isinstance(front, Front):
+    if not kind_of(front.document).mover:
         return {"stops": [stop for _, stop in kept]}
     found: dict[int, list[Any]] = {}
     for route, stop in kept:
@@ -242,7 +233,7 @@ def _knee(front: FrontOfAnyKind) -> int:
 
 
 def _noun(front: FrontOfAnyKind) -> str:
-    return "tour" if isinstance(front, Front) else "plan"
+    return kind_of(front.document).item
 
 
 def _names(front: FrontOfAnyKind) -> list[str]:
