@@ -48,12 +48,8 @@ def front(  # noqa: PLR0913  a group of options, or one, each
     file: options.File,
     more: options.MoreFiles = None,
     *,
-    search: options.Search,
-    size: options.Size = None,
+    members: options.OfFront,
     angles: options.Angles = None,
-    network: options.Network,
-    augment: options.Augment = None,
-    ends: options.Ends,
     unrounded: options.Unrounded = False,
     output: options.OutputFormat,
     service: options.Service,
@@ -63,10 +59,13 @@ def front(  # noqa: PLR0913  a group of options, or one, each
     from service.cli.fronts import run_front
     from service.cli.plans import plan_cities
 
-    members = {**vars(search), **vars(network), **vars(ends), "size": size, "augment": augment}
     run_front(
         partial(
-            plan_cities, [file, *(more or ())], unrounded=unrounded, angles=angles, options=members
+            plan_cities,
+            [file, *(more or ())],
+            unrounded=unrounded,
+            angles=angles,
+            options=vars(members),
         ),
         backend_for(service),
         output,
@@ -80,12 +79,8 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     more: options.MoreFiles = None,
     *,
     choice: options.Ways,
-    search: options.Search,
-    network: options.Network,
-    augment: options.Augment = None,
-    ends: options.Ends,
+    members: options.OfTour,
     unrounded: options.Unrounded = False,
-    area: options.Area,
     cost_layers: options.CostLayers = None,
     path: options.PathFile = None,
     as_json: options.AsJson = False,
@@ -96,16 +91,14 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
     from service.cli.fronts import run_tour
     from service.cli.plans import plan_tour
 
-    of_search = {**vars(search), **vars(network), **vars(ends)}
     paths = None if path is None else True
-    members = {**of_search, **vars(area), "augment": augment, "paths": paths}
     run_tour(
         partial(
             plan_tour,
             [file, *(more or ())],
             cost_layers or (),
             unrounded=unrounded,
-            options=members,
+            options={**vars(members), "paths": paths},
         ),
         backend_for(service),
         choice,
@@ -116,19 +109,13 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
 
 @app.command()
 @with_groups
-def replan(  # noqa: PLR0913  a group of options, or one, each
+def replan(
     front_id: options.FrontId,
     changes: options.Changes = None,
     *,
     url: options.ServiceUrl,
     api_key: options.ApiKey = None,
-    done: options.Done = None,
-    position: options.Position = None,
-    remove: options.Remove = None,
-    min_kept: options.MinKept = None,
-    search: options.Search,
-    size: options.Size = None,
-    repairs: options.Repairs = None,
+    members: options.OfRest,
     output: options.OutputFormat,
 ) -> None:
     """Plan the rest of a tour when things have changed, from a front that a service has."""
@@ -136,10 +123,8 @@ def replan(  # noqa: PLR0913  a group of options, or one, each
     from service.cli.fronts import run_front
     from service.cli.plans import plan_rest
 
-    changed = {"position": position, "min_kept": min_kept}
-    members = {**changed, **vars(search), "size": size, "repairs": repairs}
     run_front(
-        partial(plan_rest, front_id, changes, {"done": done, "remove": remove}, members),
+        partial(plan_rest, front_id, changes, vars(members)),
         RemoteBackend(url, api_key),
         output,
     )
@@ -151,8 +136,7 @@ def fleet(
     file: options.FleetFile,
     vehicles: options.VehiclesFile = None,
     *,
-    search: options.Search,
-    size: options.Size = None,
+    members: options.OfFleet,
     output: options.OutputFormat,
     service: options.Service,
 ) -> None:
@@ -161,8 +145,7 @@ def fleet(
     from service.cli.fronts import run_front
     from service.cli.plans import plan_fleet
 
-    members = {**vars(search), "size": size}
-    run_front(partial(plan_fleet, file, vehicles, members), backend_for(service), output)
+    run_front(partial(plan_fleet, file, vehicles, vars(members)), backend_for(service), output)
 
 
 @app.command()
@@ -170,15 +153,10 @@ def fleet(
 def coverage(  # noqa: PLR0913  a group of options, or one, each
     file: options.MapFile,
     *,
-    area: options.Area,
+    members: options.OfMap,
     cost_layers: options.CostLayers = None,
     robots: options.Robots = None,
-    paths: options.Paths = None,
     path_folder: options.PathFolder = None,
-    search: options.Search,
-    size: options.Size = None,
-    network: options.Network,
-    ends: options.Ends,
     output: options.OutputFormat,
     service: options.Service,
 ) -> None:
@@ -187,12 +165,11 @@ def coverage(  # noqa: PLR0913  a group of options, or one, each
     from service.cli.fronts import run_front
     from service.cli.plans import plan_map
 
+    asked = vars(members)
     if path_folder is not None or output.plot is not None:  # the picture shows the paths of tours
-        paths = True
-    of_search = {**vars(search), **vars(network), **vars(ends)}
-    members = {**of_search, **vars(area), "paths": paths, "size": size}
+        asked = {**asked, "paths": True}
     run_front(
-        partial(plan_map, file, cost_layers or (), members, robots or ()),
+        partial(plan_map, file, cost_layers or (), asked, robots or ()),
         backend_for(service),
         output,
         path_folder,

@@ -4,15 +4,23 @@ The options that several commands have are groups: dataclasses with a field for 
 parameter of a command whose type is a group stands for all its options; see `with_groups`.
 """
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, is_dataclass
+from importlib.util import find_spec
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar, cast
 
 from typer import Argument, Option
 
 ANY = "any"  # --start at any city; in a request this is null
+Members = TypeVar("Members")
+_KINDS = {"number": float, "integer": int, "boolean": bool}  # others are text, which plans.py reads
+# Of each form, from the service's fields: `python -m tests.guide` writes them. To import the client
+# or the forms would take longer than all else that --help needs.
+_CLIENT = Path(cast(Any, find_spec("paretour")).origin).parent
+_OPTIONS = json.loads((_CLIENT / "members.json").read_bytes())["options"]
 
 File = Annotated[
     Path,
@@ -56,15 +64,6 @@ Angles = Annotated[
     str | None,
     Option(help="Angles in degrees for which the network builds tours, such as 10,45,80."),
 ]
-Size = Annotated[int | None, Option(help="The most tours or plans to return.", show_default="100")]
-Repairs = Annotated[
-    int | None,
-    Option(
-        help="How often the network repairs each of its tours.",
-        show_default="depends on the number of cities with --time-limit 0, else 0",
-    ),
-]
-Augment = Annotated[int | None, Option(help="Deprecated: without effect.", hidden=True)]
 Unrounded = Annotated[
     bool,
     Option(
@@ -98,10 +97,6 @@ CostLayers = Annotated[
         " an objective, which is named after its file.",
     ),
 ]
-Paths = Annotated[
-    bool | None,
-    Option("--paths", help="With --json, add the path of each tour, in cells and metres."),
-]
 PathFile = Annotated[
     Path | None,
     Option(
@@ -127,18 +122,6 @@ Changes = Annotated[
         " - is standard input."
     ),
 ]
-Done = Annotated[str | None, Option(help="The stops visited, in order, such as depot,order-17.")]
-Position = Annotated[
-    str | None,
-    Option(help="The stop from which the rest is planned.", show_default="the last stop done"),
-]
-Remove = Annotated[
-    str | None, Option(help="Stops that need no visit any more, with commas between.")
-]
-MinKept = Annotated[
-    float | None,
-    Option(min=0, max=1, help="Only return tours that keep this share of the driven tour's legs."),
-]
 ServiceUrl = Annotated[
     str, Option("--url", help="The URL of the service that has the front, such as localhost:8000.")
 ]
@@ -151,94 +134,67 @@ Workers = Annotated[
 ]
 
 
-def _closed(is_open: bool | None) -> bool | None:
-    """Return the member `closed` of a request: False with --open, else None."""
-    return None if is_open is None else not is_open
+def _contrary(given: bool | None) -> bool | None:
+    """Return the member of a request that a flag stands for: false where it was given."""
+    return None if given is None else not given
 
 
-@dataclass(frozen=True, kw_only=True)
-class Search:
-    """The search, as members of a request."""
-
-    time_limit: Annotated[
-        float | None,
-        Option(help="Seconds of search; 0 takes the tours of the network.", show_default="1.0"),
-    ] = None
-    seed: Annotated[
-        int | None, Option(help="The seed of all random choices.", show_default="0")
-    ] = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Network:
-    """The network that builds the first tours, as members of a request."""
-
-    actor: Annotated[
-        str | None, Option("--actor", help="The network, one of `paretour actors`.")
-    ] = None
-    repairs: Repairs = None
+def _option(made: Mapping[str, Any]) -> Any:
+    """Return the annotation of an option, which is None where it was not given."""
+    name, kind = made["name"], _KINDS.get(made["type"], str)
+    flag = made.get("flag", name).replace("_", "-")
+    hidden, is_flag = made.get("hidden", False), kind is bool
+    option = Option(
+        f"--{flag}",
+        help=made["help"],
+        callback=_contrary if "flag" in made else None,
+        hidden=hidden,
+        min=made.get("min"),
+        max=made.get("max"),
+        show_default=str(made["default"]) if "default" in made and not is_flag else True,
+    )
+    return Annotated[kind | None, option]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Ends:
-    """The members of a request that say where tours begin and end."""
+def _of_forms(
+    *forms: str, without: Collection[str] = ()
+) -> Callable[[type[Members]], type[Members]]:
+    """Return a decorator that makes a group of the options for forms, each of which has a name."""
+    made = {option["name"]: option for form in forms for option in _OPTIONS[form]}
 
-    closed: Annotated[
-        bool | None,
-        Option(
-            "--open",
-            callback=_closed,
-            help="Plan open routes, which do not return to their start.",
-        ),
-    ] = None
-    start: Annotated[
-        str | None,
-        Option(
-            "--start",
-            help="The city or place at which reported tours begin, by index or id; with --open also"
-            " `any`.",
-            show_default="0",
-        ),
-    ] = None
-    end: Annotated[
-        str | None,
-        Option(
-            "--end",
-            help="The city or place at which open routes end, by index or id.",
-            show_default="any",
-        ),
-    ] = None
+    def decorate(group: type[Members]) -> type[Members]:
+        names = [name for name in made if name not in without]
+        group.__annotations__ = {name: _option(made[name]) for name in names}
+        for name in names:
+            setattr(group, name, None)
+        return dataclass(frozen=True, kw_only=True)(group)
+
+    return decorate
 
 
-@dataclass(frozen=True, kw_only=True)
-class Area:
-    """The map and how a robot covers it, as members of a request."""
+@_of_forms("FrontRequest")
+class OfFront:
+    """The members of a request for a front; those that are not given are None."""
 
-    cell_size: Annotated[
-        float | None, Option(help="The width of a pixel in metres, if the map does not say it.")
-    ] = None
-    robot_radius: Annotated[float | None, Option(help="In metres.", show_default="0")] = None
-    spacing: Annotated[
-        float | None,
-        Option(
-            help="The distance of places in metres: one is visited in each square of this width."
-        ),
-    ] = None
-    detours: Annotated[
-        bool | None,
-        Option("--detours", help="Paths between places may give up metres for cost."),
-    ] = None
-    unknown: Annotated[
-        str | None,
-        Option(help="free: the robot may go through unknown cells.", show_default="blocked"),
-    ] = None
-    start_pose: Annotated[
-        str | None,
-        Option(help="Where the robot is: x and y in the frame of the map, such as -2.0,-0.5."),
-    ] = None
-    end_pose: Annotated[
-        str | None, Option(help="Where the robot must end, in the same form; with --open.")
-    ] = None
+
+@_of_forms("FrontRequest", "CoverageRequest", without=("size", "paths"))
+class OfTour:
+    """The members of a request for one tour, through cities or on a map."""
+
+
+@_of_forms("CoverageRequest")
+class OfMap:
+    """The members of a request about a map."""
+
+
+@_of_forms("FleetRequest")
+class OfFleet:
+    """The members of a request for a fleet."""
+
+
+@_of_forms("ReplanRequest", without=("actor",))
+class OfRest:
+    """The members of a request to replan."""
 
 
 @dataclass(frozen=True, kw_only=True)

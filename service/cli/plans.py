@@ -74,20 +74,17 @@ def plan_tour(
     return _cities(found, options), found.ids
 
 
-def plan_rest(
-    front: str, changes: Path | None, stops: Mapping[str, str | None], options: Options
-) -> tuple[Plan, None]:
+def plan_rest(front: str, changes: Path | None, options: Options) -> tuple[Plan, None]:
     """Return the plan for the rest of a front's way, and no ids.
 
     Args:
         front: The id of the front.
         changes: A file of members of the request, as JSON.
-        stops: Members that are stops, by their ids with commas between.
-        options: Further members.
+        options: Further members; lists of stops are their ids with commas between.
     """
     request = {} if changes is None else read_object(changes)
-    named = {name: text and text.split(",") for name, text in stops.items()}
-    given = _without_none({**named, **options})
+    given = _without_none(options)
+    given |= {name: given[name].split(",") for name in ("done", "remove") if name in given}
     return replan_plan(front, cast(ReplanRequest, {**request, **given})), None
 
 

@@ -17,6 +17,7 @@ from service.requests.fields import (
     CostRows,
     NonNegativeInteger,
     Number,
+    Offered,
     OneForBoth,
     Pair,
     PlanePoint,
@@ -24,6 +25,7 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    without_default,
 )
 from service.requests.limits import Limits, check_limits, lower_defaults
 from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_array, stacked
@@ -89,7 +91,9 @@ class RobotItem(StrictModel):
 class CoverageRequest(MapRequest):
     """Places on a map, the objectives between them, and the options of their front."""
 
-    robot_radius: Cost = Field(
+    robot_radius: Annotated[
+        Cost, Offered(option="", label="Robot\u2019s radius, m", initial="")
+    ] = Field(
         default=0.0,
         description="in metres; the centre of the robot stays farther than this from the centre of"
         " every obstacle cell",
@@ -97,17 +101,24 @@ class CoverageRequest(MapRequest):
     places: SomeItems[Cell] = Field(
         default_factory=list, description="row and column of each place to visit"
     )
-    spacing: PositiveNumber = Field(
+    spacing: Annotated[PositiveNumber, Offered(option="", label="Places apart, m")] = Field(
         default=0.0,
+        json_schema_extra=without_default,
         description="instead of places, in metres: places are laid out, one in each square of this"
         " side, over the region of the start pose or the largest free region",
     )
-    start_pose: RobotPose = Field(
+    start_pose: Annotated[
+        RobotPose,
+        Offered(option="Where the robot is: x and y in the frame of the map, such as -2.0,-0.5."),
+    ] = Field(
         default_factory=list,
         description="instead of start: x and y, and maybe yaw, of the robot in the frame of the"
         " map; the tours begin in this cell, which is a place of its own if none is there",
     )
-    end_pose: RobotPose = Field(
+    end_pose: Annotated[
+        RobotPose,
+        Offered(option="Where the robot must end, in the same form; with --open."),
+    ] = Field(
         default_factory=list,
         description="instead of end, where routes are open: the pose at which they end",
     )
@@ -125,7 +136,7 @@ class CoverageRequest(MapRequest):
         default_factory=list,
         description="or: one to three such layers, each an objective with a name",
     )
-    detours: bool = Field(
+    detours: Annotated[bool, Offered(option="", label="Longer paths where they cost less")] = Field(
         default=False,
         description="with cost layers: whether a path between two places may give up metres for"
         " cost; by default it is a shortest one",
@@ -133,7 +144,10 @@ class CoverageRequest(MapRequest):
     second_coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
     )
-    paths: bool = Field(
+    paths: Annotated[
+        bool,
+        Offered(option="With --json, add the path of each tour, in cells and metres."),
+    ] = Field(
         default=False, description="whether each tour, or each route of a robot, has its path"
     )
     robots: Annotated[

@@ -1,6 +1,6 @@
 """The types of fields in requests, and the fields that all requests share."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
@@ -16,7 +16,7 @@ from service.preferences import from_angles, spread
 # Between these, lengths and hypervolumes neither overflow nor vanish.
 LARGEST = 1e150
 SMALLEST = 1e-150
-_MOST_INTEGER = 2**31 - 1
+LARGEST_INTEGER = 2**31 - 1
 LONGEST_TEXT = 100  # characters of an id, a name or a unit
 # No control characters, line ends, marks of direction or byte order marks.
 PRINTABLE = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\ufeff]+$"
@@ -65,8 +65,8 @@ PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=F
 PlanePoint = Pair[Number]
 AsInteger = BeforeValidator(_integer)
 # AsInteger comes last: in front of the bounds it would hide them from the OpenAPI document.
-PositiveInteger = Annotated[int, Field(ge=1, le=_MOST_INTEGER), AsInteger]
-NonNegativeInteger = Annotated[int, Field(ge=0, le=_MOST_INTEGER), AsInteger]
+PositiveInteger = Annotated[int, Field(ge=1, le=LARGEST_INTEGER), AsInteger]
+NonNegativeInteger = Annotated[int, Field(ge=0, le=LARGEST_INTEGER), AsInteger]
 Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINTABLE)]
 # Only the type of the numbers is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
@@ -82,9 +82,35 @@ def _form_of_preferences(value: object) -> str:
     return "[directions]" if value and isinstance(value[0], list) else "[angles]"
 
 
+@dataclass(frozen=True, kw_only=True)
+class Offered:
+    """The annotation of a field that is offered beside HTTP.
+
+    Args:
+        option: The help on its option of the command, "" for its description; None for no option.
+        flag: The name of a flag that stands for false, in place of an option or an input.
+        label: The label of its input on the page; None for none.
+        more: Its rank among the inputs that few need, from 1; 0 if it is none of them.
+        initial: What is in the input at first, if it is not the default.
+        agents: Whether the tools of agents list it.
+    """
+
+    option: str | None = None
+    flag: str | None = None
+    label: str | None = None
+    more: int = 0
+    initial: str | None = None
+    agents: bool = False
+
+
 def optional(description: str) -> Any:
     """Return a field that is None where it was not given."""
     return Field(default=None, description=description)
+
+
+def without_default(schema: dict[str, Any]) -> None:
+    """Leave a default that depends on other fields out of the JSON schema of a field."""
+    del schema["default"]
 
 
 class StrictModel(BaseModel):
@@ -100,13 +126,17 @@ class StrictModel(BaseModel):
 class SearchFields(StrictModel):
     """The fields of every request: how long to plan, and how much to return."""
 
-    time_limit: float = Field(
+    time_limit: Annotated[
+        float, Offered(option="", label="Seconds of planning", initial="3", agents=True)
+    ] = Field(
         default=1.0,
         ge=0,
         allow_inf_nan=False,
         description="seconds of all planning, at most; 0 asks for what the network builds alone",
     )
-    size: PositiveInteger = Field(default=100, description="the most tours, or plans, to return")
+    size: Annotated[PositiveInteger, Offered(option="", label="Tours")] = Field(
+        default=100, description="the most tours, or plans, to return"
+    )
     reference_point: list[PositiveNumber] = Field(
         default_factory=list,
         min_length=OBJECTIVES,
@@ -114,7 +144,7 @@ class SearchFields(StrictModel):
         description="the reference point of the hypervolume; by default, for tours the number of"
         " cities times the scale, for plans lengths above those of all sensible plans",
     )
-    seed: NonNegativeInteger = Field(
+    seed: Annotated[NonNegativeInteger, Offered(option="", label="Seed", more=2)] = Field(
         default=0, description="the seed of everything random in the search"
     )
 
@@ -145,15 +175,18 @@ class PlanFields(SearchFields):
         | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")]
         | Annotated[list[Direction], Field(min_length=1, fail_fast=True), Tag("[directions]")],
         Discriminator(_form_of_preferences),
+        Offered(label="Trade-offs for the network", more=1),
     ] = Field(
         default=100,
+        json_schema_extra=without_default,
         description="the directions along which the network builds tours: the number of evenly"
         " spread ones; of two objectives angles in degrees; or for each a number for every"
         " objective. By default 100 if time_limit is 0, else as many as fit into a tenth of it,"
         " maybe none",
     )
-    repairs: NonNegativeInteger = Field(
-        default=_MOST_INTEGER,
+    repairs: Annotated[NonNegativeInteger, Offered(option="")] = Field(
+        default=LARGEST_INTEGER,
+        json_schema_extra=without_default,
         description="how often the network cuts each of its tours open and joins it again, which"
         " never makes the tour worse; tours found on the way count for the front, too. By"
         " default 0 with a time limit, else as many as are worth their time: with"
@@ -163,12 +196,15 @@ class PlanFields(SearchFields):
     arrivals: bool = Field(
         default=False, description="whether each tour comes with all its lengths up to each stop"
     )
-    bound: bool = Field(
+    bound: Annotated[
+        bool, Offered(label="Say how far from the best possible it may be", more=1)
+    ] = Field(
         default=False,
         description="whether to compute, in up to 5 s, a bound that no hypervolume exceeds",
     )
-    actor: str = Field(
+    actor: Annotated[str, Offered(option="The network, one of `paretour actors`.")] = Field(
         default="",
+        json_schema_extra=without_default,
         description="the network that builds the tours; by default pa-one for coordinates and"
         " pa-one-matrix for matrices",
     )
@@ -214,15 +250,35 @@ class PlanFields(SearchFields):
         )
 
 
+OPEN = Offered(
+    option="Plan open routes, which do not return to their start.",
+    flag="open",
+    label="Open route: no way back to the start",
+    agents=True,
+)
+AT_START = Offered(
+    option="The city or place at which reported tours begin, by index or id; with --open also"
+    " `any`.",
+    label="Start",
+    initial="1",
+    agents=True,
+)
+AT_END = Offered(
+    option="The city or place at which open routes end, by index or id; by default any.",
+    label="End elsewhere",
+    agents=True,
+)
+
+
 class PlanRequest(PlanFields):
     """A request for a front of a new instance: adds the ends of its tours, and initial tours."""
 
-    closed: bool = Field(
+    closed: Annotated[bool, OPEN] = Field(
         default=True,
         description="whether tours return to where they began; if not, they are open routes",
     )
-    start: NonNegativeInteger | None = Field(default=0, description=START)
-    end: NonNegativeInteger | None = Field(default=None, description=END)
+    start: Annotated[NonNegativeInteger | None, AT_START] = Field(default=0, description=START)
+    end: Annotated[NonNegativeInteger | None, AT_END] = Field(default=None, description=END)
     initial_tours: SomeItems[Items[NonNegativeInteger]] = Field(
         default_factory=list, description="tours that the front must dominate or equal"
     )

@@ -13,6 +13,8 @@ from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.arrays import array_field, check_costs, stack_matrices
 from service.requests.day_fields import DayFields, DayObjectiveItem, StopItem, read_hours
 from service.requests.fields import (
+    AT_END,
+    AT_START,
     END,
     GEOMETRY,
     NO_WAY,
@@ -22,6 +24,7 @@ from service.requests.fields import (
     Geometry,
     Items,
     Number,
+    Offered,
     OneEach,
     PlanRequest,
     SomeItems,
@@ -65,36 +68,38 @@ class FrontRequest(DayFields, PlanRequest):
     """
 
     # An empty default means that the field was not given: no caller can give an empty array.
-    coordinates: SomeItems[City] = Field(
+    coordinates: Annotated[SomeItems[City], Offered(agents=True)] = Field(
         default_factory=list,
         description="a row for each city: for each objective x and y in its plane",
     )
-    matrices: Matrices = Field(
+    matrices: Annotated[Matrices, Offered(agents=True)] = Field(
         default_factory=lambda: np.empty((OBJECTIVES, 0, 0)),
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: SomeItems[StopItem] = Field(
+    stops: Annotated[SomeItems[StopItem], Offered(agents=True)] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
-    objectives: OneEach[DayObjectiveItem] = Field(
+    objectives: Annotated[OneEach[DayObjectiveItem], Offered(agents=True)] = Field(
         default_factory=list, description="two to four, each with the costs between the stops"
     )
     # In a checked request these hold only indexes, as in every PlanRequest.
-    start: StopReference | None = Field(  # type: ignore[assignment]
+    start: Annotated[StopReference | None, AT_START] = Field(  # type: ignore[assignment]
         default=0, description=f"{START}; by index or id"
     )
-    end: StopReference | None = Field(  # type: ignore[assignment]
+    end: Annotated[StopReference | None, AT_END] = Field(  # type: ignore[assignment]
         default=None, description=f"{END}; by index or id"
     )
     initial_tours: SomeItems[Items[StopReference]] = Field(  # type: ignore[assignment]
         default_factory=list,
         description="tours that the front must dominate or equal, by indexes or ids",
     )
-    augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger] = Field(
-        default=1,
-        description="without effect; repairs find better tours in less time",
-        json_schema_extra={"deprecated": True},
+    augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger, Offered(option="")] = (
+        Field(
+            default=1,
+            description="without effect; repairs find better tours in less time",
+            json_schema_extra={"deprecated": True},
+        )
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 

@@ -163,8 +163,6 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> Schema:
     whole = limited_schema(CoverageRequest, limits, actors)
     schema: Schema = _inlined(whole, whole.pop("$defs"))
     fields = schema["properties"]
-    for name in ("cell_size", "mode", "free_thresh", "spacing"):
-        del fields[name]["default"]
     most_places = limits.most_places(shared=False)
     fields["places"]["maxItems"] = most_places
     fields["grid"]["items"]["items"] = {"enum": [0, 1]}
@@ -211,8 +209,6 @@ def limited_schema(model: type[PlanFields], limits: Limits, actors: Iterable[str
         each["maxItems"] = limits.preferences
     fields["repairs"]["maximum"] = limits.repairs
     fields["actor"]["enum"] = sorted(actors)
-    for name in ("preferences", "repairs", "actor"):
-        del fields[name]["default"]  # it depends on the time limit, or on the kind of instance
     for name in {"start", "end"}.intersection(fields):
         reference, _ = fields[name]["anyOf"]  # the other is null
         index, *_ = reference.get("oneOf", [reference])

@@ -6,14 +6,14 @@ Those are parts of the guide (tree, error codes, figures) and the types and the 
 from tests.guide.codes import PAGE as CODES_PAGE
 from tests.guide.codes import codes
 from tests.guide.figures import figures
-from tests.guide.members import SENTENCES, TYPES, sentence_file, type_file
+from tests.guide.members import JSON, TYPES, json_file, type_file
 from tests.guide.pages import with_part
 from tests.guide.tree import PAGE as TREE_PAGE
 from tests.guide.tree import tree
 
 TREE_PAGE.write_text(with_part(TREE_PAGE, "tree", tree()))
 CODES_PAGE.write_text(with_part(CODES_PAGE, "codes", codes()))
-SENTENCES.write_text(sentence_file())
+JSON.write_text(json_file())
 TYPES.write_text(type_file())
 for name, (page, made) in figures().items():
     page.write_text(with_part(page, name, made))

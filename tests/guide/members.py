@@ -1,4 +1,4 @@
-"""The members of requests in the client, made of the service's forms: their types and sentences."""
+"""The members of requests for the client and the command, made of the service's forms."""
 
 import json
 import textwrap
@@ -10,11 +10,12 @@ from pydantic import BaseModel
 from service.requests.coverage import CoverageRequest
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
+from service.requests.offered import options
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from tests.guide.pages import ROOT
 
-SENTENCES = ROOT / "service/client/paretour/members.json"
+JSON = ROOT / "service/client/paretour/members.json"
 TYPES = ROOT / "service/client/paretour/members.py"
 FORMS: Mapping[str, type[BaseModel]] = {
     "FrontRequest": FrontRequest,
@@ -35,7 +36,7 @@ _PLAIN = {
 _SHORT = 3  # names in a Literal, which fit into a line
 _NUMBERS = {"int", "float", "ArrayLike", "Costs"}  # which an array of any library may hold
 _ROWS = "Sequence[Sequence[float | None] | ArrayLike] | ArrayLike"
-_HEAD = '''\
+_HEAD = f'''\
 """The members of requests, as types of dictionaries: made of the service's forms.
 
 `python -m tests.guide` writes this module. Types are calls where a member is called `from`.
@@ -46,6 +47,8 @@ from typing import Any, Literal, Required, TypedDict
 
 from numpy.typing import ArrayLike
 from paretour.frames import Costs, Frame
+
+DEFAULT_TIME_LIMIT = {FrontRequest.model_fields["time_limit"].default}  # seconds
 '''
 _WRAPPER = textwrap.TextWrapper(width=84, subsequent_indent="    ", break_on_hyphens=False)
 
@@ -56,8 +59,8 @@ def sentences(request: str) -> dict[str, str]:
     return dict(_described(schema, schema["$defs"]))
 
 
-def sentence_file() -> str:
-    """Return the lines of the help on each request as JSON, by the name of its type."""
+def json_file() -> str:
+    """Return the lines of the help on each request, and the command's options for it, as JSON."""
     lines = {
         request: [
             line
@@ -66,7 +69,8 @@ def sentence_file() -> str:
         ]
         for request in FORMS
     }
-    return json.dumps(lines, indent=1, ensure_ascii=False) + "\n"
+    made = {"help": lines, "options": {request: options(FORMS[request]) for request in FORMS}}
+    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
 
 
 def type_file() -> str:

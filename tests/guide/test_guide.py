@@ -15,7 +15,7 @@ from service.errors import PROBLEMS
 from service.settings import Settings
 from tests.guide.codes import codes
 from tests.guide.figures import figures
-from tests.guide.members import SENTENCES, TYPES, sentence_file, type_file
+from tests.guide.members import JSON, TYPES, json_file, type_file
 from tests.guide.pages import (
     GUIDE,
     PAGES,
@@ -274,7 +274,7 @@ def test_the_table_of_codes_is_that_of_the_service() -> None:
 
 def test_the_client_has_the_members_of_the_forms() -> None:
     assert TYPES.read_text() == type_file(), "run python -m tests.guide"
-    assert SENTENCES.read_text() == sentence_file(), "run python -m tests.guide"
+    assert JSON.read_text() == json_file(), "run python -m tests.guide"
 
 
 def test_every_setting_is_described() -> None:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 # The lines of the help on each type of request: `python -m tests.guide` writes them.
-_HELP = json.loads(get_data("paretour", "members.json") or b"")
+_HELP = json.loads(get_data("paretour", "members.json") or b"")["help"]
 
 
 def explaining(*requests: type) -> Callable[[Function], Function]:

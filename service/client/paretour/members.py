@@ -9,6 +9,8 @@ from typing import Any, Literal, Required, TypedDict
 from numpy.typing import ArrayLike
 from paretour.frames import Costs, Frame
 
+DEFAULT_TIME_LIMIT = 1.0  # seconds
+
 
 class DepartureRangeRequest(TypedDict, total=False):
     """The times at which a tour may begin."""

@@ -18,11 +18,13 @@ from service.requests.fields import (
     ArrayRows,
     AsInteger,
     Number,
+    Offered,
     PlanRequest,
     PositiveNumber,
     Share,
     StrictModel,
     Text,
+    without_default,
 )
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
@@ -108,8 +110,10 @@ class MapRequest(PlanRequest):
         default_factory=_no_occupancy_grid,
         description="or: a message nav_msgs/OccupancyGrid, which brings cell_size and origin",
     )
-    cell_size: PositiveNumber = Field(
-        default=0.0, description="side of a cell, in metres; resolution in a map.yaml"
+    cell_size: Annotated[PositiveNumber, Offered(option="", label="Metres a cell")] = Field(
+        default=0.0,
+        description="side of a cell, in metres; resolution in a map.yaml",
+        json_schema_extra=without_default,
     )
     origin: _Pose = Field(
         default_factory=list,
@@ -117,7 +121,9 @@ class MapRequest(PlanRequest):
         " radians counterclockwise; with it paths have points, and there may be poses",
     )
     mode: Mode = Field(
-        default="trinary", description="how map_server reads a picture; needs both thresholds"
+        default="trinary",
+        description="how map_server reads a picture; needs both thresholds",
+        json_schema_extra=without_default,
     )
     negate: bool = Field(default=False, description="whether in a picture black is free")
     occupied_thresh: Share = Field(
@@ -125,6 +131,7 @@ class MapRequest(PlanRequest):
     )
     free_thresh: Share = Field(
         default=0.0,
+        json_schema_extra=without_default,
         description="a pixel lighter than this is free, those between are unknown; without it"
         " every pixel that is not an obstacle is free, except grey 205, which is unknown",
     )
@@ -133,7 +140,7 @@ class MapRequest(PlanRequest):
         description="occupancy, 0 to 100, from which a cell is an obstacle: of an occupancy_grid,"
         " and of a picture in mode scale or raw",
     )
-    unknown: Literal["blocked", "free"] = Field(
+    unknown: Annotated[Literal["blocked", "free"], Offered(option="")] = Field(
         default="blocked", description="whether unknown cells are free for the robot, or blocked"
     )
 

@@ -13,6 +13,7 @@ from service.requests.fields import (
     Cost,
     Geometry,
     Items,
+    Offered,
     OneEach,
     PlanePoint,
     PlanFields,
@@ -114,22 +115,30 @@ class ReplanRequest(PlanFields):
     are named by their indexes, which are their ids from then on.
     """
 
-    done: _References = Field(
-        default_factory=list, description="the stops that were visited, in order"
-    )
-    position: Position | None = Field(
+    done: Annotated[
+        _References,
+        Offered(option="The stops visited, in order, such as depot,order-17.", agents=True),
+    ] = Field(default_factory=list, description="the stops that were visited, in order")
+    position: Annotated[
+        Position | None,
+        Offered(
+            option="The stop from which the rest is planned; by default the last stop done.",
+            agents=True,
+        ),
+    ] = Field(
         default=None,
         description="where the way goes on: a stop, or a new place in the form of an added stop; by"
         " default the last stop that is done",
     )
-    add: Items[_Added] = Field(
+    add: Annotated[Items[_Added], Offered(agents=True)] = Field(
         default_factory=list,
         description="more stops to visit; on a map row and column of each place",
     )
-    remove: _References = Field(
-        default_factory=list, description="stops that are no longer visited"
-    )
-    costs: Items[CostEntry] = Field(
+    remove: Annotated[
+        _References,
+        Offered(option="Stops that need no visit any more, with commas between.", agents=True),
+    ] = Field(default_factory=list, description="stops that are no longer visited")
+    costs: Annotated[Items[CostEntry], Offered(agents=True)] = Field(
         default_factory=list, description="single costs that have changed"
     )
     objectives: OneEach[DayObjectiveItem] = Field(
@@ -138,16 +147,16 @@ class ReplanRequest(PlanFields):
         " costs between the stops of the front, then those of `add`, then `position` if that"
         " is a place",
     )
-    now: TimeOfDay | None = optional(
+    now: Annotated[TimeOfDay | None, Offered(agents=True)] = optional(
         "where costs change over the day: the second of the day at which the way goes on"
     )
-    tour: _References = Field(
+    tour: Annotated[_References, Offered(agents=True)] = Field(
         default_factory=list,
         description="the tour that is being driven, with all stops of the front; by default the"
         " front's knee",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
-    min_kept: Share = Field(
+    min_kept: Annotated[Share, Offered(option="", agents=True)] = Field(
         default=0.0,
         description="return only tours that keep this share of the driven tour's remaining legs",
     )
