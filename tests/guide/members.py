@@ -1,4 +1,4 @@
-"""The members of requests for the client and the command, made of the service's forms."""
+"""The members of requests for the client, the command and the page, made of the service's forms."""
 
 import json
 import textwrap
@@ -10,9 +10,9 @@ from pydantic import BaseModel
 from service.requests.coverage import CoverageRequest
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
-from service.requests.offered import options
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from tests.guide.offered import inputs, options
 from tests.guide.pages import ROOT
 
 JSON = ROOT / "service/client/paretour/members.json"
@@ -60,7 +60,7 @@ def sentences(request: str) -> dict[str, str]:
 
 
 def json_file() -> str:
-    """Return the lines of the help on each request, and the command's options for it, as JSON."""
+    """Return the help on each request, the command's options and the page's inputs as JSON."""
     lines = {
         request: [
             line
@@ -69,7 +69,8 @@ def json_file() -> str:
         ]
         for request in FORMS
     }
-    made = {"help": lines, "options": {request: options(FORMS[request]) for request in FORMS}}
+    of_command = {request: options(FORMS[request]) for request in FORMS}
+    made = {"help": lines, "options": of_command, "inputs": inputs()}
     return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
 
 

@@ -5,6 +5,7 @@ all, so that a browser asks for them once, and not again at each visit. Its own 
 without their comments, which are a fifth of their bytes, and with their line numbers.
 """
 
+import json
 import os
 import re
 from collections.abc import Awaitable, Callable
@@ -12,6 +13,7 @@ from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 
+import paretour
 from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
@@ -23,6 +25,8 @@ from starlette.types import Scope
 _SERVICE = Path(__file__).parents[2]
 _PAGE = _SERVICE / "page"
 _VENDORED = _PAGE / "vendor"
+_MEMBERS = Path(paretour.__file__).with_name("members.json")
+_FIELDS = '<script id="fields-of-requests" type="application/json">'  # where the inputs come
 _REFERENCE = _SERVICE / "reference"
 _EXAMPLES = _SERVICE / "examples"
 _COMPRESSED = [Middleware(GZipMiddleware)]  # plain text, which anybody may read
@@ -75,13 +79,15 @@ class _Page:
         self._version = _version()
 
     async def index(self, request: Request) -> Response:
-        """Answer with `index.html`, in which the addresses of files have the present version."""
+        """Answer with `index.html`, with the version of its files and the fields of requests."""
         self._version = _version()
         document = (_PAGE / "index.html").read_text(encoding="utf-8")
         headers = {**REVALIDATE, "ETag": f'"{self._version}"'}
         if headers["ETag"] in request.headers.get("If-None-Match", ""):
             return Response(status_code=304, headers=headers)
+        inputs = json.dumps(json.loads(_MEMBERS.read_bytes())["inputs"])
         versioned = document.replace('="page/', f'="page/{self._version}/')
+        versioned = versioned.replace(_FIELDS, _FIELDS + inputs)
         return HTMLResponse(versioned, headers=headers)
 
     async def file(self, request: Request) -> Response:
@@ -119,11 +125,12 @@ class _PageFiles(StaticFiles):
 
 def _version() -> str:
     """Return the version of the page. A developer changes its files while the service runs."""
-    stats = ((path, path.stat()) for path in sorted(_PAGE.rglob("*")) if path.is_file())
+    paths = [path for path in sorted(_PAGE.rglob("*")) if path.is_file()]
+    stats = ((path, path.stat()) for path in [*paths, _MEMBERS])
     return _digest(tuple((path, stat.st_mtime_ns, stat.st_size) for path, stat in stats))
 
 
 @lru_cache(maxsize=1)
 def _digest(files: tuple[tuple[Path, int, int], ...]) -> str:
-    contents = (str(path.relative_to(_PAGE)).encode() + path.read_bytes() for path, _, _ in files)
+    contents = (os.path.relpath(path, _PAGE).encode() + path.read_bytes() for path, _, _ in files)
     return _VERSION + sha256(b"".join(contents)).hexdigest()[:16]

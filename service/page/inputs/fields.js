@@ -3,26 +3,16 @@
 import { poseIn } from "./map_ends.js";
 import { nameOf, stopNamed } from "./places.js";
 
-// Requests for plans have those that say so, others have all; those of coverage stand where there is a grid.
-const FIELDS = [
-  { name: "cell_size", label: "Metres a cell", where: "coverage", plans: true },
-  { name: "robot_radius", label: "Robot’s radius, m", where: "coverage", plans: true },
-  { name: "spacing", label: "Places apart, m", where: "coverage", plans: true },
-  { name: "detours", label: "Longer paths where they cost less", where: "coverage", box: true },
-  { name: "time_limit", label: "Seconds of planning", value: "3", plans: true },
-  { name: "size", label: "Tours", value: "100", plans: true },
-  { name: "start", label: "Start", value: "1", stop: true },
-  { name: "end", label: "End elsewhere", stop: true },
-  { name: "open", label: "Open route: no way back to the start", box: true },
-  { name: "preferences", label: "Trade-offs for the network", where: "more" },
-  { name: "seed", label: "Seed", value: "0", where: "more", plans: true },
-  { name: "bound", label: "Say how far from the best possible it may be", where: "more", box: true },
-];
+const ENDS = ["start", "end"];
+
+// From the service's own fields. Requests for plans have those that say so, others have all; those of coverage stand where there is a grid.
+const FIELDS = JSON.parse(document.querySelector("#fields-of-requests").textContent);
+
+const BOXES = FIELDS.filter(({ name, box }) => box && name !== "open").map(({ name }) => name);
 
 /** The names of the settings of how to plan: all fields but the ends of tours. */
-export const SETTINGS = FIELDS.filter(({ stop }) => !stop).map(({ name }) => name);
+export const SETTINGS = FIELDS.map(({ name }) => name).filter((name) => !ENDS.includes(name));
 
-const ENDS = ["start", "end"];
 const OFFERED = 1000; // the most names in a list that a browser opens without delay
 
 export class Fields {
@@ -49,9 +39,9 @@ export class Fields {
     const filled = texts.filter(([, text]) => text);
     const given = filled.map(([name, text]) => this.#member(name, text));
     if (this.#plans) return Object.fromEntries(given);
-    const bound = this.#form.bound.checked ? { bound: true } : {};
-    const detours = this.#layered && this.#form.detours.checked ? { detours: true } : {};
-    return { ...Object.fromEntries(given), ...bound, ...detours, ...this.#ends(filled.map(([name]) => name)) };
+    const ticked = BOXES.filter((name) => this.#form[name].checked && (name !== "detours" || this.#layered));
+    const ends = this.#ends(filled.map(([name]) => name));
+    return { ...Object.fromEntries([...given, ...ticked.map((name) => [name, true])]), ...ends };
   }
 
   /** The filled-in values but for the ends of tours. */
@@ -104,8 +94,8 @@ export class Fields {
     if (!this.#plans) this.#takeRoute(rest);
     this.#forget();
     for (const field of FIELDS) {
-      const { name, where, box, stop } = field;
-      if (box || stop || !this.#has(field)) continue;
+      const { name, where, box } = field;
+      if (box || ENDS.includes(name) || !this.#has(field)) continue;
       if (where === "coverage") this.#form[name].value = "";
       // What is there and no number, as a list of angles, is left as it is, unless one is typed.
       if (request[name] != null) this.#form[name].value = "";
@@ -118,7 +108,7 @@ export class Fields {
 
   /** Puts back what the request before brought, as an example its seed. What was typed since stays. */
   #forget() {
-    for (const { name, value = "" } of FIELDS) {
+    for (const { name, value } of FIELDS) {
       if (this.#form[name].value === this.#brought[name]) this.#form[name].value = value;
     }
     this.#brought = {};
@@ -137,15 +127,14 @@ export class Fields {
     return (plans || !this.#plans) && (where !== "coverage" || !this.#coverage.hidden);
   }
 
-  /** Takes the bound, the detours and the ends, each an index, an id, or missing; a null start may be anywhere. */
+  /** Takes what is ticked and the ends, each an index, an id, or missing; a null start may be anywhere. */
   #takeRoute(rest) {
     this.#form.open.checked = rest.closed === false;
-    this.#form.bound.checked = rest.bound === true;
-    this.#form.detours.checked = rest.detours === true;
+    for (const name of BOXES) this.#form[name].checked = rest[name] === true;
     const shown = (stop) => (typeof stop === "number" ? nameOf(this.#ids, stop) : (stop ?? ""));
     this.#form.start.value = rest.start_pose?.join(", ") ?? (rest.start === null ? "" : shown(rest.start ?? 0));
     this.#form.end.value = rest.end_pose?.join(", ") ?? shown(rest.end);
-    for (const name of ["closed", "bound", "detours", ...ENDS, "start_pose", "end_pose"]) delete rest[name];
+    for (const name of ["closed", ...BOXES, ...ENDS, "start_pose", "end_pose"]) delete rest[name];
   }
 }
 
@@ -161,12 +150,12 @@ function madeBox({ name, label }) {
   return caption;
 }
 
-function made({ name, label, value = "", stop = false }) {
+function made({ name, label, value }) {
   const field = document.createElement("div");
   field.className = "field";
   const caption = Object.assign(document.createElement("label"), { htmlFor: name, textContent: label });
   const input = Object.assign(document.createElement("input"), { id: name, name, value });
-  if (stop) input.setAttribute("list", "stop-names");
+  if (ENDS.includes(name)) input.setAttribute("list", "stop-names");
   else input.inputMode = "decimal";
   input.autocomplete = "off";
   input.setAttribute("aria-describedby", `${name}-fault`);

@@ -1,4 +1,4 @@
-"""The fields of requests as the command, the page and agents offer them, beside HTTP.
+"""The fields of requests as the command and the page offer them, beside HTTP.
 
 The annotation `Offered` of a field says where. Its name, type, bounds, default and sentence are
 those of the form.
@@ -15,7 +15,7 @@ from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 
 _EXTREMES = (SMALLEST, LARGEST, LARGEST_INTEGER)  # bounds that nobody needs to read
-_PLACES = ("coverage", "fields", "more")  # of inputs on the page
+_PLACES = ("coverage", "", "more")  # of inputs on the page
 
 
 def offered(form: type[BaseModel]) -> Iterator[tuple[str, Offered, dict[str, Any]]]:
@@ -56,21 +56,22 @@ def inputs() -> list[dict[str, Any]]:
     of_fronts = list(offered(FrontRequest))
     known = {name for name, *_ in of_fronts}
     of_maps = [each for each in offered(CoverageRequest) if each[0] not in known]
-    found = [_input(*each, of_map=True) for each in of_maps if each[1].label is not None]
-    found += [_input(*each, of_map=False) for each in of_fronts if each[1].label is not None]
-    return sorted(found, key=lambda row: (_PLACES.index(row["where"]), row["box"], row["rank"]))
+    shown = [each for each in [*of_maps, *of_fronts] if each[1].label is not None]
+    shown.sort(key=lambda each: each[1].more)
+    found = [_input(*each, of_map=each[0] not in known) for each in shown]
+    return sorted(found, key=lambda row: (_PLACES.index(row["where"]), row["box"]))
 
 
 def _input(name: str, shown: Offered, schema: dict[str, Any], of_map: bool) -> dict[str, Any]:
-    default = schema.get("default")
+    box = schema.get("type") == "boolean"
+    default = None if box else schema.get("default")
     value = "" if default is None else str(default)
     of_plans = name in (CoverageRequest if of_map else FleetRequest).model_fields
     return {
         "name": shown.flag or name,
         "label": shown.label,
-        "where": "coverage" if of_map else "more" if shown.more else "fields",
-        "rank": shown.more,
+        "where": "coverage" if of_map else "more" if shown.more else "",
         "value": value if shown.initial is None else shown.initial,
-        "box": schema.get("type") == "boolean",
+        "box": box,
         "plans": of_plans and name not in OF_ONE_ROBOT,
     }
