@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 from service.jit import allocating, inlined
 from service.objectives import OBJECTIVES
 from service.search.front_points import FrontPoints
-from service.search.several.greedy_choice import MOST_COMPARED, choose_next, make_choice
+from service.search.several.exchanges import CLOSE, exchange, make_places
+from service.search.several.greedy_choice import (
+    MOST_COMPARED,
+    Choice,
+    choose_next,
+    make_choice,
+)
 from service.search.thinning import divided, evenly
 
 Array = NDArray[np.float64]
@@ -19,13 +25,17 @@ Stop = Callable[[], bool]
 
 SHORTLY = 0.02  # seconds for the choice of a front that is reported on the way
 _LEAST_SECONDS, _LEAST_SHARE, _SHARE = 0.05, 0.2, 0.045  # of the time limit, for the choice
-# Seconds on a core of an EPYC, rather too many. For each pair of a point and a choice:
+# Seconds on a core of an EPYC, rather too many. Two objectives: for a point and a choice.
 _A_PAIR = 1.5e-8
-# For a look at one of several objectives: at all, and by a power of the number chosen already.
-_A_LOOK, _A_CHOSEN = 1.5e-7, {3: (2.5e-9, 1.0), 4: (4.5e-9, 1.22)}
+# Several objectives: for each point, and for a look at one, both times a power of the choices.
+_A_POINT, _A_LOOK = {3: (1.9e-7, 0.62), 4: (2e-7, 0.67)}, {3: (2.5e-8, 0.75), 4: (7e-8, 0.68)}
+_DIVIDING = 4e-7  # for each point: to divide the points into cells, and to find those close by
+_MOST_DIVIDING = 0.4  # of the seconds: where there are more points, some are left out evenly
+_SEEKING = 1e-9  # for each point: to find those that are close to one
+_FIRST = 0.5  # of the seconds, for choosing one after another where that takes too long
+_PASSES = 3  # times that each chosen point is exchanged, at most
 _PATIENCE = 4.0  # times as long as it may take, the choice goes on
 _LESS = 0.3  # of the seconds, with which it begins again where the machine is too slow
-_LOOKS = 1.5  # at each point, where as many points are chosen as the number e; with the logarithm
 _COLLECTING = 1e-6  # for each point found: to sort the archive, and to copy the points
 
 
@@ -49,8 +59,12 @@ def selection_seconds(size: int, points: int, objectives: int, seconds: float) -
         objectives: The number of objectives.
         seconds: The most that the choice may take.
     """
-    choosing = 0.0 if points <= size else min(seconds, points * _for_each(size, objectives))
-    return choosing + _COLLECTING * points
+    if points <= size:
+        return _COLLECTING * points
+    choosing = points * _for_each(size, objectives)
+    if objectives > OBJECTIVES:
+        choosing += _DIVIDING * points + _PASSES * size * _an_exchange(size, points, objectives)
+    return min(seconds, choosing) + _COLLECTING * points
 
 
 def best_subset(
@@ -60,10 +74,12 @@ def best_subset(
 
     Of two objectives exact (Bringmann, Friedrich and Klitzke, 2014). Of more, points are chosen one
     after another, each time that which adds most: the hypervolume is at least 63 % of the largest
-    (Nemhauser, Wolsey and Fisher, 1978). Where there are too many points for the seconds given,
-    they are first thinned evenly. If there are at most `size` points, all are returned. If fewer
-    than `size` lie below the reference point, the rest are others, evenly spread along the first
-    length. O(k log k + k size) of two objectives.
+    (Nemhauser, Wolsey and Fisher, 1978). Then each is exchanged for a point close to it where that
+    adds more. Where there are too many points for the seconds given, they are first thinned evenly.
+
+    If there are at most `size` points, all are returned. If fewer than `size` lie below the
+    reference point, the rest are others, evenly spread along the first length. O(k log k + k size)
+    of two objectives.
 
     Args:
         front: The points.
@@ -94,7 +110,9 @@ def best_subset(
 def _chosen(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     """Return the indices of `size` points, all below 1, of more."""
     if shares.shape[1] > OBJECTIVES:
-        return _greedy(shares, size, seconds, stop)
+        most = int(min(len(shares), max(size, _MOST_DIVIDING * seconds / _DIVIDING)))
+        looked_at = evenly(np.arange(len(shares)), most)
+        return looked_at[_greedy(shares[looked_at], size, seconds, stop)]
     if len(shares) * _for_each(size, OBJECTIVES) <= seconds:
         return _best_of_front(shares, size, stop)
     affordable = max(size, int(seconds / _for_each(size, OBJECTIVES)))
@@ -108,48 +126,67 @@ def _for_each(size: int, objectives: int) -> float:
     """Return the seconds that choosing `size` points takes for each point of the front."""
     if objectives == OBJECTIVES:
         return _A_PAIR * size
-    return _looks(size) * _a_look(size, objectives)
-
-
-def _looks(size: int) -> float:
-    """Return how often each point, or the best of each cell, is looked at for `size` choices."""
-    return 1.0 + _LOOKS * math.log(size)
+    factor, power = _A_POINT[objectives]
+    return float(factor * size**power)
 
 
 def _a_look(size: int, objectives: int) -> float:
-    """Return the mean seconds of a look at a point while `size` points are chosen."""
-    factor, power = _A_CHOSEN[objectives]
-    return float(_A_LOOK + factor * (size / 2) ** power)
+    """Return the seconds that it takes to find what a point adds to `size` others."""
+    factor, power = _A_LOOK[objectives]
+    return float(factor * size**power)
+
+
+def _an_exchange(size: int, points: int, objectives: int) -> float:
+    """Return the seconds that it takes to exchange one of `size` chosen points."""
+    return CLOSE * _a_look(size, objectives) + _SEEKING * points
 
 
 def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
-    """Return the indices of `size` points, chosen one after another from more.
+    """Return the indices of `size` of more points: chosen one after another, then exchanged.
 
-    Where there is not enough time for all of them, the rest is evenly spread.
+    Where there is not enough time to choose all of them, the rest is evenly spread.
     """
-    most, wanted, objectives = len(shares), size, shares.shape[1]
-    if most * _for_each(size, objectives) > seconds:
-        looks = seconds / _a_look(size, objectives) - MOST_COMPARED * size
-        most = max(size, int(looks / _looks(size)))
-    cells = divided(shares, most)
-    if most == size:
-        wanted = _affordable(size, seconds, objectives)
-    choice = make_choice(shares, cells, size)
+    (points, objectives), wanted = shares.shape, size
     until = time.monotonic() + _PATIENCE * seconds
+    left = seconds - _DIVIDING * points
+    most, comparing = points, 0.0
+    if points * _for_each(size, objectives) > left:
+        comparing = MOST_COMPARED * size * _a_look(size, objectives)
+        most = max(size, int((_FIRST * left - comparing) / _for_each(size, objectives)))
+        if most == size:
+            wanted = _affordable(size, left, objectives)
+    left -= most * _for_each(size, objectives) + comparing
+    cells = divided(shares, most)
+    choice = make_choice(shares, cells, size)
     while choice.counts[0] < wanted and not stop():
         if most > size and time.monotonic() > until:
             return _greedy(shares, size, _LESS * seconds, stop)
         choose_next(choice)
+    if choice.counts[0] == size:
+        _exchange(choice, left, until, stop)
     return _with_others(choice.chosen[: choice.counts[0]], shares, size, cells.firsts)
+
+
+def _exchange(choice: Choice, seconds: float, until: float, stop: Stop) -> None:
+    """Exchange chosen points for others, as many as there is time for, until none changes."""
+    (points, objectives), size = choice.shares.shape, len(choice.chosen)
+    left = min(_PASSES * size, max(0.0, seconds) / _an_exchange(size, points, objectives))
+    if left < 1:
+        return
+    places, changed = make_places(choice.shares), True
+    while changed and left >= 1:
+        changed = False
+        for point in choice.chosen[: int(left)].copy():
+            if stop() or time.monotonic() > until:
+                return
+            changed |= exchange(choice, places, point)
+            left -= 1
 
 
 def _affordable(size: int, seconds: float, objectives: int) -> int:
     """Return how many of `size` points can be chosen by what they add from about as many cells."""
-    wanted = size
-    while wanted > 1:
-        looks = size * _looks(wanted) + MOST_COMPARED * wanted
-        if looks * _a_look(wanted, objectives) <= seconds:
-            break
+    wanted, compared = size, MOST_COMPARED * _a_look(size, objectives)
+    while wanted > 1 and size * _for_each(wanted, objectives) + wanted * compared > seconds:
         wanted -= 1 + wanted // 10
     return wanted
 

@@ -39,19 +39,27 @@ def divided(shares: Array, count: int) -> Cells:
     places, sides = losses(shares)[by_size], 1.0 / (shares.shape[1] - 1)
     along = max(1.0, count**sides)
     for _ in range(_TRIES):
-        numbers = _cell_numbers(places, int(np.ceil(along)))
-        order = np.argsort(numbers, kind="stable")
-        begins = np.flatnonzero(np.diff(numbers[order], prepend=-1))
-        if abs(len(begins) - count) <= _CLOSE * count:
+        numbers, occupied = _cell_numbers(places, int(np.ceil(along)))
+        found = np.count_nonzero(occupied)
+        if abs(found - count) <= _CLOSE * count:
             break
-        along = max(1.0, along * (count / len(begins)) ** sides)
-    return Cells(by_size[order], np.append(begins, len(shares)))
+        along = max(1.0, along * (count / found) ** sides)
+    # Counted among occupied cells, most numbers have 16 bits: these are sorted by their digits.
+    numbers = (np.cumsum(occupied)[numbers] - 1).astype(np.min_scalar_type(found))
+    starts = np.concatenate(([0], np.cumsum(np.bincount(numbers))))
+    return Cells(by_size[np.argsort(numbers, kind="stable")], starts)
 
 
-def _cell_numbers(places: Array, along: int) -> NDArray[np.int64]:
-    """Return the number of the cell of each point, where there are `along` along each axis."""
+def _cell_numbers(places: Array, along: int) -> tuple[NDArray[np.integer], NDArray[np.bool_]]:
+    """Return the number of the cell of each point, and which numbers there are.
+
+    There are `along` cells along each axis.
+    """
     columns = np.minimum((places * along).astype(np.int64), along - 1)
-    return np.ravel_multi_index(tuple(columns.T), (along,) * places.shape[1])
+    numbers = np.ravel_multi_index(tuple(columns.T), (along,) * places.shape[1])
+    occupied = np.zeros(along ** places.shape[1], np.bool_)
+    occupied[numbers] = True
+    return numbers, occupied
 
 
 def evenly(indices: Indices, count: int) -> Indices:

@@ -16,6 +16,8 @@ from service.search.several.volume import Sweep, make_sweep, volume_of
 from service.search.thinning import Cells
 
 MOST_COMPARED = 8  # points of a cell, to find the one of them that adds most
+_MANY = 64  # points chosen, from which on it pays to drop boxes that others contain
+_FEW = 8  # boxes, of which it does not pay
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -33,13 +35,16 @@ class Choice(NamedTuple):
     heap: Numbers  # (c,): cells, a heap by `gains`
     taken: NDArray[np.bool_]  # (k,): which points are chosen
     chosen: Numbers  # (size,): ascending by the last length
+    lengths: Array  # (m, size): of those chosen
     counts: Numbers  # (2,): points chosen; cells in the heap
+    corners: Array  # (m, size), scratch space: the corners of boxes
+    volumes: Array  # (size,), scratch space: their volumes
     sweep: Sweep  # scratch space
 
 
 def make_choice(shares: Array, cells: Cells, size: int) -> Choice:
     """Return a choice of no points yet, and of up to `size` later."""
-    gains = (1 - shares[cells.firsts]).prod(axis=1)
+    gains, objectives = (1 - shares[cells.firsts]).prod(axis=1), shares.shape[1]
     return Choice(
         shares,
         cells.members.astype(np.int64),
@@ -50,8 +55,11 @@ def make_choice(shares: Array, cells: Cells, size: int) -> Choice:
         np.argsort(-gains, kind="stable"),
         np.zeros(len(shares), np.bool_),
         np.empty(size, np.int64),
+        np.empty((objectives, size)),
         np.array([0, len(gains)]),
-        make_sweep(size, shares.shape[1]),
+        np.empty((objectives, size)),
+        np.empty(size),
+        make_sweep(size, objectives),
     )
 
 
@@ -70,12 +78,7 @@ def choose_next(choice: Choice) -> None:
         counts[1] -= 1
         heap[0] = heap[counts[1]]
     sink(choice)
-    place, last = counts[0], choice.shares.shape[1] - 1
-    while place > 0 and choice.shares[choice.chosen[place - 1], last] > choice.shares[point, last]:
-        choice.chosen[place] = choice.chosen[place - 1]
-        place -= 1
-    choice.chosen[place] = point
-    counts[0] += 1
+    keep_chosen(choice, point)
 
 
 @inlined
@@ -98,7 +101,6 @@ def take_best(choice: Choice, cell: int) -> int:
             first, at = gain, place
         elif gain > second:
             second, after = gain, place
-    choice.taken[choice.members[at]] = True
     choice.gains[cell], choice.best[cell], choice.looked_at[cell] = second, after, -1
     return choice.members[at]
 
@@ -119,18 +121,112 @@ def sink(choice: Choice) -> None:
     heap[place] = moved
 
 
-@compiled
+@inlined
+def keep_chosen(choice: Choice, point: int) -> None:
+    """Add a point to those chosen, which are ascending by the last length."""
+    choice.taken[point] = True
+    chosen, lengths, place = choice.chosen, choice.lengths, choice.counts[0]
+    objectives = len(lengths)
+    while place > 0 and lengths[objectives - 1, place - 1] > choice.shares[point, objectives - 1]:
+        chosen[place] = chosen[place - 1]
+        for m in range(objectives):
+            lengths[m, place] = lengths[m, place - 1]
+        place -= 1
+    chosen[place] = point
+    for m in range(objectives):
+        lengths[m, place] = choice.shares[point, m]
+    choice.counts[0] += 1
+
+
+@inlined
+def drop_chosen(choice: Choice, place: int) -> int:
+    """Take back the choice at this place of those chosen, and return the point."""
+    chosen, lengths = choice.chosen, choice.lengths
+    point = chosen[place]
+    choice.counts[0] -= 1
+    for after in range(place, choice.counts[0]):
+        chosen[after] = chosen[after + 1]
+        for m in range(len(lengths)):
+            lengths[m, after] = lengths[m, after + 1]
+    choice.taken[point] = False
+    return point
+
+
+@inlined
 def added_volume(choice: Choice, point: int) -> float:
     """Return by how much a point would increase the hypervolume of those chosen.
 
-    These are ascending by the last length. Each covers a part of the box of the point: the box of
-    the point whose lengths are the greater ones of the two points.
+    Each of these covers a part of the box of the point: the box of the point whose lengths are the
+    greater ones of the two points.
     """
-    shares, sweep, count = choice.shares, choice.sweep, choice.counts[0]
-    box, objectives = 1.0, shares.shape[1]
-    for m in range(objectives):
-        box *= 1.0 - shares[point, m]
+    count, shares, own = choice.counts[0], choice.shares, 1.0
+    for m in range(shares.shape[1]):
+        own *= 1.0 - shares[point, m]
+    if count < _MANY:
+        return own - volume_covered(choice.sweep, shares, choice.chosen, count, point)
+    return own - volume_covered_by_many(
+        choice.sweep, choice.corners, choice.volumes, choice.lengths, count, shares[point]
+    )
+
+
+@compiled
+def volume_covered(sweep: Sweep, shares: Array, chosen: Numbers, count: int, point: int) -> float:
+    """Return the volume of the part of the box of a point that the chosen points cover."""
     for j in range(count):
-        for m in range(objectives):
-            sweep.points[j, m] = max(shares[choice.chosen[j], m], shares[point, m])
-    return box - volume_of(sweep, count)
+        for m in range(shares.shape[1]):
+            sweep.points[j, m] = max(shares[chosen[j], m], shares[point, m])
+    return volume_of(sweep, count)
+
+
+@compiled
+def volume_covered_by_many(
+    sweep: Sweep, corners: Array, volumes: Array, lengths: Array, count: int, point: Array
+) -> float:
+    """Return the same where it pays to drop boxes first: a few large ones contain nearly all."""
+    for j in range(count):
+        volumes[j] = 1.0
+    for m in range(len(corners)):
+        for j in range(count):
+            corners[m, j] = max(lengths[m, j], point[m])
+            volumes[j] *= 1.0 - corners[m, j]
+    left = drop_contained(corners, volumes, count)
+    for j in range(left):
+        for m in range(len(corners)):
+            sweep.points[j, m] = corners[m, j]
+    return volume_of(sweep, left)
+
+
+@inlined
+def drop_contained(corners: Array, volumes: Array, count: int) -> int:
+    """Drop boxes that the largest ones contain, until few are left; return how many are.
+
+    The others move up, in their order.
+    """
+    before = np.inf
+    while count > _FEW:
+        largest, volume = -1, -1.0
+        for j in range(count):
+            if volume < volumes[j] < before:
+                largest, volume = j, volumes[j]
+        if largest < 0:
+            break
+        before = volume
+        count = drop_contained_in(largest, corners, volumes, count)
+    return count
+
+
+@inlined
+def drop_contained_in(largest: int, corners: Array, volumes: Array, count: int) -> int:
+    """Drop all boxes that one of them contains, but itself; return how many are left."""
+    last, left = len(corners) - 1, 0
+    a, b, c = corners[0, largest], corners[1, largest], corners[2, largest]
+    d = corners[last, largest]
+    for j in range(count):
+        # Without a branch, which could not be predicted.
+        reaches = (corners[0, j] < a) | (corners[1, j] < b) | (corners[2, j] < c)
+        reaches = reaches | (corners[last, j] < d) | (j == largest)
+        for m in range(len(corners)):
+            corners[m, left] = corners[m, j]
+        volumes[left] = volumes[j]
+        left += reaches
+    return left

@@ -106,14 +106,15 @@ def move_steps(stairs: Array, steps: int, begin: int, target: int) -> None:
 @compiled
 def volume_of_four(sweep: Sweep, size: int) -> float:
     """Return the hypervolume of points of four objectives, ascending by the fourth."""
-    total, below, kept = 0.0, 0.0, 0
+    total, below, kept, changed = 0.0, 0.0, 0, False
     for k in range(size):
         grown = keep_sorted(sweep.front, kept, sweep.points, k)
         if grown >= 0:
-            kept = grown
-            below = volume_of_three(sweep.front, sweep.stairs, kept)
-        above = sweep.points[k + 1, 3] if k + 1 < size else 1.0
-        total += below * (above - sweep.points[k, 3])
+            kept, changed = grown, True
+        height = (sweep.points[k + 1, 3] if k + 1 < size else 1.0) - sweep.points[k, 3]
+        if changed and height > 0.0:  # many have the same last length, if cut at that of a point
+            below, changed = volume_of_three(sweep.front, sweep.stairs, kept), False
+        total += below * height
     return total
 
 
