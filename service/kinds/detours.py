@@ -5,6 +5,7 @@ number a front is planned in which every leg takes its best path under these wei
 equal share of the time left. Then the legs of each tour found choose again, by many more weights.
 """
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -27,11 +28,11 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 # Plans the front of an instance. Its `stop` and `report` are those of plan(...).
 PlanOf = Callable[[Instance, PlanOptions, Callable[[], bool], ReportOf[Front]], Front]
-_LEAST_OF_WEIGHT = 200  # tours that each search returns, if it finds as many; legs choose again
+_OF_SEARCH = 200  # tours that each search returns, if it finds as many; their legs choose again
 _MOST_FOUND = 2000  # points kept under two objectives; under more, only as many as are reported
-_LAST = 0.05  # share of the time limit after the searches, for choosing paths and tours
+_CHOOSING = 0.05  # share of the time limit for choosing paths and tours, before it was measured
 _DIGITS = 12  # lengths are equal if their shares of the reference point agree to these decimals
-_LEAST_SECONDS = 1e-3  # that the remaining searches get together, even if no time is left
+_LEAST_SECONDS = 1e-3  # of a search
 # Searches may end for different reasons: of these reasons the first in this order is reported.
 _BY_WEIGHT: tuple[Termination | None, ...] = ("cancelled", "time_limit", "converged", None)
 
@@ -67,6 +68,8 @@ class PlanWithDetours:
         nothing = np.empty(0, np.int64)
         self._found = _Found(np.empty((0, objectives)), np.empty((0, n), np.int64), nothing)
         self._hypervolume = 0.0
+        # The longest seconds that it took so far to choose paths and tours after a search.
+        self._choosing = _CHOOSING * options.time_limit / legs.count
 
     def run(self, planned: PlanOf) -> Front:
         """Return the best front found within the time limit, with the path that each leg takes.
@@ -78,15 +81,18 @@ class PlanWithDetours:
             Cancelled, NoTour, Refusal: As in plan(...) and replan(...).
         """
         fronts: list[Front] = []
+        ends: set[Termination | None] = set()
         for instance in self._legs.instances():
-            if fronts and self._stop():
+            seconds = self._seconds(len(fronts))
+            if fronts and (self._stop() or seconds < _LEAST_SECONDS):
+                ends.add("cancelled" if self._stop() else "time_limit")
                 break
-            options = self._next_options(len(fronts))
+            options = self._next_options(len(fronts), seconds)
             front = planned(instance, options, self._stop, self._tell)
             fronts.append(front)
+            ends.add(front.terminated)
             self._add(front)
         front = self._front(fronts[0], self._found, self._options.size)
-        ends: set[Termination | None] = {each.terminated for each in fronts}
         phases = fronts[0].timings
         return replace(
             front,
@@ -95,27 +101,38 @@ class PlanWithDetours:
             timings={phase: sum(each.timings[phase] for each in fronts) for phase in phases},
         )
 
-    def _next_options(self, planned: int) -> PlanOptions:
-        """Return the options of the next search, after `planned` searches."""
-        size = max(self._options.size, _LEAST_OF_WEIGHT)
-        options = replace(self._options, size=size)
-        if options.time_limit == 0:
-            return options
+    def _seconds(self, planned: int) -> float:
+        """Return the seconds of the next search, after `planned` searches.
+
+        Those that are left are shared equally by the remaining searches, or by as many of them as
+        have time for more than choosing paths.
+        """
+        if self._options.time_limit == 0:
+            return math.inf
+        left = self._options.time_limit - (time.monotonic() - self._began)
+        most = int(left / (2 * self._choosing))
+        return left / max(1, min(self._legs.count - planned, most)) - self._choosing
+
+    def _next_options(self, planned: int, seconds: float) -> PlanOptions:
+        """Return the options of the next search, of these seconds, after `planned` searches."""
+        if self._options.time_limit == 0:
+            return replace(self._options, size=max(self._options.size, _OF_SEARCH))
+        options = replace(self._options, size=_OF_SEARCH)
         if options.fewer and planned:
             options = replace(options, directions=options.directions[:0])
-        left = (1 - _LAST) * options.time_limit - (time.monotonic() - self._began)
-        share = max(left, _LEAST_SECONDS) / (self._legs.count - planned)
         tours = np.unique(self._found.tours, axis=0).astype(np.int64)
         if options.initial_tours is not None:
             tours = np.concatenate((options.initial_tours, tours))
-        return replace(options, time_limit=share, initial_tours=tours)
+        return replace(options, time_limit=max(seconds, _LEAST_SECONDS), initial_tours=tours)
 
     def _add(self, front: Front) -> None:
         """Add the tours of a front to those found, and report: a short search may not have."""
+        began = time.monotonic()
         self._found = self._with(front.tours)
         found = FrontPoints(self._found.points, self._reference_point)
         self._hypervolume = found.quick_hypervolume
         self._say(0.0, 0, lambda size: self._front(front, self._found, size))
+        self._choosing = max(self._choosing, time.monotonic() - began)
 
     def _with(self, tours: Tours) -> "_Found":
         """Return the points found so far together with those of further tours.
