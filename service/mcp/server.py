@@ -80,7 +80,7 @@ _LISTED = [
     ListedTool(
         name=tool.name,
         description=tool.description,
-        input_schema=tool.arguments.model_json_schema(by_alias=True),
+        input_schema=tool.schema,
         annotations=ToolAnnotations(
             read_only_hint=tool.reads_only, destructive_hint=False, open_world_hint=False
         ),

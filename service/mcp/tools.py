@@ -10,22 +10,24 @@ from paretour import (
     FrontOfAnyKind,
     Plan,
     Refused,
-    fleet_plan,
-    front_plan,
     replan_plan,
 )
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from service.mcp.arguments import (
     Arguments,
+    Changes,
     ChooseTour,
+    Members,
     PlanFile,
-    PlanFleet,
-    PlanFront,
-    Replan,
     StoredFront,
+    schema_of,
 )
 from service.mcp.summaries import explanation, front_text, tour_text, unreadable_text
+from service.requests.fleet import FleetRequest
+from service.requests.front import FrontRequest
+from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.validation import refusal_of
 
 # A front is parsed in the event loop of the service. For this number of stops that takes 50 ms.
@@ -67,13 +69,23 @@ Run = Callable[[Planner, Any], Awaitable[str]]
 
 @dataclass(frozen=True, kw_only=True)
 class Tool:
-    """A tool: its name and description for an agent, its arguments, and the function it runs."""
+    """A tool: its name and description for an agent, its arguments, and the function it runs.
+
+    Args:
+        forms: The forms of which the arguments are members, where the service checks them.
+    """
 
     name: str
     description: str
     arguments: type[Arguments]
     run: Run
+    forms: tuple[type[BaseModel], ...] = ()
     reads_only: bool = False
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The JSON schema of the arguments."""
+        return schema_of(*(self.forms or (self.arguments,)))
 
     async def call(self, planner: Planner, arguments: Mapping[str, Any]) -> str:
         """Return the answer to a call.
@@ -91,13 +103,20 @@ class Tool:
         return await self.run(planner, parsed)
 
 
-async def _plan_front(planner: Planner, asked: PlanFront) -> str:
-    stops = asked.stops or asked.coordinates or (asked.matrices or [[]])[0]
-    return await planner.planned(front_plan(cast(Any, asked.members())), len(stops))
+async def _plan_front(planner: Planner, asked: Members) -> str:
+    return await planner.planned(Plan("/front", asked.members), _most_stops(asked.members))
 
 
-async def _plan_fleet(planner: Planner, asked: PlanFleet) -> str:
-    return await planner.planned(fleet_plan(cast(Any, asked.members())), len(asked.stops))
+async def _plan_fleet(planner: Planner, asked: Members) -> str:
+    return await planner.planned(Plan("/fleet", asked.members), _most_stops(asked.members))
+
+
+def _most_stops(members: Mapping[str, Any]) -> int:
+    """Return the number of stops in a request that is not checked yet."""
+    matrices = members.get("matrices")
+    first = matrices[0] if isinstance(matrices, list) and matrices else None
+    rows = (members.get("stops"), members.get("coordinates"), first)
+    return max(len(each) if isinstance(each, list) else 0 for each in rows)
 
 
 async def _plan_file(planner: Planner, asked: PlanFile) -> str:
@@ -109,9 +128,8 @@ async def _plan_file(planner: Planner, asked: PlanFile) -> str:
     request = dict(found["request"])
     if asked.time_limit is not None:
         request["time_limit"] = asked.time_limit
-    stops = request.get("stops") or request.get("coordinates") or []
     notes = [str(note.get("text", "")) for note in found["notes"]]
-    return await planner.planned(Plan(f"/{found['kind']}", request), len(stops), notes)
+    return await planner.planned(Plan(f"/{found['kind']}", request), _most_stops(request), notes)
 
 
 async def _explain_front(planner: Planner, asked: StoredFront) -> str:
@@ -147,10 +165,8 @@ def _objective(name: str, known: list[str]) -> str | int:
     return int(name) if name not in known and name.isdecimal() else name
 
 
-async def _replan(planner: Planner, asked: Replan) -> str:
-    members = asked.members()
-    members.pop("front")
-    return await planner.planned(replan_plan(asked.front, cast(Any, members)), 0)
+async def _replan(planner: Planner, asked: Changes) -> str:
+    return await planner.planned(replan_plan(asked.front, cast(Any, asked.members)), 0)
 
 
 TOOLS = (
@@ -159,7 +175,8 @@ TOOLS = (
         description="Plan tours through stops under two to four objectives, such as time against"
         " distance. The answer is the front of all best trade-offs: its id, the range of each"
         " objective, and up to five tours.",
-        arguments=PlanFront,
+        arguments=Members,
+        forms=(FrontRequest,),
         run=_plan_front,
     ),
     Tool(
@@ -173,7 +190,8 @@ TOOLS = (
         name="plan_fleet",
         description="Plan routes of several vehicles, with capacities, time windows and shipments,"
         " under two or three objectives. The answer is a front of plans.",
-        arguments=PlanFleet,
+        arguments=Members,
+        forms=(FleetRequest,),
         run=_plan_fleet,
     ),
     Tool(
@@ -197,7 +215,8 @@ TOOLS = (
         description="Plan the rest of a tour or of a fleet's day when stops are done, added or"
         " removed, the vehicle is elsewhere, or costs have changed. The answer is a new front; the"
         " earlier one stays as it is.",
-        arguments=Replan,
+        arguments=Changes,
+        forms=(Changes, ReplanRequest, ReplanFleetRequest),
         run=_replan,
     ),
 )

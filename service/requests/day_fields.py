@@ -10,15 +10,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.fields import (
-    NO_WAY,
-    CostRows,
-    Offered,
-    Pair,
-    StrictModel,
-    Text,
-    optional,
-)
+from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional
 from service.requests.stop_fields import NamedStop, ObjectiveItem
 from service.requests.stops import (
     FixedSource,
@@ -198,7 +190,7 @@ class DayObjectiveItem(ObjectiveItem):
 class DayFields(StrictModel):
     """The fields of a request for tours whose costs change over the day."""
 
-    departure: Annotated[Departure | None, Offered(agents=True)] = optional(
+    departure: Departure | None = optional(
         "when a tour begins, in seconds of the day: a time, or the earliest and the latest one;"
         " each tour then begins at its best time between them"
     )

@@ -92,7 +92,6 @@ class Offered:
         label: The label of its input on the page; None for none.
         more: Its rank among the inputs that few need, from 1; 0 if it is none of them.
         initial: What is in the input at first, if it is not the default.
-        agents: Whether the tools of agents list it.
     """
 
     option: str | None = None
@@ -100,7 +99,6 @@ class Offered:
     label: str | None = None
     more: int = 0
     initial: str | None = None
-    agents: bool = False
 
 
 def optional(description: str) -> Any:
@@ -126,13 +124,14 @@ class StrictModel(BaseModel):
 class SearchFields(StrictModel):
     """The fields of every request: how long to plan, and how much to return."""
 
-    time_limit: Annotated[
-        float, Offered(option="", label="Seconds of planning", initial="3", agents=True)
-    ] = Field(
-        default=1.0,
-        ge=0,
-        allow_inf_nan=False,
-        description="seconds of all planning, at most; 0 asks for what the network builds alone",
+    time_limit: Annotated[float, Offered(option="", label="Seconds of planning", initial="3")] = (
+        Field(
+            default=1.0,
+            ge=0,
+            allow_inf_nan=False,
+            description="seconds of all planning, at most; 0 asks for what the network builds"
+            " alone",
+        )
     )
     size: Annotated[PositiveInteger, Offered(option="", label="Tours")] = Field(
         default=100, description="the most tours, or plans, to return"
@@ -254,19 +253,16 @@ OPEN = Offered(
     option="Plan open routes, which do not return to their start.",
     flag="open",
     label="Open route: no way back to the start",
-    agents=True,
 )
 AT_START = Offered(
     option="The city or place at which reported tours begin, by index or id; with --open also"
     " `any`.",
     label="Start",
     initial="1",
-    agents=True,
 )
 AT_END = Offered(
     option="The city or place at which open routes end, by index or id; by default any.",
     label="End elsewhere",
-    agents=True,
 )
 
 

@@ -62,25 +62,23 @@ Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRow
 
 
 class FrontRequest(DayFields, PlanRequest):
-    """Cities or stops under two to four objectives, and the options of their front.
+    """Cities or stops under two to four objectives, and the options of their front."""
 
-    A request is complete only after `parse_front_request` has checked it.
-    """
-
+    # A request is complete only after `parse_front_request` has checked it.
     # An empty default means that the field was not given: no caller can give an empty array.
-    coordinates: Annotated[SomeItems[City], Offered(agents=True)] = Field(
+    coordinates: SomeItems[City] = Field(
         default_factory=list,
         description="a row for each city: for each objective x and y in its plane",
     )
-    matrices: Annotated[Matrices, Offered(agents=True)] = Field(
+    matrices: Matrices = Field(
         default_factory=lambda: np.empty((OBJECTIVES, 0, 0)),
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: Annotated[SomeItems[StopItem], Offered(agents=True)] = Field(
+    stops: SomeItems[StopItem] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
-    objectives: Annotated[OneEach[DayObjectiveItem], Offered(agents=True)] = Field(
+    objectives: OneEach[DayObjectiveItem] = Field(
         default_factory=list, description="two to four, each with the costs between the stops"
     )
     # In a checked request these hold only indexes, as in every PlanRequest.

@@ -117,28 +117,27 @@ class ReplanRequest(PlanFields):
 
     done: Annotated[
         _References,
-        Offered(option="The stops visited, in order, such as depot,order-17.", agents=True),
+        Offered(option="The stops visited, in order, such as depot,order-17."),
     ] = Field(default_factory=list, description="the stops that were visited, in order")
     position: Annotated[
         Position | None,
         Offered(
             option="The stop from which the rest is planned; by default the last stop done.",
-            agents=True,
         ),
     ] = Field(
         default=None,
         description="where the way goes on: a stop, or a new place in the form of an added stop; by"
         " default the last stop that is done",
     )
-    add: Annotated[Items[_Added], Offered(agents=True)] = Field(
+    add: Items[_Added] = Field(
         default_factory=list,
         description="more stops to visit; on a map row and column of each place",
     )
     remove: Annotated[
         _References,
-        Offered(option="Stops that need no visit any more, with commas between.", agents=True),
+        Offered(option="Stops that need no visit any more, with commas between."),
     ] = Field(default_factory=list, description="stops that are no longer visited")
-    costs: Annotated[Items[CostEntry], Offered(agents=True)] = Field(
+    costs: Items[CostEntry] = Field(
         default_factory=list, description="single costs that have changed"
     )
     objectives: OneEach[DayObjectiveItem] = Field(
@@ -147,16 +146,16 @@ class ReplanRequest(PlanFields):
         " costs between the stops of the front, then those of `add`, then `position` if that"
         " is a place",
     )
-    now: Annotated[TimeOfDay | None, Offered(agents=True)] = optional(
+    now: TimeOfDay | None = optional(
         "where costs change over the day: the second of the day at which the way goes on"
     )
-    tour: Annotated[_References, Offered(agents=True)] = Field(
+    tour: _References = Field(
         default_factory=list,
         description="the tour that is being driven, with all stops of the front; by default the"
         " front's knee",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
-    min_kept: Annotated[Share, Offered(option="", agents=True)] = Field(
+    min_kept: Annotated[Share, Offered(option="")] = Field(
         default=0.0,
         description="return only tours that keep this share of the driven tour's remaining legs",
     )
