@@ -39,8 +39,8 @@ from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner, make_runner
+from service.kinds.parsing import read_task
 from service.mcp import check_mcp
-from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace

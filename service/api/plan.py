@@ -44,8 +44,7 @@ from service.jobs.store import Store
 from service.jobs.webhook import Webhook
 from service.kinds.table import empty_document
 from service.requests.fields import Geometry
-from service.requests.replan.parser import ReplanSource
-from service.requests.replan.way import StoredFront, not_replannable
+from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import stored
 from service.webhooks.targets import Targets

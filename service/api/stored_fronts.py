@@ -145,7 +145,7 @@ class StoredFrontRoutes:
         """Return one tour of a front: at an angle or balance, by weights or budgets, or a knee."""
         query.check()
         record = await self._record(request, query.front)
-        if KINDS[record.front.kind].of_plans:
+        if KINDS[record.front.kind].mover:
             raise Refusal("no-tours", front=record.id)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)

@@ -16,10 +16,10 @@ from service.actor_info import ActorInfo
 from service.api.turns import FairTurns
 from service.errors import Refusal
 from service.files.upload import Upload, read_upload
+from service.kinds.parsing import check_replan as check_replan_body
+from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits, check_structure
-from service.requests.parser import parse_task
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.parser import check_replan as check_replan_body
+from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskSource
 from service.requests.validation import check_depth
 

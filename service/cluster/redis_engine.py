@@ -25,10 +25,10 @@ from service.errors import (
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.parts import Compiling
 from service.jobs.record import UNFINISHED, Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
 from service.kinds.front_document import FrontDocument
+from service.kinds.parts import Compiling
 from service.requests.task import Task
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.frame import Array, Cells, MapFrame, Mask
-from service.errors import InvalidCoverage
+from service.errors import CityNames, InvalidCoverage
 from service.instance import CLOSED, RouteEnds
 from service.objectives import Objective
 
@@ -94,6 +95,7 @@ class Coverage:
     detours: bool = False
     second_coordinates: Array | None = None
     robots: tuple[Robot, ...] = ()
+    stops: ClassVar[None] = None  # a map has places
 
     def __post_init__(self) -> None:
         if not 0 < self.cell_size < np.inf:
@@ -135,6 +137,11 @@ class Coverage:
             poses[f"{part}/start_pose"] = robot.start_pose
             poses[f"{part}/end_pose"] = robot.end_pose
         return {name: pose for name, pose in poses.items() if pose is not None}
+
+    @property
+    def city_names(self) -> CityNames:
+        """The names of its places in refusals."""
+        return CityNames("place", part=None if self.places is None else "places")
 
     @property
     def objectives(self) -> int:

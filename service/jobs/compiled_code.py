@@ -19,9 +19,9 @@ from service.jit.compilations import (
     is_switched_off,
 )
 from service.jobs import compilers
-from service.jobs.parts import Compiling, Part
 from service.jobs.pieces import PIECES, WORK
 from service.jobs.uncollected import uncollected
+from service.kinds.parts import Compiling, Part
 
 Told = Callable[[Part | Compiling], None]
 

@@ -22,8 +22,8 @@ from typing import NoReturn
 
 from service import own_code
 from service.jit.compilations import Event, Listener, following_compilations, import_compiler
-from service.jobs.parts import Part
 from service.jobs.pieces import PIECES
+from service.kinds.parts import Part
 
 FUNCTION = 255  # the sign for a function
 _NICENESS = 10  # of processes forked early: to compile comes after requests, and after networks

@@ -9,8 +9,8 @@ from typing import Protocol
 from service.errors import DeadlineExceeded, ShuttingDown
 from service.front import Progress
 from service.jobs.deadline import Deadline
-from service.jobs.parts import Compiling
 from service.jobs.record import Record
+from service.kinds.parts import Compiling
 from service.requests.task import Task
 
 

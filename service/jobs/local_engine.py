@@ -19,11 +19,11 @@ from service.errors import (
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.parts import Compiling
 from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
+from service.kinds.parts import Compiling
 from service.requests.task import Task, TaskSource
 
 _PAUSE = 0.5  # seconds between tries to resume the job of an earlier process

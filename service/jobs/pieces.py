@@ -5,8 +5,8 @@ from importlib import import_module
 from typing import NamedTuple
 
 from service.coverage import detours
-from service.jobs.parts import Part
 from service.kinds import fleet
+from service.kinds.parts import Part
 from service.over_the_day import warm_up as day
 from service.replanning import insertion
 from service.search import warm_up as search

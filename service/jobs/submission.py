@@ -7,9 +7,10 @@ from time import perf_counter
 
 from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WorkerLost
 from service.front import Progress
-from service.jobs.parts import Compiling
 from service.jobs.record import Record, StopReason, as_ended, as_failed, as_finished
 from service.kinds.front_document import FrontDocument
+from service.kinds.parts import Compiling
+from service.kinds.table import is_brief
 from service.requests.task import Task
 
 MOST_ATTEMPTS = 2
@@ -54,7 +55,7 @@ class Submission:
     @property
     def is_brief(self) -> bool:
         """Whether it may share a process's turn: it is short, and was in no process that died."""
-        return self.task.is_brief and self.attempts == 0
+        return is_brief(self.task) and self.attempts == 0
 
     async def front(self) -> FrontDocument:
         """Wait for the front and return it. Planning goes on if the waiting task is cancelled.

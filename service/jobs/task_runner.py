@@ -12,10 +12,10 @@ from service.extensions.names import NO_EXTENSIONS, Extensions
 from service.extensions.searches import load_search
 from service.front import Progress, SearchFunction
 from service.jobs.compiled_code import warm_up
-from service.jobs.parts import Compiling, Part
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import NamedActor, Report, Tools
-from service.kinds.run import RUNS
+from service.kinds.parts import Compiling, Part
+from service.kinds.table import KINDS, kind_of
 from service.requests.limits import Limits
 from service.requests.parser import DEFAULT_ACTORS
 from service.requests.task import Task
@@ -23,6 +23,9 @@ from service.roads.router import RouterSettings
 
 if TYPE_CHECKING:
     from service.requests.road_measurer import BlockingMeasurer
+
+# Loaded here, with all that plans: later, that would be within the time limit of a task.
+_RUNS = {name: kind.load() for name, kind in KINDS.items()}
 
 
 @dataclass(frozen=True)
@@ -54,13 +57,14 @@ class TaskRunner:
         if self.measurer is not None and task.needs_roads:
             task = self.measurer.measured(task, stop)
         tools = Tools(self.actors, self.limits, self.search)
+        run = _RUNS[kind_of(task).name]
         if not task.notes:
-            return RUNS[task.kind](task, tools, stop, report)
+            return run(task.subject, task, tools, stop, report)
 
         def report_noted(progress: Progress, best: Callable[[int], FrontDocument]) -> None:
             report(progress, lambda most: best(most).with_notes(task.notes))
 
-        return RUNS[task.kind](task, tools, stop, report_noted).with_notes(task.notes)
+        return run(task.subject, task, tools, stop, report_noted).with_notes(task.notes)
 
     def _open_networks(self) -> None:
         """Open all, those first that build the tours of most requests."""

@@ -34,10 +34,11 @@ class Names(NamedTuple):
     stops: Sequence[str]
 
 
-def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+def run_fleet(
+    subject: UnmeasuredFleet, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+) -> FrontDocument:
     """Return the front of plans of a task; see `Run`."""
-    subject, actor = task.subject, tools.actors.get(task.actor)
-    assert isinstance(subject, UnmeasuredFleet)
+    actor = tools.actors.get(task.actor)
     assert task.labels is not None
     known = subject.members(task.labels)
     names = Names(subject.vehicles, [stop.id for stop in task.labels.stops])

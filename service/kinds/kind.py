@@ -1,17 +1,23 @@
-"""A kind of plan as a row of a table, and the interface of the function that plans it."""
+"""A kind of plan as one object, and the interfaces of the functions in it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from importlib import import_module
+from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from service.actor_info import ActorInfo
 from service.construction.first_tours import Constructor
 from service.front import ReportOf, SearchFunction
 from service.kinds.front_document import FrontDocument
+from service.kinds.parts import Part
 from service.requests.limits import Limits
-from service.requests.task import KindName, Task
+from service.requests.replan.way import ReplanSource
+from service.requests.task import KindName, Task, TaskSource
 
 Report = ReportOf[FrontDocument]
+S = TypeVar("S")  # the subject of a kind's tasks
+S_contra = TypeVar("S_contra", contravariant=True)
+Actors = Mapping[str, ActorInfo]
 
 
 class NamedActor(Constructor, Protocol):
@@ -37,15 +43,21 @@ class Tools:
     search: SearchFunction | None = None
 
 
-class Run(Protocol):
+class Run(Protocol[S_contra]):
     """Plans the front of a task of one kind."""
 
     def __call__(
-        self, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+        self,
+        subject: S_contra,
+        task: Task,
+        tools: Tools,
+        stop: Callable[[], bool],
+        report: Report,
     ) -> FrontDocument:
         """Return the front of a task whose costs by road have been measured.
 
         Args:
+            subject: The subject of the task.
             task: The task.
             tools: The actors and limits.
             stop: Called often; planning ends soon after it returns True.
@@ -59,18 +71,48 @@ class Run(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kind:
-    """A kind of plan.
+class Kind(Generic[S]):
+    """A kind of plan: all that differs between kinds.
 
     Args:
         name: The member `kind` of its answers.
-        of_plans: Whether its fronts are of plans for several vehicles or robots, not of tours.
-        label: The label of its fronts in the metrics.
+        path: The path of HTTP, without a slash, to which its requests are posted.
+        call: The function of the Python client that plans it.
+        subject: The type of the subject of its tasks.
+        read: Returns the task that a request asks for. Kinds with the same path have the same.
+        rest: Returns the task of the rest of a front that is replanned, or refuses that.
+        planner: The module and the name of the function that plans it. A process that only serves
+            HTTP must not import it: it comes with the engines.
+        parts: Returns the parts of the compiled code that a task needs, with those of a bound.
         outline: Returns the number of cities of a task, and the members of its answer that are
             known before anything is planned.
+        label: The label of its fronts in the metrics.
+        item: What its fronts hold.
+        mover: What takes a route of a plan, and the member of the route with its name; None where
+            the front holds tours.
+        visits: The member of a tour or route with what it visits, in order.
+        stops: What people call these.
+        on_grid: Whether it is planned on the grid of a map.
     """
 
     name: KindName
-    of_plans: bool
+    path: Literal["front", "coverage", "fleet"]
+    call: str
+    subject: type[S]
+    read: Callable[[TaskSource, Limits, Actors], Task]
+    rest: Callable[[S, Task, ReplanSource, Limits, Actors], Task]
+    planner: tuple[str, str]
+    parts: Callable[[S, Task], frozenset[Part]]
+    outline: Callable[[S, Task], tuple[int, dict[str, Any]]]
     label: str
-    outline: Callable[[Task], tuple[int, dict[str, Any]]]
+    item: Literal["tour", "plan"] = "tour"
+    mover: Literal["vehicle", "robot"] | None = None
+    visits: Literal["tour", "stops"] = "tour"
+    stops: Literal["stops", "places"] = "stops"
+    on_grid: bool = False
+
+    def load(self) -> Run[S]:
+        """Import the function that plans it, and return that."""
+        module, name = self.planner
+        run: Run[S] = getattr(import_module(module), name)
+        return run

@@ -35,10 +35,11 @@ from service.requests.task import SharedCoverage, Task
 Indices = NDArray[np.int64]
 
 
-def run_robots(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+def run_robots(
+    subject: SharedCoverage, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+) -> FrontDocument:
     """Return the front of plans of a task; see `Run`."""
-    subject, actor, limits = task.subject, tools.actors.get(task.actor), tools.limits
-    assert isinstance(subject, SharedCoverage)
+    actor, limits = tools.actors.get(task.actor), tools.limits
     began = time.perf_counter()
     most, seconds = limits.most_places(shared=True), seconds_to_survey(task, limits)
     surveyed = survey(subject.coverage, most, stop, seconds)

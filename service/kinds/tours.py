@@ -28,10 +28,10 @@ from service.requests.stops import Stops
 from service.requests.task import Task
 
 
-def run_front(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+def run_front(
+    stops: Stops, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+) -> FrontDocument:
     """Return the front of a task; see `Run`."""
-    assert isinstance(task.subject, Stops)
-    stops = task.subject
     began = time.perf_counter()
     instance, timings = stops.instance, {}
     if task.timings or not stops.measured:  # else it was checked when it came
@@ -49,12 +49,12 @@ def run_front(task: Task, tools: Tools, stop: Callable[[], bool], report: Report
 
 
 def run_coverage(
-    task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+    coverage: Coverage, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
 ) -> FrontDocument:
     """Return the front of a task; see `Run`."""
     limits = tools.limits
     began = time.perf_counter()
-    surveyed = survey_map(task, limits, stop)
+    surveyed = survey_map(coverage, task, limits, stop)
     check_instance(task, surveyed.instance)
     surveyed_at = time.perf_counter()
     options = within_network(task.options, surveyed.instance.n, limits)
@@ -79,7 +79,7 @@ def run_coverage(
     )
 
 
-def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
+def survey_map(coverage: Coverage, task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
     """Return the survey of the map of a task.
 
     Raises:
@@ -87,10 +87,9 @@ def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
         Refusal: It takes too long.
         Cancelled: `stop` returned True.
     """
-    assert isinstance(task.subject, Coverage)
     try:
         most = limits.most_places(shared=False)
-        return survey(task.subject, most, stop, seconds_to_survey(task, limits))
+        return survey(coverage, most, stop, seconds_to_survey(task, limits))
     except InvalidCoverage as refusal:
         if not task.parts:
             raise
@@ -112,7 +111,7 @@ def _plan(
 ) -> Front:
     """Plan or replan the front of a task; `surveyed` is the map, if it has one."""
     actor, options = tools.actors[task.actor], task.options
-    day = task.subject.day if isinstance(task.subject, Stops) else None
+    day = None if task.stops is None else task.stops.day
 
     def encoded(front: Front) -> FrontDocument:
         return encode_front(front, actor.info.identity, surveyed, labels=task.labels)

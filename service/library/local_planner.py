@@ -19,13 +19,13 @@ from service.jobs.uncollected import uncollected
 with uncollected():
     from service.errors import Cancelled, Refusal
     from service.jobs.compiled_code import is_loaded, load_from_cache, warm_up
-    from service.jobs.parts import Compiling, Part, parts_of
     from service.jobs.task_runner import TaskRunner, load_runner
     from service.kinds.front_document import FrontDocument
+    from service.kinds.parsing import parse_replan, parse_task
+    from service.kinds.parts import Compiling, Part
+    from service.kinds.table import parts_of
     from service.library.interrupts import interrupt_flag, until_done
-    from service.requests.parser import parse_task
-    from service.requests.replan.parser import ReplanSource, parse_replan
-    from service.requests.replan.way import StoredFront
+    from service.requests.replan.way import ReplanSource, StoredFront
     from service.requests.task import Task, TaskKind, TaskSource
     from service.requests.task_codec import encode_task
     from service.settings import Settings

@@ -1,4 +1,4 @@
-"""Parse the body of a request into a Task. Replanning shares parts of this."""
+"""Parse the body of a request of each path into a Task. Replanning shares parts of this."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,10 +19,8 @@ from service.requests.limits import (
     Limits,
     check_reference_point,
     check_router,
-    check_structure,
     within_network,
 )
-from service.requests.notes.of_task import with_notes
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stops import Labels, Stops
 from service.requests.task import Task, TaskSource
@@ -31,27 +29,10 @@ from service.search.forbidden_legs import check_legs
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}
 
 
-def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """Return the task that a request asks for.
-
-    Raises:
-        Refusal: The body is malformed or over a limit, or no actor serves it.
-        InvalidInstance: The cities or the map cannot be planned.
-    """
-    check_structure(source.body, limits)
-    return with_notes(_parse(source, limits, actors), has_parts=source.upload is None)
-
-
-def _parse(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    match source.kind:
-        case "front":
-            request = parse_front_request(source.body, limits, source.upload)
-            return front_task(request, request.subject, limits, actors, labels=request.labels)
-        case "coverage":
-            return _coverage_task(source, limits, actors)
-        case "fleet":
-            return _fleet_task(source.body, limits, actors)
-    raise ValueError(f"no request is of kind {source.kind}")
+def read_front(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Return the task of a request to `POST /front`; errors are those of `front_task`."""
+    request = parse_front_request(source.body, limits, source.upload)
+    return front_task(request, request.subject, limits, actors, labels=request.labels)
 
 
 def front_task(
@@ -96,7 +77,7 @@ def check_instance(task: Task, instance: Instance) -> None:
     """
     if instance.matrices is not None:  # else no leg is forbidden
         check_legs(instance, task.city_names)
-    if isinstance(task.subject, Stops) and task.subject.hours is not None:
+    if task.stops is not None and task.stops.hours is not None:
         return  # a tour may be shorter than under mean costs
     check_reference_point(task.options, partial(least_lengths, instance))
 
@@ -115,7 +96,11 @@ def options_of(request: PlanFields, actor: ActorInfo, objectives: int = OBJECTIV
     return replace(options, repairs=0)
 
 
-def _coverage_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+def read_coverage(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Return the task of a request to `POST /coverage`, for one robot or for several.
+
+    Errors are those of `coverage_task`.
+    """
     request = parse_coverage_request(source.body, limits, source.upload)
     if request.robots:
         return Task(
@@ -153,8 +138,13 @@ def coverage_task(
     )
 
 
-def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    request = parse_fleet_request(body, limits)
+def read_fleet(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Return the task of a request to `POST /fleet`.
+
+    Raises:
+        Refusal: The body is malformed or over a limit.
+    """
+    request = parse_fleet_request(source.body, limits)
     fleet = request.subject()
     check_router(fleet.stops.sources, limits)
     return Task(

@@ -27,7 +27,7 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     assert isinstance(subject, Stops | UnmeasuredFleet)
     assert labels is not None
     began = time.perf_counter()
-    stops = subject if isinstance(subject, Stops) else subject.stops
+    stops = subject.stops
     ids = [stop.id for stop in labels.stops]
     found: dict[RoadMeasure | Traffic, Array] = {}
     if stops.road_measures:
@@ -35,10 +35,10 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
         found |= {"road_time": costs.seconds, "road_distance": costs.metres}
     for each in stops.traffic:
         found[each] = await client.seconds_at(each.departures, stops.locations, ids)
-    if isinstance(subject, Stops):
+    if subject is stops:  # a fleet may leave stops out
         n = len(ids)
         none = [np.isinf(costs.reshape(-1, n, n)).any(axis=0) for costs in found.values()]
-        check_ways(np.logical_or.reduce(none), subject.ends, task.city_names, "no-road")
+        check_ways(np.logical_or.reduce(none), stops.ends, task.city_names, "no-road")
     measured = subject.measured_by_road(found)
     return replace(task, subject=measured, timings={"roads": 1000 * (time.perf_counter() - began)})
 

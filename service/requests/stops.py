@@ -195,6 +195,16 @@ class Stops:
         return len(self.locations)
 
     @property
+    def stops(self) -> "Stops":
+        """The stops themselves, as fleets have stops too."""
+        return self
+
+    @property
+    def city_names(self) -> CityNames:
+        """The names of its stops in refusals, if they have no others."""
+        return CityNames()
+
+    @property
     def kind(self) -> Kind:
         """The kind of instance that they become."""
         return "matrices" if self.hours is not None else kind_of(self.sources)

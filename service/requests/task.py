@@ -2,23 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
-from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route
 from service.fleet.rules import Measure, Over, Rules
 from service.front import PlanOptions
-from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
 from service.requests.notes.note import Note
 from service.requests.stops import Array, Labels, RoadMeasure, Stops, Traffic, cost_matrices
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
-_BRIEF = 5000  # preferences times cities
 _METRES = {"sum": "total distance", "max": "longest route"}
 _COSTS = {"sum": "total cost", "max": "greatest cost"}
 
@@ -67,6 +64,11 @@ class UnmeasuredFleet:
         """The number of stops."""
         return self.rules.n
 
+    @property
+    def city_names(self) -> CityNames:
+        """The names of its stops in refusals, if they have no others."""
+        return self.stops.city_names
+
     def members(self, labels: Labels) -> dict[str, Any]:
         """Return the members of an answer that name the stops and objectives, ready for JSON."""
         members = labels.members
@@ -94,6 +96,12 @@ class SharedCoverage:
 
     coverage: Coverage
     over: tuple[Over, Over]
+    stops: ClassVar[None] = None
+
+    @property
+    def city_names(self) -> CityNames:
+        """The names of its places in refusals."""
+        return self.coverage.city_names
 
     @property
     def members(self) -> dict[str, Any]:
@@ -109,14 +117,6 @@ class SharedCoverage:
                 {**(costs if self.coverage.has_costs else metres), "over": second},
             ],
         }
-
-
-_KINDS: Mapping[type, KindName] = {
-    Stops: "front",
-    Coverage: "coverage",
-    UnmeasuredFleet: "fleet",
-    SharedCoverage: "robots",
-}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -153,56 +153,20 @@ class Task:
     notes: tuple[Note, ...] = ()
 
     @property
-    def kind(self) -> KindName:
-        """The kind of its front."""
-        return _KINDS[type(self.subject)]
-
-    @property
     def stops(self) -> Stops | None:
         """The stops, with the sources of the costs between them; None on a map."""
-        match self.subject:
-            case Stops() as stops:
-                return stops
-            case UnmeasuredFleet(stops=stops):
-                return stops
-        return None
+        return self.subject.stops
 
     @property
     def needs_roads(self) -> bool:
         """Whether it lacks costs by road."""
-        stops = self.stops
-        return stops is not None and bool(stops.road_measures or stops.traffic)
+        return self.stops is not None and bool(self.stops.road_measures or self.stops.traffic)
 
     @property
     def city_names(self) -> CityNames:
         """The names of its cities in refusals; a request to replan has no part that lists them."""
-        names = CityNames()
-        if self.labels is not None:
-            names = self.labels.city_names
-        elif isinstance(self.subject, Coverage):
-            given = self.subject.places is not None
-            names = CityNames("place", part="places" if given else None)
+        names = self.subject.city_names if self.labels is None else self.labels.city_names
         return names if self.earlier is None else replace(names, part=None)
-
-    @property
-    def needs_compiled_code(self) -> bool:
-        """Whether planning needs more than the network: search, bound, best subset, map or day."""
-        if not isinstance(self.subject, Stops):
-            return True
-        if self.subject.hours is not None:
-            return True
-        options = self.options
-        constructed = len(options.directions) * (TOURS_REPAIRED if options.repairs > 0 else 1)
-        several = len(self.subject.sources) > OBJECTIVES  # the hypervolume alone needs it
-        return options.time_limit > 0 or options.bound or constructed > options.size or several
-
-    @property
-    def is_brief(self) -> bool:
-        """Whether planning is one short call of a network: 50 ms or less with pa-one."""
-        if not isinstance(self.subject, Stops) or self.needs_compiled_code:
-            return False
-        short = len(self.options.directions) * self.subject.n <= _BRIEF
-        return short and self.options.repairs == 0 and self.subject.measured
 
 
 TaskKind = Literal["front", "coverage", "fleet", "task", "replan", "replan-coverage"]

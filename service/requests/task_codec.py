@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
-from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, Robot
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
@@ -24,10 +23,7 @@ from service.front import PlanOptions
 from service.instance import RouteEnds
 from service.objectives import Objective
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.earlier_versions import parse_rest
-from service.requests.limits import Limits
 from service.requests.notes.note import Note
-from service.requests.parser import parse_task
 from service.requests.stops import (
     Changed,
     Hours,
@@ -70,21 +66,6 @@ Arrays = list[NDArray[Any]]
 def stored(task: Task) -> TaskSource:
     """Return a task in the form that stores and queues keep."""
     return TaskSource("task", encode_task(task))
-
-
-def read_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """Return a stored task; earlier versions stored the request, which is parsed again.
-
-    Raises:
-        Refusal: The request of an earlier version is refused now.
-        ValueError: The task is damaged.
-    """
-    match source.kind:
-        case "task":
-            return decode_task(source.body)
-        case "replan" | "replan-coverage":
-            return parse_rest(source, limits, actors)
-    return parse_task(source, limits, actors)
 
 
 def encode_task(task: Task) -> bytes:

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from service.instance import Instance, tour_lengths
+from service.kinds.parsing import parse_replan
 from service.requests import stops as request_stops
 from service.requests.limits import Limits
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.task import TaskSource
 from tests.benchmarks.replan import longer_than, removed_and_added, share_of, unmet
 from tests.benchmarks.rests import (

@@ -10,7 +10,7 @@ from pydantic_core import to_json
 from service.errors import Refusal
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
-from service.requests.parser import parse_task
+from service.kinds.parsing import parse_task
 from service.requests.task import TaskSource
 from tests.helpers.actors import info_of
 from tests.helpers.serving import LIMITS

@@ -7,7 +7,7 @@ import pytest
 from service.errors import Refusal
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, UnreadableFile
-from service.requests.parser import parse_task
+from service.kinds.parsing import parse_task
 from service.requests.task import TaskSource
 from tests.files.test_examples import ACTORS
 from tests.helpers.serving import LIMITS

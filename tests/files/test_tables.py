@@ -13,7 +13,7 @@ from pydantic_core import to_json
 
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
-from service.requests.parser import parse_task
+from service.kinds.parsing import parse_task
 from service.requests.task import TaskSource
 from tests.files.test_examples import ACTORS
 from tests.helpers.serving import LIMITS

@@ -11,7 +11,7 @@ from service.errors import Refusal
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.plans import Plan, Route
 from service.jobs.task_runner import TaskRunner
-from service.requests.parser import parse_task
+from service.kinds.parsing import parse_task
 from service.requests.task import TaskSource, UnmeasuredFleet
 from tests.fuzz.fleets import bounded_fleet, extreme_fleet
 from tests.helpers.fleet_requests import LIMITS

@@ -18,7 +18,7 @@ import httpx
 import numpy as np
 
 from service.errors import Refusal
-from service.requests.replan.parser import ReplanSource
+from service.requests.replan.way import ReplanSource
 from service.requests.task import TaskSource
 from tests.fuzz.attack import largest_memory, parse_many, post_many, watching_health
 from tests.fuzz.bodies import GENERATORS, extreme

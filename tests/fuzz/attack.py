@@ -15,9 +15,9 @@ import httpx
 
 from service.actor_info import ActorInfo
 from service.errors import PROBLEMS, Refusal
+from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
-from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import ReplanSource
 from service.requests.task import TaskSource
 from tests.fuzz.bodies import GENERATORS
 

@@ -16,7 +16,7 @@ from PIL import Image
 
 from service.errors import Refusal
 from service.requests.multipart import split_parts
-from service.requests.replan.parser import ReplanSource
+from service.requests.replan.way import ReplanSource
 from service.requests.task import TaskSource
 from tests.fuzz.fleets import fleet
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from service.requests.replan.parser import ReplanSource
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.task import TaskKind, TaskSource
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
 from tests.helpers.changes import Found

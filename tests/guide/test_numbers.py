@@ -23,12 +23,12 @@ from service.fleet import conflicts
 from service.fleet import enumeration as all_plans
 from service.jobs import outbox
 from service.jobs.workers import worker_pool
+from service.kinds.parsing import parse_task
 from service.mcp import arguments, summaries, tools
 from service.requests import coverage, day_fields, fields, fleet_fields
 from service.requests.coverage import CoverageRequest
 from service.requests.front import FrontRequest
 from service.requests.notes import costs, places
-from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from service.search import enumeration as all_tours
 from service.search import schedule

@@ -23,7 +23,7 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.kind import NamedActor
-from service.requests.task_codec import read_task
+from service.kinds.parsing import read_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from tests.helpers.cluster_state import ClusterState

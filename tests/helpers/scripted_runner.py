@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from service.front import Front, PlanOptions, Progress
-from service.jobs.parts import Compiling, Part
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
+from service.kinds.parts import Compiling, Part
 from service.kinds.tour_document import encode_front
 from service.preferences import spread
 from service.requests.stops import Plane, Stops

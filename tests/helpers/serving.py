@@ -18,15 +18,15 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.parts import Compiling, Part
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner
 from service.kinds.kind import NamedActor
+from service.kinds.parsing import read_task
+from service.kinds.parts import Compiling, Part
 from service.requests.limits import Limits
-from service.requests.task_codec import read_task
 from service.server import Ending, build, make_server
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of

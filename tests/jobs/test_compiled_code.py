@@ -20,9 +20,9 @@ import json, sys
 from pathlib import Path
 import service
 from service.jobs.compiled_code import load_from_cache
-from service.jobs.parts import parts_of
+from service.kinds.table import kind_of, parts_of
 from service.jobs.task_runner import load_runner
-from service.requests.parser import parse_task
+from service.kinds.parsing import parse_task
 from service.requests.task import TaskSource
 from service.settings import Settings
 
@@ -68,7 +68,7 @@ for task in sorted(tasks, key=lambda task: len(parts_of(task))):
     runner.run(task, lambda: False, lambda *_: None)
     more = {name for name, number in compiled().items() if number > before.get(name, 0)}
     if more:
-        lacking[f"{task.kind} of {task.subject}"[:80]] = sorted(more)
+        lacking[f"{kind_of(task).name} of {task.subject}"[:80]] = sorted(more)
 print(json.dumps(lacking))
 """
 
@@ -85,7 +85,7 @@ def test_tasks_need_no_more_compiled_code_than_their_parts() -> None:
 def test_a_processor_of_another_name_loads_all_that_was_compiled() -> None:
     load = """
 from service.jobs.compiled_code import load_from_cache
-from service.jobs.parts import Part
+from service.kinds.parts import Part
 print(all([load_from_cache(part) for part in Part]))
 """
     command = [sys.executable, "-c", ANOTHER_NAME + load]
@@ -95,7 +95,7 @@ print(all([load_from_cache(part) for part in Part]))
 def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) -> None:
     load = """
 from service.jobs.compiled_code import load_from_cache
-from service.jobs.parts import Part
+from service.kinds.parts import Part
 assert not any([load_from_cache(part) for part in Part])
 """
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}

@@ -10,8 +10,8 @@ import pytest
 
 from service.errors import Refusal
 from service.jobs.task_runner import TaskRunner
+from service.kinds.parsing import parse_task
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from tests.helpers.robot_plans import best_plans, check_answer
 from tests.helpers.serving import ACTORS

@@ -8,6 +8,7 @@ import pytest
 from service.errors import Refusal
 from service.front import Front, PlanOptions, SearchResult
 from service.instance import Instance, tour_lengths
+from service.kinds.parsing import parse_replan
 from service.pareto import balances, nondominated
 from service.preferences import spread
 from service.replanning.earlier_tours import EarlierTours, few_enough, touched_cities
@@ -15,7 +16,7 @@ from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, with_most_kept_at
 from service.replanning.replan import replan
 from service.requests.limits import Limits
-from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import ReplanSource
 from service.requests.stops import Stops
 from service.requests.task import Task
 from tests.helpers.actors import Shuffler, info_of

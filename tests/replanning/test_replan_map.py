@@ -11,10 +11,9 @@ import pytest
 from service.coverage.frame import MapFrame
 from service.jobs.task_runner import TaskRunner
 from service.kinds.front_document import FrontDocument, joined
+from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.task import Task, TaskSource
 from service.requests.task_codec import encode_task, stored
 from tests.helpers.actors import Shuffler, info_of

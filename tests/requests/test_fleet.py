@@ -10,10 +10,10 @@ import pytest
 
 from service.errors import Refusal
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
+from service.kinds.parsing import parse_task
 from service.requests.fleet import parse_fleet_request
 from service.requests.json_schemas import fleet_schemas
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from tests.helpers.fleet_requests import LIMITS, fleet_of, fleet_request
 

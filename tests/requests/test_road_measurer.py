@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from service.errors import Cancelled, RouterUnusable
+from service.kinds.parsing import parse_task
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
 from service.requests.road_measurer import BlockingMeasurer, measured_by_road
 from service.requests.stops import Matrix, Stops
 from service.requests.task import Task, TaskSource

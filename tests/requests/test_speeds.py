@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
+from service.kinds.parsing import parse_task
 from service.objectives import Objective
 from service.requests.fleet import parse_fleet_request
 from service.requests.front import parse_front_request
-from service.requests.parser import parse_task
 from service.requests.stops import Measured, cost_matrices
 from service.requests.task import TaskKind, TaskSource
 from service.requests.task_codec import decode_task, encode_task

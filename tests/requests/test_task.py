@@ -10,7 +10,9 @@ import pytest
 from service.actor_info import ActorInfo
 from service.coverage.survey import Coverage
 from service.errors import InvalidCoverage, Refusal
-from service.requests.parser import choose_actor, parse_task
+from service.kinds.parsing import parse_task
+from service.kinds.table import is_brief, parts_of
+from service.requests.parser import choose_actor
 from service.requests.stops import Stops
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
@@ -33,10 +35,10 @@ def test_a_body_becomes_a_task() -> None:
     task = parse_front({"coordinates": np.eye(4).tolist(), "repairs": 2, "time_limit": 0})
     assert isinstance(task.subject, Stops)
     assert (task.actor, task.options.repairs, task.paths) == ("pa-one", 2, False)
-    assert task.needs_compiled_code  # twice 20 preferences make more tours than the limit of 30
+    assert parts_of(task)  # twice 20 preferences make more tours than the limit of 30
     task = parse_task(TaskSource("coverage", json.dumps(COVERAGE).encode()), LIMITS, FACTS)
     assert isinstance(task.subject, Coverage)
-    assert (task.actor, task.paths, task.needs_compiled_code) == ("pa-one-matrix", True, True)
+    assert (task.actor, task.paths, bool(parts_of(task))) == ("pa-one-matrix", True, True)
 
 
 @pytest.mark.parametrize(
@@ -55,7 +57,7 @@ def test_a_task_is_brief_where_one_short_call_of_a_network_does_it(
     coordinates = np.random.default_rng(0).random((cities, 4)).tolist()
     request = {"coordinates": coordinates, "time_limit": 0, "repairs": 0, **options}
     source = TaskSource("front", json.dumps(request).encode())
-    assert parse_task(source, replace(LIMITS, cities=300), FACTS).is_brief == brief
+    assert is_brief(parse_task(source, replace(LIMITS, cities=300), FACTS)) == brief
 
 
 MATRIX = [[0, 2, 3], [4, 0, 1], [5, 2, 0]]  # least out of each city: 2 + 1 + 2; into: 4 + 2 + 1

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from service.kinds.parsing import parse_replan, parse_task, read_task
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.task import Task, TaskKind, TaskSource
-from service.requests.task_codec import decode_task, encode_task, read_task
+from service.requests.task_codec import decode_task, encode_task
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Found, random_change
 

@@ -176,7 +176,7 @@ def _check_plan(request: Request, record: Record, plan: int) -> None:
     plans = len(record.front.split())
     if not accepts_geojson(request):
         sentence = f"plan needs an answer in GeoJSON: send Accept: {GEOJSON}"
-    elif not KINDS[record.front.kind].of_plans:
+    elif not KINDS[record.front.kind].mover:
         sentence = f"plan is for fronts of fleets, and front {record.id} has tours: ask GET /tour"
     elif plan >= plans:
         sentence = f"plan must be less than {plans}, the number of plans, got {plan}"

@@ -41,7 +41,7 @@ class Drawing:
             first: The number of the first one.
         """
         parsed = from_json(tours)
-        if KINDS[record.front.kind].of_plans:
+        if KINDS[record.front.kind].mover:
             return cls._of_plans(record, parsed, first)
         # Fronts have this member only if their tours are open routes.
         returns = record.front.closed is None or record.front.cities == 1

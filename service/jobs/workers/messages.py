@@ -9,8 +9,8 @@ from enum import Enum
 from typing import Any, BinaryIO
 
 from service.front import Progress
-from service.jobs.parts import Part
 from service.kinds.front_document import FrontDocument
+from service.kinds.parts import Part
 from service.requests.task import Task
 
 _LENGTH = struct.Struct("!Q")

@@ -23,6 +23,6 @@ with uncollected(), suppress(Exception):
     from service.jobs.compiled_code import load_or_begin
 
     load_or_begin()  # before the other modules, as it lasts longest
-    for name in ("service.jobs.workers.messages", "service.kinds.run"):
+    for name in ("service.jobs.workers.messages", "service.kinds.table"):
         import_module(name)
 gc.freeze()

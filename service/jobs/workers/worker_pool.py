@@ -25,13 +25,14 @@ from service.errors import (
 )
 from service.jobs.deadline import Deadline
 from service.jobs.fair_queue import FairQueue
-from service.jobs.parts import Compiling, Part, parts_of
 from service.jobs.record import StopReason
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
 from service.jobs.workers.worker_process import MakeRunner
 from service.jobs.workers.worker_set import Worker, WorkerSet
 from service.kinds.front_document import FrontDocument
+from service.kinds.parts import Compiling, Part
+from service.kinds.table import parts_of
 from service.requests.road_measurer import measured_by_road
 from service.requests.task import Task
 from service.roads.client import RoadClient

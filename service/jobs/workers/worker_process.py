@@ -19,7 +19,6 @@ from typing import Protocol
 
 from service.extensions.names import NO_EXTENSIONS, Extensions
 from service.front import Progress
-from service.jobs.parts import Compiling, Part
 from service.jobs.workers import fork_server
 from service.jobs.workers.messages import (
     Do,
@@ -37,6 +36,7 @@ from service.jobs.workers.messages import (
 )
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
+from service.kinds.parts import Compiling, Part
 from service.requests.limits import Limits
 from service.requests.task import Task
 

@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from service.errors import NoWorker, WarmingUp
-from service.jobs.parts import Compiling, Part
 from service.jobs.submission import Submission
 from service.jobs.workers.messages import Stage, Unable, Warm, WarmUp
 from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
+from service.kinds.parts import Compiling, Part
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
 _LONGEST_PAUSE = 15.0

@@ -25,19 +25,19 @@ from service.requests.replan.costs import (
 from service.requests.replan.day import Day, Way, day_of
 from service.requests.replan.fields import NewStop
 from service.requests.replan.fleet_fields import ReplanFleetRequest
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.stop_fields import find_index
 from service.requests.stops import Labels, Source, Stops, locations_of
 from service.requests.task import Task, UnmeasuredFleet, VehicleName, types_by_id
-from service.requests.validation import show, too_many_cities
+from service.requests.validation import parse_json, show, too_many_cities
 
 _LATER = 1e-6  # of the greatest time: what cannot be loaded now is released this much later
 
 
 def rest_of_fleet(
-    request: ReplanFleetRequest,
-    stored: StoredFront,
+    fleet: UnmeasuredFleet,
     task: Task,
+    source: ReplanSource,
     limits: Limits,
     actors: Mapping[str, ActorInfo],
 ) -> Task:
@@ -46,10 +46,10 @@ def rest_of_fleet(
     Raises:
         Refusal: The request is over a limit, or the front cannot be replanned so.
     """
-    assert isinstance(task.subject, UnmeasuredFleet)
     assert task.labels is not None
+    request = parse_json(ReplanFleetRequest, source.body)
     check_limit("routes", limits.fleet_stops, len(request.routes))
-    rest = _Rest(request, stored, task.subject, task.labels)
+    rest = _Rest(request, source.front, fleet, task.labels)
     n = len(rest.labels.stops)
     if n > limits.fleet_stops:
         raise too_many_cities("add", limits.fleet_stops, n)

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,17 +15,23 @@ from service.requests.arrays import Array, check_grid
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
 from service.requests.replan.fields import ReplanRequest, check_fields
-from service.requests.replan.way import RestOfWay, StoredFront, earlier_front_of_map, rest_of_way
-from service.requests.task import Task
-from service.requests.validation import show, too_many_cities
+from service.requests.replan.way import (
+    ReplanSource,
+    RestOfWay,
+    earlier_front_of_map,
+    not_replannable,
+    rest_of_way,
+)
+from service.requests.task import SharedCoverage, Task
+from service.requests.validation import parse_json, show, too_many_cities
 
 Cells = NDArray[np.int64]
 
 
 def rest_of_map(
-    request: ReplanRequest,
-    stored: StoredFront,
     coverage: Coverage,
+    _: Task,
+    source: ReplanSource,
     limits: Limits,
     actors: Mapping[str, ActorInfo],
 ) -> Task:
@@ -36,10 +42,11 @@ def rest_of_map(
             serves it, or the way cannot be that of the front. A worker surveys the map, and
             refuses places that are not free or cannot be reached any more.
     """
+    request = parse_json(ReplanRequest, source.body)
     check_fields(request, on_map=True)
-    front = earlier_front_of_map(stored, coverage)
+    front = earlier_front_of_map(source.front, coverage)
     changes = _changes(coverage, request)
-    known = np.array(stored.found.places, np.int64).reshape(-1, 2)
+    known = np.array(source.front.found.places, np.int64).reshape(-1, 2)
     anywhere = "cost_layers" in changes or coverage.cost_layers is not None
     cells, request = _all_places(known, coverage, request, anywhere)
     rest = rest_of_way(front, request)
@@ -67,6 +74,18 @@ def rest_of_map(
         earlier=rest.earlier_tours(front, request, changed),
     )
     return replace(task, parts=tuple(_parts(request, rest, len(known))))
+
+
+def rest_of_robots(
+    _: SharedCoverage, __: Task, source: ReplanSource, ___: Limits, ____: Mapping[str, ActorInfo]
+) -> NoReturn:
+    """Refuse to replan several robots.
+
+    Raises:
+        Refusal: Always.
+    """
+    parse_json(ReplanRequest, source.body)
+    raise not_replannable(source.front.id, "it is of plans for several robots")
 
 
 def _changes(coverage: Coverage, request: ReplanRequest) -> dict[str, Any]:

@@ -19,7 +19,13 @@ from service.requests.replan.costs import (
     extended_sources,
 )
 from service.requests.replan.fields import NewStop, ReplanRequest, check_fields
-from service.requests.replan.way import EarlierFront, RestOfWay, rest_of_way
+from service.requests.replan.way import (
+    EarlierFront,
+    ReplanSource,
+    RestOfWay,
+    earlier_front,
+    rest_of_way,
+)
 from service.requests.stop_fields import read_objectives, read_sources
 from service.requests.stops import (
     Hours,
@@ -30,13 +36,17 @@ from service.requests.stops import (
     locations_of,
 )
 from service.requests.task import Task
-from service.requests.validation import too_many_stops
+from service.requests.validation import parse_json, too_many_stops
 
 Array = NDArray[np.float64]
 
 
 def rest_of_stops(
-    request: ReplanRequest, front: EarlierFront, limits: Limits, actors: Mapping[str, ActorInfo]
+    earlier: Stops,
+    task: Task,
+    source: ReplanSource,
+    limits: Limits,
+    actors: Mapping[str, ActorInfo],
 ) -> Task:
     """Return the rest of the way through the stops of a front.
 
@@ -45,6 +55,8 @@ def rest_of_stops(
             cannot be replanned so.
         InvalidInstance: The costs cannot be planned.
     """
+    request = parse_json(ReplanRequest, source.body)
+    front = earlier_front(source.front, task, earlier)
     check_fields(request, on_map=False)
     items: dict[str, NewStop | list[int]] = {
         f"add/{index}": item for index, item in enumerate(request.add)
@@ -63,7 +75,7 @@ def rest_of_stops(
     check_amounts(request, n, limits, id_bytes)
     sources_of_rest = [between(each, rest.stops) for each in sources]
     check_router(sources_of_rest, limits)
-    task = front_task(
+    rest_task = front_task(
         lower_defaults(request, n, limits, id_bytes),
         Stops(
             locations_of(labels.stops),
@@ -76,7 +88,7 @@ def rest_of_stops(
         labels=labels,
         earlier=rest.earlier_tours(front, request, None if request.objectives else changed),
     )
-    return replace(task, options=replace(task.options, start=rest.begin or 0))
+    return replace(rest_task, options=replace(rest_task.options, start=rest.begin or 0))
 
 
 def _hours_of_rest(

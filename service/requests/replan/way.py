@@ -56,6 +56,14 @@ class StoredFront:
 
 
 @dataclass(frozen=True, eq=False)
+class ReplanSource:
+    """A request to replan, as it came, and the stored front that it is about."""
+
+    body: bytes
+    front: StoredFront
+
+
+@dataclass(frozen=True, eq=False)
 class EarlierFront:
     """A front that is replanned.
 

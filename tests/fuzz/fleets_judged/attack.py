@@ -11,8 +11,8 @@ from typing import Any
 from service.errors import NoTour, Refusal
 from service.kinds.fleet import run_fleet
 from service.kinds.kind import Tools
+from service.kinds.parsing import parse_task
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from tests.fuzz.fleets_judged.all_plans import Point, exact_points
 from tests.fuzz.fleets_judged.judge import Judge
@@ -96,7 +96,7 @@ def answer_to(request: Json) -> Any:
     """Return the answer to a request as JSON, or the refusal."""
     try:
         task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
-        document = run_fleet(task, Tools({}, LIMITS), lambda: False, lambda *_: None)
+        document = run_fleet(task.subject, task, Tools({}, LIMITS), lambda: False, lambda *_: None)
     except Refusal as refusal:
         return refusal
     return json.loads(document.json(id="", status="done"))

@@ -23,10 +23,10 @@ from service.errors import (
     WorkerLost,
 )
 from service.jobs.deadline import Deadline
-from service.jobs.parts import Compiling
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import Runner
 from service.kinds.front_document import FrontDocument
+from service.kinds.parts import Compiling
 from tests.helpers.scripted_runner import ScriptedRunner, brief_task, task, worker_pool
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from service.actor_info import RELEASED, read_actor_infos
+from service.kinds.parsing import parse_task
 from service.requests.notes.costs import notes_on_costs
 from service.requests.notes.places import doubtful_places
-from service.requests.parser import parse_task
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import decode_task, encode_task
 from service.settings import Settings

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from service.requests.parser import parse_task
+from service.kinds.parsing import parse_task
 from service.requests.task import TaskSource
 from tests.helpers.serving import ACTORS, LIMITS
 

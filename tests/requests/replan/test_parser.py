@@ -9,11 +9,10 @@ import pytest
 
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
+from service.kinds.parsing import parse_replan, parse_task
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.limits import Limits
-from service.requests.parser import parse_task
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.stops import Stops
 from service.requests.task import Task, TaskSource
 from service.requests.task_codec import stored

@@ -9,10 +9,10 @@ import pytest
 from service.coverage.coverage import Coverage
 from service.coverage.frame import MapFrame
 from service.errors import Refusal
+from service.kinds.parsing import parse_replan
 from service.kinds.tours import survey_map
 from service.requests.limits import Limits
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Found
@@ -55,7 +55,7 @@ def rest(second: str = "cost_layer", more: dict[str, Any] | None = None, **reque
     found = Found(np.array(TOURS), np.array([[1.0, 2.0], [2.0, 1.0]]), PLACES)
     front = StoredFront("front", TaskSource("coverage", json.dumps(came).encode()), found)
     task = parse_replan(ReplanSource(json.dumps(request).encode(), front), LIMITS, INFOS)
-    survey_map(task, LIMITS, lambda: False)  # as a worker does before it plans
+    survey_map(task.subject, task, LIMITS, lambda: False)  # as a worker does before it plans
     return task
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
+from service.kinds.parsing import parse_replan
 from service.pareto import balances
 from service.requests.limits import Limits
-from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import MOST_TOURS, StoredFront
+from service.requests.replan.way import MOST_TOURS, ReplanSource, StoredFront
 from service.requests.stops import Stops, cost_matrices
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of

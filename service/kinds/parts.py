@@ -1,4 +1,4 @@
-"""The parts of the compiled code, which of them a task needs, and how far their compilation is.
+"""The parts of the compiled code, which of them a kind of task needs, and their compilation.
 
 Compiling all takes most of a minute, once, and some parts are needed far more often than others. So
 a task waits for its own parts alone. This module loads no compiled code.
@@ -7,6 +7,7 @@ a task waits for its own parts alone. This module loads no compiled code.
 from dataclasses import dataclass
 from enum import Enum
 
+from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import WarmingUp
 from service.objectives import OBJECTIVES
@@ -59,30 +60,28 @@ class Compiling:
         return WarmingUp(str(self), self.seconds_left)
 
 
-def parts_of(task: Task) -> frozenset[Part]:
-    """Return the parts that a task needs."""
-    parts = _of_subject(task)
-    return parts if task.options.bound else parts - {Part.BOUNDS}
+def parts_for_robots(_: SharedCoverage, __: Task) -> frozenset[Part]:
+    """Return the parts that several robots on a map need."""
+    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY}
 
 
-def _of_subject(task: Task) -> frozenset[Part]:
-    """Return the parts that a task needs if it asks for a bound."""
-    match task.subject:
-        case SharedCoverage():
-            return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY}
-        case UnmeasuredFleet(rules=rules):
-            several = {Part.SEVERAL_OBJECTIVES} if len(rules.over) > OBJECTIVES else set()
-            return frozenset({Part.FEW_CITIES, Part.FLEETS} | several)
-        case Stops() as stops:
-            return _of_stops(stops, task) if task.needs_compiled_code else frozenset()
-    assert isinstance(task.subject, Coverage)
-    several = set() if task.subject.objectives > OBJECTIVES else {Part.SEVERAL_OBJECTIVES}
+def parts_for_fleet(fleet: UnmeasuredFleet, _: Task) -> frozenset[Part]:
+    """Return the parts that a fleet needs."""
+    several = {Part.SEVERAL_OBJECTIVES} if len(fleet.rules.over) > OBJECTIVES else set()
+    return frozenset({Part.FEW_CITIES, Part.FLEETS} | several)
+
+
+def parts_for_map(coverage: Coverage, _: Task) -> frozenset[Part]:
+    """Return the parts that one robot on a map needs."""
+    several = set() if coverage.objectives > OBJECTIVES else {Part.SEVERAL_OBJECTIVES}
     return frozenset(Part) - {Part.FLEETS, Part.OVER_THE_DAY} - several
 
 
-def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
-    """Return the parts that a search for tours through stops needs."""
+def parts_for_stops(stops: Stops, task: Task) -> frozenset[Part]:
+    """Return the parts that tours through stops need; none if the network does it alone."""
     several, replanned = len(stops.sources) > OBJECTIVES, task.earlier is not None
+    if not (_needs_search(task) or several or stops.hours is not None):
+        return frozenset()
     few = stops.kind == "coordinates" and stops.n < _THREE_OPT and not several and not replanned
     needed = {
         Part.FEW_CITIES: True,
@@ -95,3 +94,10 @@ def _of_stops(stops: Stops, task: Task) -> frozenset[Part]:
         Part.BOUNDS: True,
     }
     return frozenset(part for part, is_needed in needed.items() if is_needed)
+
+
+def _needs_search(task: Task) -> bool:
+    """Whether planning under two objectives needs a search, a bound, or the best subset."""
+    options = task.options
+    constructed = len(options.directions) * (TOURS_REPAIRED if options.repairs > 0 else 1)
+    return options.time_limit > 0 or options.bound or constructed > options.size
