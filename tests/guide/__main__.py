@@ -1,11 +1,13 @@
 """`python -m tests.guide`: write anew what is made of the code.
 
-Those are parts of the guide (tree, error codes, figures) and the types and the help of the client.
+Those are parts of the guide (tree, error codes, figures), the types and the help of the client, and
+the kinds of plans for the page.
 """
 
 from tests.guide.codes import PAGE as CODES_PAGE
 from tests.guide.codes import codes
 from tests.guide.figures import figures
+from tests.guide.kinds import TABLE, kinds_file
 from tests.guide.members import JSON, TYPES, json_file, type_file
 from tests.guide.pages import with_part
 from tests.guide.tree import PAGE as TREE_PAGE
@@ -15,5 +17,6 @@ TREE_PAGE.write_text(with_part(TREE_PAGE, "tree", tree()))
 CODES_PAGE.write_text(with_part(CODES_PAGE, "codes", codes()))
 JSON.write_text(json_file())
 TYPES.write_text(type_file())
+TABLE.write_text(kinds_file())
 for name, (page, made) in figures().items():
     page.write_text(with_part(page, name, made))

@@ -15,6 +15,7 @@ from service.errors import PROBLEMS
 from service.settings import Settings
 from tests.guide.codes import codes
 from tests.guide.figures import figures
+from tests.guide.kinds import TABLE, kinds_file
 from tests.guide.members import JSON, TYPES, json_file, type_file
 from tests.guide.pages import (
     GUIDE,
@@ -272,9 +273,10 @@ def test_the_table_of_codes_is_that_of_the_service() -> None:
     assert table == codes(), "run python -m tests.guide"
 
 
-def test_the_client_has_the_members_of_the_forms() -> None:
+def test_the_client_and_the_page_have_what_the_service_has() -> None:
     assert TYPES.read_text() == type_file(), "run python -m tests.guide"
     assert JSON.read_text() == json_file(), "run python -m tests.guide"
+    assert TABLE.read_text() == kinds_file(), "run python -m tests.guide"
 
 
 def test_every_setting_is_described() -> None:

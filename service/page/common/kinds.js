@@ -1,25 +1,22 @@
-/** The table of the kinds of plans: looked up for a request by its members, or for an answer by its `kind`. */
+/** The kinds of plans: looked up for a request by its members, or for an answer by its `kind`. */
 
-const TOURS = { one: "tour", many: "tours" };
-const PLANS = { one: "plan", many: "plans" };
+import { KINDS as LISTED } from "./kinds_table.js";
+
+const capital = (word) => word[0].toUpperCase() + word.slice(1);
 
 // The names of vehicles or robots on the page; the members of a route with its mover and its visits; and how Python prints it.
-const VEHICLES = {
-  one: "Vehicle", many: "Vehicles", words: "vehicles", stops: "Stops", listed: "Stops of each vehicle",
-  by: "vehicle", through: "stops", printed: "route.stops",
-};
-const ROBOTS = {
-  one: "Robot", many: "Robots", words: "robots", stops: "Places", listed: "Places of each robot",
-  by: "robot", through: "tour", printed: "(route.robot, route.tour.tolist())",
-};
+const moversOf = ({ mover, visits, stops }) => ({
+  one: capital(mover), many: `${capital(mover)}s`, words: `${mover}s`, stops: capital(stops), listed: `${capital(stops)} of each ${mover}`,
+  by: mover, through: visits, printed: visits === "stops" ? "route.stops" : `(route.${mover}, route.${visits}.tolist())`,
+});
 
 // The `path` of HTTP, the `call` in Python, and the `noun` of what a front holds: tours, or plans with routes of `movers`.
-const KINDS = {
-  front: { path: "front", call: "front", noun: TOURS },
-  coverage: { path: "coverage", call: "coverage", noun: TOURS, onGrid: true },
-  fleet: { path: "fleet", call: "fleet", noun: PLANS, movers: VEHICLES },
-  robots: { path: "coverage", call: "robots", noun: PLANS, movers: ROBOTS, onGrid: true },
-};
+const KINDS = Object.fromEntries(
+  Object.entries(LISTED).map(([name, kind]) => {
+    const noun = { one: kind.item, many: `${kind.item}s` };
+    return [name, { path: kind.path, call: kind.call, noun, onGrid: kind.onGrid, ...(kind.mover && { movers: moversOf(kind) }) }];
+  }),
+);
 
 /** The kind of an answer. */
 export const kindNamed = ({ kind }) => KINDS[kind];
