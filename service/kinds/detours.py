@@ -93,12 +93,16 @@ class PlanWithDetours:
             ends.add(front.terminated)
             self._add(front)
         front = self._front(fronts[0], self._found, self._options.size)
-        phases = fronts[0].timings
+        timings = {
+            phase: sum(each.timings[phase] for each in fronts) for phase in fronts[0].timings
+        }
+        # The rest is the choice of paths and of tours.
+        timings["selection"] += 1000 * (time.monotonic() - self._began) - sum(timings.values())
         return replace(
             front,
             constructed=sum(each.constructed for each in fronts),
             terminated=next(end for end in _BY_WEIGHT if end in ends),
-            timings={phase: sum(each.timings[phase] for each in fronts) for phase in phases},
+            timings=timings,
         )
 
     def _seconds(self, planned: int) -> float:

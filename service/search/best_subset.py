@@ -28,12 +28,12 @@ _LEAST_SECONDS, _LEAST_SHARE, _SHARE = 0.05, 0.2, 0.045  # of the time limit, fo
 # Seconds on a core of an EPYC, rather too many. Two objectives: for a point and a choice.
 _A_PAIR = 1.5e-8
 # Several objectives: for each point, and for a look at one, both times a power of the choices.
-_A_POINT, _A_LOOK = {3: (1.9e-7, 0.62), 4: (2e-7, 0.67)}, {3: (2.5e-8, 0.75), 4: (7e-8, 0.68)}
+_A_POINT, _A_LOOK = {3: (1.2e-7, 0.66), 4: (1.4e-7, 0.70)}, {3: (2.5e-8, 0.75), 4: (7e-8, 0.68)}
 _DIVIDING = 4e-7  # for each point: to divide the points into cells, and to find those close by
 _MOST_DIVIDING = 0.4  # of the seconds: where there are more points, some are left out evenly
 _SEEKING = 1e-9  # for each point: to find those that are close to one
 _FIRST = 0.5  # of the seconds, for choosing one after another where that takes too long
-_PASSES = 3  # times that each chosen point is exchanged, at most
+_PASSES = 10  # times that each chosen point is exchanged, at most
 _PATIENCE = 4.0  # times as long as it may take, the choice goes on
 _LESS = 0.3  # of the seconds, with which it begins again where the machine is too slow
 _COLLECTING = 1e-6  # for each point found: to sort the archive, and to copy the points
@@ -63,7 +63,7 @@ def selection_seconds(size: int, points: int, objectives: int, seconds: float) -
         return _COLLECTING * points
     choosing = points * _for_each(size, objectives)
     if objectives > OBJECTIVES:
-        choosing += _DIVIDING * points + _PASSES * size * _an_exchange(size, points, objectives)
+        choosing += _DIVIDING * points + size * _an_exchange(size, points, objectives)
     return min(seconds, choosing) + _COLLECTING * points
 
 
@@ -84,8 +84,8 @@ def best_subset(
     Args:
         front: The points.
         size: How many points to choose, at least 1.
-        seconds: About how long the choice may take. What is chosen depends on this number, and on
-            the clock only where the machine is much slower than one core of an EPYC.
+        seconds: About how long the choice may take. What is chosen depends on it, and of several
+            objectives on the clock.
         stop: Called for each point chosen; once it returns True, points that are evenly spread
             over the front are returned instead.
 
@@ -147,40 +147,36 @@ def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     Where there is not enough time to choose all of them, the rest is evenly spread.
     """
     (points, objectives), wanted = shares.shape, size
-    until = time.monotonic() + _PATIENCE * seconds
+    began = time.monotonic()
     left = seconds - _DIVIDING * points
-    most, comparing = points, 0.0
+    most = points
     if points * _for_each(size, objectives) > left:
         comparing = MOST_COMPARED * size * _a_look(size, objectives)
         most = max(size, int((_FIRST * left - comparing) / _for_each(size, objectives)))
         if most == size:
             wanted = _affordable(size, left, objectives)
-    left -= most * _for_each(size, objectives) + comparing
     cells = divided(shares, most)
     choice = make_choice(shares, cells, size)
     while choice.counts[0] < wanted and not stop():
-        if most > size and time.monotonic() > until:
+        if most > size and time.monotonic() > began + _PATIENCE * seconds:
             return _greedy(shares, size, _LESS * seconds, stop)
         choose_next(choice)
     if choice.counts[0] == size:
-        _exchange(choice, left, until, stop)
+        _exchange(choice, began + seconds, stop)
     return _with_others(choice.chosen[: choice.counts[0]], shares, size, cells.firsts)
 
 
-def _exchange(choice: Choice, seconds: float, until: float, stop: Stop) -> None:
-    """Exchange chosen points for others, as many as there is time for, until none changes."""
-    (points, objectives), size = choice.shares.shape, len(choice.chosen)
-    left = min(_PASSES * size, max(0.0, seconds) / _an_exchange(size, points, objectives))
-    if left < 1:
-        return
+def _exchange(choice: Choice, until: float, stop: Stop) -> None:
+    """Exchange chosen points for others, until none changes or the clock shows `until`."""
     places, changed = make_places(choice.shares), True
-    while changed and left >= 1:
+    for _ in range(_PASSES):
+        if not changed:
+            break
         changed = False
-        for point in choice.chosen[: int(left)].copy():
+        for point in choice.chosen.copy():
             if stop() or time.monotonic() > until:
                 return
             changed |= exchange(choice, places, point)
-            left -= 1
 
 
 def _affordable(size: int, seconds: float, objectives: int) -> int:

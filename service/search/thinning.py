@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 _TRIES = 6  # to find how wide the cells must be
+_MOST_ALONG = 2**15  # cells along each axis: four axes then have numbers of 60 bits
+_REMAINDERS = 1_000_003  # a prime, so that neighbouring cells have different ones
 _CLOSE = 0.1  # by which share the number of occupied cells may miss what was asked for
 
 
@@ -39,27 +41,27 @@ def divided(shares: Array, count: int) -> Cells:
     places, sides = losses(shares)[by_size], 1.0 / (shares.shape[1] - 1)
     along = max(1.0, count**sides)
     for _ in range(_TRIES):
-        numbers, occupied = _cell_numbers(places, int(np.ceil(along)))
-        found = np.count_nonzero(occupied)
-        if abs(found - count) <= _CLOSE * count:
+        numbers = _cell_numbers(places, int(np.ceil(along)))
+        occupied = _distinct(numbers)
+        if abs(occupied - count) <= _CLOSE * count:
             break
-        along = max(1.0, along * (count / found) ** sides)
-    # Counted among occupied cells, most numbers have 16 bits: these are sorted by their digits.
-    numbers = (np.cumsum(occupied)[numbers] - 1).astype(np.min_scalar_type(found))
-    starts = np.concatenate(([0], np.cumsum(np.bincount(numbers))))
-    return Cells(by_size[np.argsort(numbers, kind="stable")], starts)
+        along = min(max(1.0, along * (count / occupied) ** sides), _MOST_ALONG)
+    order = np.argsort(numbers, kind="stable")
+    begins = np.flatnonzero(np.diff(numbers[order], prepend=-1))
+    return Cells(by_size[order], np.append(begins, len(shares)))
 
 
-def _cell_numbers(places: Array, along: int) -> tuple[NDArray[np.integer], NDArray[np.bool_]]:
-    """Return the number of the cell of each point, and which numbers there are.
-
-    There are `along` cells along each axis.
-    """
+def _cell_numbers(places: Array, along: int) -> NDArray[np.int64]:
+    """Return the number of the cell of each point, where there are `along` along each axis."""
     columns = np.minimum((places * along).astype(np.int64), along - 1)
-    numbers = np.ravel_multi_index(tuple(columns.T), (along,) * places.shape[1])
-    occupied = np.zeros(along ** places.shape[1], np.bool_)
-    occupied[numbers] = True
-    return numbers, occupied
+    return np.ravel_multi_index(tuple(columns.T), (along,) * places.shape[1])
+
+
+def _distinct(numbers: NDArray[np.int64]) -> int:
+    """Return about how many distinct numbers there are: a few share a remainder. O(k)."""
+    seen = np.zeros(_REMAINDERS, np.bool_)
+    seen[numbers % _REMAINDERS] = True
+    return int(np.count_nonzero(seen))
 
 
 def evenly(indices: Indices, count: int) -> Indices:

@@ -91,6 +91,15 @@ def test_a_choice_in_little_time_loses_little(objectives: int, size: int) -> Non
 
 
 @several
+def test_points_that_are_close_together_are_thinned_as_well(objectives: int) -> None:
+    ends = 0.95 - 0.85 * np.eye(objectives)
+    front = in_order(np.concatenate((0.6 + 1e-7 * shell(1_500, objectives), ends)))
+    assert len(front) > 1_400
+    assert front.quick_hypervolume == pytest.approx(front.hypervolume, rel=1e-3)
+    assert len(set(best_subset(front, 1_000, seconds=1e-3).tolist())) == 1_000
+
+
+@several
 def test_nearly_all_of_many_points_are_chosen_without_time_too(objectives: int) -> None:
     front = in_order(shell(3_000, objectives))
     chosen = best_subset(front, 2_000, seconds=1e-3)
