@@ -33,6 +33,7 @@ _DIVIDING = 4e-7  # for each point: to divide the points into cells, and to find
 _MOST_DIVIDING = 0.4  # of the seconds: where there are more points, some are left out evenly
 _SEEKING = 1e-9  # for each point: to find those that are close to one
 _FIRST = 0.5  # of the seconds, for choosing one after another where that takes too long
+_ALMOST = 0.95  # of the seconds are over when the last point is exchanged
 _PASSES = 10  # times that each chosen point is exchanged, at most
 _PATIENCE = 4.0  # times as long as it may take, the choice goes on
 _LESS = 0.3  # of the seconds, with which it begins again where the machine is too slow
@@ -59,12 +60,8 @@ def selection_seconds(size: int, points: int, objectives: int, seconds: float) -
         objectives: The number of objectives.
         seconds: The most that the choice may take.
     """
-    if points <= size:
-        return _COLLECTING * points
-    choosing = points * _for_each(size, objectives)
-    if objectives > OBJECTIVES:
-        choosing += _DIVIDING * points + size * _an_exchange(size, points, objectives)
-    return min(seconds, choosing) + _COLLECTING * points
+    choosing = 0.0 if points <= size else min(seconds, _needed(size, points, objectives))
+    return choosing + _COLLECTING * points
 
 
 def best_subset(
@@ -122,6 +119,14 @@ def _chosen(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     return firsts[_best_of_front(np.ascontiguousarray(shares[firsts]), size, stop)]
 
 
+def _needed(size: int, points: int, objectives: int) -> float:
+    """Return the seconds that it takes to choose from all points, with one exchange of each."""
+    choosing = points * _for_each(size, objectives)
+    if objectives == OBJECTIVES:
+        return choosing
+    return choosing + _DIVIDING * points + size * _an_exchange(size, points, objectives)
+
+
 def _for_each(size: int, objectives: int) -> float:
     """Return the seconds that choosing `size` points takes for each point of the front."""
     if objectives == OBJECTIVES:
@@ -151,10 +156,10 @@ def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     left = seconds - _DIVIDING * points
     most = points
     if points * _for_each(size, objectives) > left:
-        comparing = MOST_COMPARED * size * _a_look(size, objectives)
+        comparing = size * _comparing(points / size, size, objectives)
         most = max(size, int((_FIRST * left - comparing) / _for_each(size, objectives)))
         if most == size:
-            wanted = _affordable(size, left, objectives)
+            wanted = _affordable(size, points, objectives, left)
     cells = divided(shares, most)
     choice = make_choice(shares, cells, size)
     while choice.counts[0] < wanted and not stop():
@@ -162,6 +167,8 @@ def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
             return _greedy(shares, size, _LESS * seconds, stop)
         choose_next(choice)
     if choice.counts[0] == size:
+        if seconds < math.inf:
+            seconds = min(_ALMOST * seconds, _needed(size, points, objectives))
         _exchange(choice, began + seconds, stop)
     return _with_others(choice.chosen[: choice.counts[0]], shares, size, cells.firsts)
 
@@ -179,10 +186,18 @@ def _exchange(choice: Choice, until: float, stop: Stop) -> None:
             changed |= exchange(choice, places, point)
 
 
-def _affordable(size: int, seconds: float, objectives: int) -> int:
-    """Return how many of `size` points can be chosen by what they add from about as many cells."""
-    wanted, compared = size, MOST_COMPARED * _a_look(size, objectives)
-    while wanted > 1 and size * _for_each(wanted, objectives) + wanted * compared > seconds:
+def _comparing(points: float, size: int, objectives: int) -> float:
+    """Return the seconds that it takes to find which point of a cell adds most to `size` others."""
+    return min(points, MOST_COMPARED) * _a_look(size, objectives)
+
+
+def _affordable(size: int, points: int, objectives: int, seconds: float) -> int:
+    """Return how many of `size` points can be chosen by what they add, from as many cells."""
+    wanted = size
+    while wanted > 1:
+        comparing = wanted * _comparing(points / size, wanted, objectives)
+        if size * _for_each(wanted, objectives) + comparing <= seconds:
+            break
         wanted -= 1 + wanted // 10
     return wanted
 
@@ -192,6 +207,8 @@ def _with_others(
 ) -> Indices:
     """Return the chosen points and others: of those named first, then of all, evenly spread."""
     for others in (() if first is None else (first,)) + (np.arange(len(shares)),):
+        if len(chosen) == size:
+            break
         left = np.setdiff1d(others, chosen)
         chosen = np.concatenate((chosen, evenly(left, min(len(left), size - len(chosen)))))
     return chosen
