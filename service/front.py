@@ -1,15 +1,16 @@
-"""The values of planning: options, the progress of a search, and fronts of tours."""
+"""The values of planning: options, the result of a search, and fronts of tours."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, TypeVar
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.preferences import angles
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -36,26 +37,6 @@ class SearchResult:
     def tours(self) -> NDArray[np.integer]:
         """All tours, shape (p, n)."""
         return self.tours_at(np.arange(len(self.points)))
-
-
-@dataclass(frozen=True)
-class Progress:
-    """The state of a running search: seconds, hypervolume and nondominated points so far."""
-
-    seconds: float
-    hypervolume: float
-    points: int
-
-
-A = TypeVar("A")
-B = TypeVar("B")
-# Called with the progress of a search, and a function that returns the best front of n tours.
-ReportOf = Callable[[Progress, Callable[[int], A]], None]
-
-
-def reporting(report: ReportOf[B], converted: Callable[[A], B]) -> ReportOf[A]:
-    """Return a function that reports fronts after their conversion."""
-    return lambda progress, best: report(progress, lambda size: converted(best(size)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,10 +83,9 @@ class PlanOptions:
     choose_again: Callable[[SearchResult, Indices], Indices] | None = None
 
 
-# Improves tours of an instance until a time by time.monotonic(), with `stop` and `report` as plan.
+# Improves tours of an instance, as long as its watch says.
 SearchFunction = Callable[
-    [Instance, NDArray[np.integer], PlanOptions, float, Callable[[], bool], ReportOf[SearchResult]],
-    SearchResult,
+    [Instance, NDArray[np.integer], PlanOptions, Watch[SearchResult]], SearchResult
 ]
 
 

@@ -5,7 +5,6 @@ the requested size is reported. The time limit holds for all three together. Not
 HTTP, jobs or files.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -16,14 +15,7 @@ from numpy.typing import NDArray
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.construction.repairs import repairs_worth
 from service.errors import Cancelled, NoTour, Obstacle
-from service.front import (
-    Front,
-    PlanOptions,
-    Progress,
-    ReportOf,
-    SearchFunction,
-    SearchResult,
-)
+from service.front import Front, PlanOptions, SearchFunction, SearchResult
 from service.instance import Instance, tour_lengths
 from service.search.best_subset import best_subset, selection_limit, selection_seconds
 from service.search.bound.hypervolume import hypervolume_bound
@@ -34,6 +26,7 @@ from service.search.hypervolume import hypervolume
 from service.search.improve import improve
 from service.search.nondominated import nondominated
 from service.search.open_routes import oriented, plain_tours, rotated
+from service.watch import Progress, Watch
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -46,15 +39,13 @@ def improved(
     instance: Instance,
     tours: NDArray[np.integer],
     options: PlanOptions,
-    deadline: float,
-    stop: Callable[[], bool],
-    report: ReportOf[SearchResult],
+    watch: Watch[SearchResult],
 ) -> SearchResult:
     """Return the result of a search that leaves enough time to select from it."""
     return improve(
         instance,
         tours,
-        deadline=deadline,
+        watch=watch,
         reserve=partial(
             selection_seconds,
             options.size,
@@ -62,8 +53,6 @@ def improved(
             seconds=selection_limit(options.time_limit),
         ),
         seed=options.seed,
-        stop=stop,
-        report=report,
         reference_point=options.reference_point,
         touched=options.touched,
     )
@@ -73,8 +62,7 @@ def plan(
     constructor: Constructor,
     instance: Instance,
     options: PlanOptions,
-    stop: Callable[[], bool] = lambda: False,
-    report: ReportOf[Front] = lambda *_: None,
+    watch: Watch[Front] | None = None,
     search: SearchFunction = improved,
 ) -> Front:
     """Return the best front found for an instance within the time limit.
@@ -83,17 +71,16 @@ def plan(
         constructor: Builds the tours that the search starts from.
         instance: The instance.
         options: The options of the front and the search.
-        stop: Called every millisecond or two; True ends planning with the best front so far.
-        report: Called about ten times a second with the progress of the search, and with a function
-            that returns the best front so far of at most n tours.
+        watch: Asked every millisecond or two whether to stop; planning then ends with the best
+            front so far. It also says when to report. The time limit is that of the options.
         search: Improves the first tours, where there is time.
 
     Raises:
-        Cancelled: `stop` returned True before a tour was found.
+        Cancelled: The watch said to stop before a tour was found.
         NoTour: Every tour that was found has a forbidden leg.
     """
-    times = [time.perf_counter()]
-    deadline = time.monotonic() + options.time_limit
+    watch = (watch or Watch()).lasting(options.time_limit)
+    times = [0.0]
     given = options.reference_point
     reference_point = instance.reference_point if given is None else given
     options = replace(options, reference_point=reference_point)
@@ -101,7 +88,7 @@ def plan(
     first = _first_tours(instance, constructed, options)
     searched = options.time_limit > 0
     before = hypervolume(tour_lengths(instance, first), reference_point) if searched else None
-    times.append(time.perf_counter())
+    times.append(watch.spent)
     front_of = partial(
         Front,
         constructed=len(constructed),
@@ -123,20 +110,20 @@ def plan(
                 timings={},
             )
 
-        report(progress, best_front)
+        watch.report(progress, best_front)
 
     find = search if searched else _unsearched
-    found = find(instance, first, options, deadline, stop, report_front)
-    times.append(time.perf_counter())
+    found = find(instance, first, options, watch.reporting(report_front))
+    times.append(watch.spent)
     if not len(found.points):
-        raise Cancelled if stop() else _no_tour(instance, options, found)
+        raise Cancelled if watch.stopped() else _no_tour(instance, options, found)
     front = FrontPoints(found.points, reference_point)
     gained = None if before is None else max(0.0, front.quick_hypervolume - before)
-    chosen = _selected(found, front, options, stop)
+    chosen = _selected(found, front, options, watch)
     best, tours = front.at(chosen), found.tours_at(chosen).astype(np.int64)
-    times.append(time.perf_counter())
-    bound = _bound(instance, reference_point, stop) if options.bound and not stop() else None
-    times.append(time.perf_counter())
+    times.append(watch.spent)
+    bound = _bound(instance, reference_point, watch) if options.bound else None
+    times.append(watch.spent)
     return front_of(
         tours=_as_reported(instance, options.start, tours),
         points=best.points,
@@ -175,17 +162,20 @@ def _unsearched(instance: Instance, tours: NDArray[np.integer], *_: object) -> S
 
 
 def _selected(
-    found: SearchResult, front: FrontPoints, options: PlanOptions, stop: Callable[[], bool]
+    found: SearchResult, front: FrontPoints, options: PlanOptions, watch: Watch[Front]
 ) -> Indices:
     """Return the indices of the tours to report."""
-    chosen = best_subset(front, options.size, selection_limit(options.time_limit), stop)
+    chosen = best_subset(front, options.size, selection_limit(options.time_limit), watch.stopped)
     if options.choose_again is None:
         return chosen
     return options.choose_again(found, chosen)
 
 
-def _bound(instance: Instance, reference_point: Array, stop: Callable[[], bool]) -> float:
-    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS, stop)
+def _bound(instance: Instance, reference_point: Array, watch: Watch[Front]) -> float | None:
+    """Return a bound on the hypervolume; None if the work is to stop."""
+    if watch.stopped():
+        return None
+    return hypervolume_bound(instance, reference_point, watch.lasting(BOUND_SECONDS))
 
 
 def _no_tour(instance: Instance, options: PlanOptions, result: SearchResult) -> NoTour:

@@ -20,7 +20,7 @@ TOP_LEVEL = {"pyproject.toml", "Dockerfile", "README.md", "LICENSE"} | {
     "tests",
 }
 
-MOST_AT_THE_TOP = 16  # Python files of service/ itself
+MOST_AT_THE_TOP = 17  # Python files of service/ itself
 MOST_IN_A_FOLDER = 30  # modules, beside the __init__.py
 MOST_LINES = 400
 MOST_IN_A_CHAIN = 25  # modules, each importing the next

@@ -12,7 +12,6 @@ from typing import Any, cast
 from pydantic_core import to_json
 
 from service.errors import Cancelled, DeadlineExceeded
-from service.front import Progress
 from service.jobs.engine import JobState
 from service.jobs.listing import ListedFront
 from service.jobs.outbox import Delivery
@@ -28,6 +27,7 @@ from service.jobs.store import (
 )
 from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskSource
+from service.watch import Progress
 
 # Fields beside the columns. The script sets the first two.
 REQUESTED_AT = "kept"  # seconds since 1970

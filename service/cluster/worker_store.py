@@ -19,10 +19,10 @@ from service.cluster.records import (
 )
 from service.cluster.script import LEASE, RecordScript, connect_redis
 from service.errors import Cancelled, StoreUnavailable
-from service.front import Progress
 from service.jobs.deadline import Deadline
 from service.jobs.record import Record, StopReason
 from service.kinds.front_document import FrontDocument
+from service.watch import Progress
 
 _PATIENCE = 60.0  # seconds for which a call is tried again while Redis is away
 _PAUSE = 0.1  # seconds between two tries

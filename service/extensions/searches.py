@@ -1,16 +1,14 @@
 """Improve tours with a function of another package, in place of Paretour's search."""
 
-import time
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from service.extensions.checks import called, checked
 from service.extensions.entry_points import SEARCHES, described, loaded
-from service.front import PlanOptions, ReportOf, SearchFunction, SearchResult, Termination
+from service.front import PlanOptions, SearchFunction, SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.search.nondominated import nondominated
+from service.watch import Watch
 
 _FEWEST_CITIES = 3  # of a search: with fewer cities there are no other tours than the given ones
 _SHARE = 0.95  # of the seconds left that the function gets; the rest is for checks and the choice
@@ -33,23 +31,21 @@ def load_search(name: str | None) -> SearchFunction | None:
         instance: Instance,
         tours: NDArray[np.integer],
         options: PlanOptions,  # noqa: ARG001
-        deadline: float,
-        stop: Callable[[], bool],
-        report: ReportOf[SearchResult],  # noqa: ARG001
+        watch: Watch[SearchResult],
     ) -> SearchResult:
         every = tours
         if instance.n >= _FEWEST_CITIES:
-            seconds = _SHARE * (deadline - time.monotonic())
-            found = called(function, instance, tours, max(seconds, 0.0), stop)
+            seconds = max(_SHARE * watch.left, 0.0)
+            found = called(function, instance, tours, seconds, watch.stopped)
             every = np.concatenate((checked(found, instance, at), tours))
         points = tour_lengths(instance, every)
         front = nondominated(points)
-        return SearchResult(points[front], every[front].__getitem__, _termination(deadline, stop))
+        return SearchResult(points[front], every[front].__getitem__, _termination(watch))
 
     return search
 
 
-def _termination(deadline: float, stop: Callable[[], bool]) -> Termination:
-    if stop():
+def _termination(watch: Watch[SearchResult]) -> Termination:
+    if watch.stopped():
         return "cancelled"
-    return "time_limit" if time.monotonic() >= deadline else "converged"
+    return "time_limit" if watch.over() else "converged"

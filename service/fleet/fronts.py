@@ -1,6 +1,5 @@
 """The options of the front of a fleet, and the front of some plans."""
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,6 +9,7 @@ from service.fleet.plans import FleetFront, Plan
 from service.front import Termination
 from service.search.best_subset import best_subset
 from service.search.front_points import FrontPoints
+from service.watch import Watch
 
 _NO_LIMIT = 2**62
 
@@ -44,7 +44,7 @@ def front_of(
     options: FleetOptions,
     plans: Sequence[Plan],
     terminated: Termination | None,
-    began: float,
+    watch: Watch[FleetFront],
     constructed: int = 0,
 ) -> FleetFront:
     """Return the front of plans that break no rule."""
@@ -63,7 +63,7 @@ def front_of(
         reference_point=reference_point,
         hypervolume=best.hypervolume,
         terminated=terminated,
-        timings={"improvement": 1000 * (time.monotonic() - began)},
+        timings={"improvement": 1000 * watch.spent},
     )
 
 

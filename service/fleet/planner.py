@@ -1,7 +1,6 @@
 """plan_fleet(...): from a fleet to its front of plans."""
 
-import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -31,11 +30,11 @@ from service.fleet.scales import Units
 from service.fleet.solver import Solver
 from service.fleet.sweep import Searches, Sweep
 from service.fleet.translation import Translation
-from service.front import Progress, ReportOf, Termination
+from service.front import Termination
 from service.search.best_subset import best_subset, selection_limit, selection_seconds
 from service.search.front_points import FrontPoints
+from service.watch import Watch
 
-_REPORT_EVERY = 0.1  # seconds
 _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _TRYING = 0.9  # share of the time limit, until when routes are tried if a search found no plan
@@ -56,8 +55,7 @@ def plan_fleet(
     fleet: Fleet,
     options: FleetOptions,
     constructor: Constructor | None = None,
-    stop: Callable[[], bool] = lambda: False,
-    report: ReportOf[FleetFront] = lambda *_: None,
+    watch: Watch[FleetFront] | None = None,
 ) -> FleetFront:
     """Return the best front of plans found for a fleet within the time limit.
 
@@ -66,10 +64,9 @@ def plan_fleet(
         options: The options of the front and the search.
         constructor: The network whose tours are cut into the first plans; it must read matrices.
             Without a network, the search constructs its first plans itself.
-        stop: Called after each iteration of PyVRP, that is every few milliseconds; True ends
-            planning with the best front so far.
-        report: Called about ten times a second with the progress, and with a function that returns
-            the best front so far of at most n plans.
+        watch: Asked after each iteration of PyVRP, that is every few milliseconds, whether to
+            stop; planning then ends with the best front so far. It also says when to report. The
+            time limit is that of the options.
 
     Raises:
         NoTour: Some stops cannot be visited under the rules. The refusal names them.
@@ -77,43 +74,39 @@ def plan_fleet(
             broken, a plan is always found. `no-actor`: the time limit is 0 and there is no network.
             `invalid-instance`: costs, prizes and times are too far apart for whole numbers.
         InvalidInstance: Costs are too far apart, or too large, for the network.
-        Cancelled: `stop` returned True before a plan was found.
+        Cancelled: The watch said to stop before a plan was found.
         ValueError: A component of the reference point is not positive, or the size is below 1.
     """
-    began = time.monotonic()
-    checked = began + (_FINDING_FAULTS * options.time_limit or _BRIEF)
-    check_necessary(fleet, lambda: stop() or time.monotonic() > checked)
+    watch = (watch or Watch()).lasting(options.time_limit)
+    check_necessary(fleet, watch.until(_FINDING_FAULTS * watch.seconds or _BRIEF).ended)
     if is_enumerable(fleet.rules):
-        until = began + (_ENUMERATING * options.time_limit or _BRIEF)
-        all_plans = exact_plans(fleet, lambda: stop() or time.monotonic() > until)
+        all_plans = exact_plans(fleet, watch.until(_ENUMERATING * watch.seconds or _BRIEF).ended)
         if all_plans is not None:
             if not all_plans:
-                ends = began + (options.time_limit or 2 * _BRIEF)
                 sentence = "no plan keeps every rule: all were tried"
-                raise no_plan(fleet, sentence, lambda: stop() or time.monotonic() > ends)
-            return front_of(fleet, options, all_plans, "converged", began)
+                raise no_plan(fleet, sentence, watch.until(watch.seconds or 2 * _BRIEF).ended)
+            return front_of(fleet, options, all_plans, "converged", watch)
     if options.time_limit == 0:
-        return _without_search(fleet, options, constructor, stop, began)
-    return _searched(fleet, options, constructor, stop, report, began)
+        return _without_search(fleet, options, constructor, watch)
+    return _searched(fleet, options, constructor, watch)
 
 
 def _without_search(
     fleet: Fleet,
     options: FleetOptions,
     constructor: Constructor | None,
-    stop: Callable[[], bool],
-    began: float,
+    watch: Watch[FleetFront],
 ) -> FleetFront:
     """Return the front of the plans of the network, and of the plan that is driven, if one is."""
     driven = None if options.driven is None else _completed(fleet, options.driven)
     kept = [] if driven is None else [driven]
     try:
-        plans = _constructed(fleet, constructor, stop)
+        plans = _constructed(fleet, constructor, watch)
     except Refusal:
         if not kept:
             raise
         plans = []
-    return front_of(fleet, options, [*kept, *plans], "converged", began, constructed=len(plans))
+    return front_of(fleet, options, [*kept, *plans], "converged", watch, constructed=len(plans))
 
 
 def _completed(fleet: Fleet, plan: Plan) -> Plan | None:
@@ -128,12 +121,10 @@ def _searched(
     fleet: Fleet,
     options: FleetOptions,
     constructor: Constructor | None,
-    stop: Callable[[], bool],
-    report: ReportOf[FleetFront],
-    began: float,
+    watch: Watch[FleetFront],
 ) -> FleetFront:
     """Return the front that a search finds; if it found none, a front of one plain plan."""
-    search = _Search(fleet, options, stop, report, began)
+    search = _Search(fleet, options, watch)
     if options.driven is not None:
         search.begin_with(options.driven)
     elif constructor is not None and not fleet.rules.shipments:
@@ -142,39 +133,37 @@ def _searched(
     terminated = search.run()
     plans: Iterable[Plan] = ()
     if not search.archive and terminated != "cancelled" and fleet.rules.has_bounds:
-        search = _Search(fleet, options, stop, report, began, loose=True)
-        if plan := _tried(fleet, options, stop, began):
+        search = _Search(fleet, options, watch, loose=True)
+        if plan := _tried(fleet, watch):
             plans = [plan]
             search.begin_with(plan)
         terminated = search.run()
     if not search.archive and terminated != "cancelled":
-        for plan in chain(plans, plain_plans(fleet, stop)):
+        for plan in chain(plans, plain_plans(fleet, watch.stopped)):
             if not violations(fleet, plan):
-                return front_of(fleet, options, [plan], terminated, began)
+                return front_of(fleet, options, [plan], terminated, watch)
     return search.front(options.size, terminated)
 
 
-def _tried(
-    fleet: Fleet, options: FleetOptions, stop: Callable[[], bool], began: float
-) -> Plan | None:
+def _tried(fleet: Fleet, watch: Watch[FleetFront]) -> Plan | None:
     """Return a plan of a fleet of few stops, found by trying its routes; None if none is found."""
     if len(fleet.rules.clients) > MOST_STOPS:
         return None
-    until = max(began + _TRYING * options.time_limit, time.monotonic() + _LEAST_TRYING)
-    return some_plan(fleet, lambda: stop() or time.monotonic() > until)
+    seconds = max(_TRYING * watch.seconds, watch.spent + _LEAST_TRYING)
+    return some_plan(fleet, watch.until(seconds).ended)
 
 
 def _constructed(
-    fleet: Fleet, constructor: Constructor | None, stop: Callable[[], bool]
+    fleet: Fleet, constructor: Constructor | None, watch: Watch[FleetFront]
 ) -> list[Plan]:
     """Return the plans made by cutting the tours of a network into routes."""
     if constructor is None:
         raise Refusal("no-actor", kind="fleets with time_limit 0")
-    cutter = Cutter(fleet, network_sequences(fleet, constructor), stop)
+    cutter = Cutter(fleet, network_sequences(fleet, constructor), watch.stopped)
     plans = [plan for plan in cutter.plans() if not violations(fleet, plan)]
     if plans:
         return plans
-    if stop():
+    if watch.stopped():
         raise Cancelled
     reason = "no cut of the network's tours keeps every rule: a time_limit over 0 may find a plan"
     raise Refusal("no-plan", reason=reason)
@@ -192,28 +181,23 @@ class _Search:
         self,
         fleet: Fleet,
         options: FleetOptions,
-        stop: Callable[[], bool],
-        report: ReportOf[FleetFront],
-        began: float,
+        watch: Watch[FleetFront],
         loose: bool = False,
     ) -> None:
         self._fleet = fleet
         self._options = options
-        self._stop = stop
-        self._report = report
-        self._began = self._reported = began
-        self._deadline = self._began + options.time_limit
+        self._watch = watch
         units = Units.of(fleet)
         self._reference_point = units.points(reference_point_of(fleet, options))
         self._translation = Translation(units.fleet, loose)
         give_up = not loose and fleet.rules.has_bounds
-        self._gives_up = began + options.time_limit / 2 if give_up else inf
+        self._gives_up = watch.seconds / 2 if give_up else inf
         self.archive = SolutionArchive(self._translation)
         driven = options.driven
         self._kept = None if driven is None else KeptPlans(self._translation, driven)
         self._constructed = 0
         self._iterations = 0
-        self._checked = self._began
+        self._checked = 0.0
         self._worked = 0  # stops looked at
         self._pause = 0.0  # the longest recent seconds between two checks of the time
         self._cancelled = False
@@ -227,13 +211,11 @@ class _Search:
         share = SHARE * self._options.time_limit
         within = None if share == inf else share
         sequences = network_sequences(self._fleet, constructor, within)
-        until = time.monotonic() + share
+        cutting = self._watch.lasting(share)
         if not sequences:
             return
         try:
-            cutter = Cutter(
-                self._fleet, sequences, lambda: self._stop() or time.monotonic() > until
-            )
+            cutter = Cutter(self._fleet, sequences, cutting.ended)
         except Refusal:  # too large to be cut: the search constructs its first plans itself
             return
         for plan in cutter.plans():
@@ -243,13 +225,13 @@ class _Search:
     @property
     def _is_short(self) -> bool:
         """Whether the time is over before PyVRP has its first solution."""
-        return self._deadline - time.monotonic() < _FIRST * self._fleet.rules.n**2
+        return self._watch.left < _FIRST * self._fleet.rules.n**2
 
     def begin_plainly(self) -> None:
         """Put a simple plan into an empty archive, if one breaks no rule and time is short."""
         if self.archive or not self._is_short:
             return
-        for plan in plain_plans(self._fleet, self._stop):
+        for plan in plain_plans(self._fleet, self._watch.stopped):
             if not violations(self._fleet, plan):
                 self._offer(self._translation.solution(plan), FREE)
                 return
@@ -271,7 +253,7 @@ class _Search:
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or `stop` returns True."""
         options, archive = self._options, self.archive
-        solver = Solver(self._translation, options.seed, self._offer, self._ended, self._deadline)
+        solver = Solver(self._translation, options.seed, self._offer, self._ended, self._watch)
         random = np.random.default_rng(options.seed)
         mover: Mover | None = None
         sweep = _sweep_of(self._fleet.rules)
@@ -305,10 +287,9 @@ class _Search:
             raise Cancelled
         if not plans:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
-            until = time.monotonic() + _BRIEF
-            raise no_plan(self._fleet, sentence, lambda: self._stop() or time.monotonic() > until)
+            raise no_plan(self._fleet, sentence, self._watch.lasting(_BRIEF).ended)
         front = front_of(
-            self._fleet, self._options, plans, terminated, self._began, self._constructed
+            self._fleet, self._options, plans, terminated, self._watch, self._constructed
         )
         return self._with_kept(replace(front, found=max(front.found, len(archive))))
 
@@ -334,31 +315,32 @@ class _Search:
     def _left(self) -> float:
         """Return the number of iterations left, estimated from the time of earlier ones."""
         most = self._options.iterations - self._iterations
-        spent = time.monotonic() - self._began
-        if self._options.time_limit == inf or not self._iterations:
+        if self._watch.seconds == inf or not self._iterations:
             return most
-        return min(most, (self._deadline - self._began - spent) * self._iterations / spent)
+        return min(most, self._watch.left * self._iterations / self._watch.spent)
 
     def _ended(self) -> bool:
         """Return whether to stop, after a report if one is due."""
-        now = time.monotonic()
+        watch, now = self._watch, self._watch.spent
         self._pause = max(now - self._checked, _FORGOTTEN * self._pause)
         self._checked = now
         self._worked += self._fleet.rules.n
-        if self._stop():
+        if watch.stopped():
             self._cancelled = True
             return True
         begun = len(self.archive) >= _LEAST_PLANS or self._worked >= _LEAST_WORK
-        begun |= len(self.archive) > 0 and now > self._deadline + _GRACE
+        begun |= len(self.archive) > 0 and watch.over(-_GRACE)
         if now > self._gives_up and begun and not self.archive:
             return True
-        left = self._deadline - now
-        if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and self.archive:
-            self._reported = now
-            found = FrontPoints(np.array(self.archive.points), self._reference_point)
-            progress = Progress(now - self._began, found.quick_hypervolume, len(found))
-            self._report(progress, partial(self.front, terminated=None))
-        return begun and left <= self._reserve()
+        watch.report_if_due(self._found, partial(self.front, terminated=None))
+        return begun and watch.over(self._reserve())
+
+    def _found(self) -> tuple[float, int] | None:
+        """Return the hypervolume and the number of plans found so far; None if there is none."""
+        if not self.archive:
+            return None
+        found = FrontPoints(np.array(self.archive.points), self._reference_point)
+        return found.quick_hypervolume, len(found)
 
     def _reserve(self) -> float:
         """Return the seconds for one more iteration, and for checking and selecting plans after it.

@@ -1,10 +1,9 @@
 """Run PyVRP's iterated local search towards one goal, and report every solution it visits."""
 
-import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
+from typing import Any
 
 import pyvrp
 import pyvrp.search
@@ -20,6 +19,7 @@ from service.fleet.goal import Goal, Weights
 from service.fleet.moves import Moves
 from service.fleet.scales import Penalties
 from service.fleet.translation import Translation
+from service.watch import Watch
 
 _FEW = 100  # stops: a search of their whole neighbourhood takes at most about 50 ms
 _EXHAUSTIVE = 5e-6  # seconds per pair of stops, more than a 2.5 GHz Xeon needs
@@ -52,7 +52,7 @@ class Solver:
         seed: The seed of all random choices.
         offer: Called with each solution that a search visits, feasible or not, and its goal.
         stop: Called after each iteration; True ends the search.
-        deadline: The time, by time.monotonic(), after which nothing slow is started.
+        watch: Says how much time is left: nothing is started that takes longer.
     """
 
     def __init__(
@@ -61,13 +61,13 @@ class Solver:
         seed: int,
         offer: Offer,
         stop: Callable[[], bool],
-        deadline: float = inf,
+        watch: Watch[Any],
     ) -> None:
         self._translation = translation
         self._random = pyvrp.RandomNumberGenerator(seed=seed)
         self._offer = offer
         self._stop = stop
-        self._deadline = deadline
+        self._watch = watch
         self._neighbours: tuple[Weights, Neighbours] | None = None
 
     def search(self, step: Step) -> int:
@@ -107,7 +107,7 @@ class Solver:
     ) -> pyvrp.Solution:
         random = pyvrp.Solution.make_random(data, self._random)
         seconds = _EXHAUSTIVE * len(self._translation.fleet.rules.clients) ** 2
-        if time.monotonic() + seconds > self._deadline:
+        if self._watch.over(seconds):
             return random
         return local_search(random, manager.max_cost_evaluator(), exhaustive=True)
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from service.errors import DeadlineExceeded, ShuttingDown
-from service.front import Progress
 from service.jobs.deadline import Deadline
 from service.jobs.record import Record
 from service.kinds.parts import Compiling
 from service.requests.task import Task
+from service.watch import Progress
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from time import perf_counter
 
 from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WorkerLost
-from service.front import Progress
 from service.jobs.record import Record, StopReason, as_ended, as_failed, as_finished
 from service.kinds.front_document import FrontDocument
 from service.kinds.parts import Compiling
 from service.kinds.table import is_brief
 from service.requests.task import Task
+from service.watch import Progress
 
 MOST_ATTEMPTS = 2
 

@@ -10,7 +10,7 @@ from service.actor_info import ActorInfo
 from service.extensions.constructors import load_constructors
 from service.extensions.names import NO_EXTENSIONS, Extensions
 from service.extensions.searches import load_search
-from service.front import Progress, SearchFunction
+from service.front import SearchFunction
 from service.jobs.compiled_code import warm_up
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import NamedActor, Report, Tools
@@ -20,6 +20,7 @@ from service.requests.limits import Limits
 from service.requests.parser import DEFAULT_ACTORS
 from service.requests.task import Task
 from service.roads.router import RouterSettings
+from service.watch import Watch
 
 if TYPE_CHECKING:
     from service.requests.road_measurer import BlockingMeasurer
@@ -57,14 +58,14 @@ class TaskRunner:
         if self.measurer is not None and task.needs_roads:
             task = self.measurer.measured(task, stop)
         tools = Tools(self.actors, self.limits, self.search)
-        run = _RUNS[kind_of(task).name]
+        run, watch = _RUNS[kind_of(task).name], Watch(stop=stop, report=report)
         if not task.notes:
-            return run(task.subject, task, tools, stop, report)
+            return run(task.subject, task, tools, watch)
 
-        def report_noted(progress: Progress, best: Callable[[int], FrontDocument]) -> None:
-            report(progress, lambda most: best(most).with_notes(task.notes))
+        def noted(document: FrontDocument) -> FrontDocument:
+            return document.with_notes(task.notes)
 
-        return run(task.subject, task, tools, stop, report_noted).with_notes(task.notes)
+        return noted(run(task.subject, task, tools, watch.converting(noted)))
 
     def _open_networks(self) -> None:
         """Open all, those first that build the tours of most requests."""

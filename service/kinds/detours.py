@@ -6,7 +6,6 @@ equal share of the time left. Then the legs of each tour found choose again, by 
 """
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -14,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.leg_paths import LegPaths
-from service.front import Front, PlanOptions, Progress, ReportOf, SearchResult, Termination
+from service.front import Front, PlanOptions, SearchResult, Termination
 from service.instance import Instance, tour_steps
 from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
@@ -23,11 +22,11 @@ from service.search.best_subset import SHORTLY, best_subset
 from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.nondominated import nondominated
+from service.watch import Progress, Watch
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
-# Plans the front of an instance. Its `stop` and `report` are those of plan(...).
-PlanOf = Callable[[Instance, PlanOptions, Callable[[], bool], ReportOf[Front]], Front]
+PlanOf = Callable[[Instance, PlanOptions, Watch[Front]], Front]
 _OF_SEARCH = 200  # tours that each search returns, if it finds as many; their legs choose again
 _MOST_FOUND = 2000  # points kept under two objectives; under more, only as many as are reported
 _CHOOSING = 0.05  # share of the time limit for choosing paths and tours, before it was measured
@@ -44,8 +43,7 @@ class PlanWithDetours:
         legs: The paths between the places.
         options: The options of the front and the search.
         earlier: The rest of the tours of an earlier front, if that front is replanned.
-        stop: As in plan(...).
-        report: As in plan(...).
+        watch: As in plan(...).
     """
 
     def __init__(
@@ -53,12 +51,10 @@ class PlanWithDetours:
         legs: LegPaths,
         options: PlanOptions,
         earlier: EarlierTours | None,
-        stop: Callable[[], bool],
-        report: ReportOf[Front],
+        watch: Watch[Front],
     ) -> None:
-        self._began = time.monotonic()
+        self._watch = watch.lasting(options.time_limit)
         self._legs, self._earlier = legs, earlier
-        self._stop, self._report = stop, report
         # By default that of the shortest paths, so that the hypervolumes of fronts with and
         # without detours can be compared.
         point = options.reference_point
@@ -84,11 +80,11 @@ class PlanWithDetours:
         ends: set[Termination | None] = set()
         for instance in self._legs.instances():
             seconds = self._seconds(len(fronts))
-            if fronts and (self._stop() or seconds < _LEAST_SECONDS):
-                ends.add("cancelled" if self._stop() else "time_limit")
+            if fronts and (self._watch.stopped() or seconds < _LEAST_SECONDS):
+                ends.add("cancelled" if self._watch.stopped() else "time_limit")
                 break
             options = self._next_options(len(fronts), seconds)
-            front = planned(instance, options, self._stop, self._tell)
+            front = planned(instance, options, self._watch.reporting(self._tell))
             fronts.append(front)
             ends.add(front.terminated)
             self._add(front)
@@ -97,7 +93,7 @@ class PlanWithDetours:
             phase: sum(each.timings[phase] for each in fronts) for phase in fronts[0].timings
         }
         # The rest is the choice of paths and of tours.
-        timings["selection"] += 1000 * (time.monotonic() - self._began) - sum(timings.values())
+        timings["selection"] += 1000 * self._watch.spent - sum(timings.values())
         return replace(
             front,
             constructed=sum(each.constructed for each in fronts),
@@ -113,7 +109,7 @@ class PlanWithDetours:
         """
         if self._options.time_limit == 0:
             return math.inf
-        left = self._options.time_limit - (time.monotonic() - self._began)
+        left = self._watch.left
         most = int(left / (2 * self._choosing))
         return left / max(1, min(self._legs.count - planned, most)) - self._choosing
 
@@ -131,12 +127,12 @@ class PlanWithDetours:
 
     def _add(self, front: Front) -> None:
         """Add the tours of a front to those found, and report: a short search may not have."""
-        began = time.monotonic()
+        began = self._watch.spent
         self._found = self._with(front.tours)
         found = FrontPoints(self._found.points, self._reference_point)
         self._hypervolume = found.quick_hypervolume
         self._say(0.0, 0, lambda size: self._front(front, self._found, size))
-        self._choosing = max(self._choosing, time.monotonic() - began)
+        self._choosing = max(self._choosing, self._watch.spent - began)
 
     def _with(self, tours: Tours) -> "_Found":
         """Return the points found so far together with those of further tours.
@@ -204,7 +200,7 @@ class PlanWithDetours:
         """
         found = max(found, self._hypervolume)
         points = max(points, len(self._found.points))
-        self._report(Progress(time.monotonic() - self._began, found, points), best)
+        self._watch.report(Progress(self._watch.spent, found, points), best)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,5 @@
 """Plan fronts of plans for several vehicles, and write them as JSON."""
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -15,13 +14,13 @@ from service.fleet.left_out import Serving, explain
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
 from service.fleet.schedule import schedule
-from service.front import ReportOf, reporting
 from service.kinds.front_document import FrontDocument, joined
-from service.kinds.kind import NamedActor, Report, Tools
+from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
 from service.pareto import balances, losses
 from service.requests.limits import check_reference_point
 from service.requests.task import Task, UnmeasuredFleet, VehicleName
+from service.watch import Watch
 
 _LEAST_EXPLAINING = 0.01  # seconds to say how stops can be served that are left out
 _UNLIMITED_EXPLAINING = 0.5  # seconds without a time limit
@@ -35,7 +34,7 @@ class Names(NamedTuple):
 
 
 def run_fleet(
-    subject: UnmeasuredFleet, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+    subject: UnmeasuredFleet, task: Task, tools: Tools, watch: Watch[FrontDocument]
 ) -> FrontDocument:
     """Return the front of plans of a task; see `Run`."""
     actor = tools.actors.get(task.actor)
@@ -47,8 +46,8 @@ def run_fleet(
     def encoded(front: FleetFront) -> FrontDocument:
         # While the search runs, plans come without reasons for what they leave out.
         ended = front.terminated is not None
-        until = max(deadline, time.perf_counter() + _LEAST_EXPLAINING)
-        explained = partial(explain, ended=lambda: stop() or time.perf_counter() > until)
+        seconds = max(watch.seconds, watch.spent + _LEAST_EXPLAINING)
+        explained = partial(explain, ended=watch.until(seconds).ended)
         servings = iter(explained(front.fleet, front.plans, front.points) if ended else ())
         return document_of_plans(
             front,
@@ -61,12 +60,11 @@ def run_fleet(
             **known,
         )
 
-    began = time.perf_counter()
-    deadline = began + (task.options.time_limit or _UNLIMITED_EXPLAINING)
+    watch = watch.lasting(task.options.time_limit or _UNLIMITED_EXPLAINING)
     fleet = subject.fleet()
-    timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
+    timings = {**task.timings, "costs": 1000 * watch.spent}
     try:
-        front = plan_front(task, fleet, actor, stop, reporting(report, encoded), driven)
+        front = plan_front(task, fleet, actor, watch.converting(encoded), driven)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
     return encoded(replace(front, timings={**timings, **front.timings}))
@@ -76,8 +74,7 @@ def plan_front(
     task: Task,
     fleet: Fleet,
     actor: NamedActor | None,
-    stop: Callable[[], bool],
-    report: ReportOf[FleetFront],
+    watch: Watch[FleetFront],
     driven: Plan | None = None,
 ) -> FleetFront:
     """Return the front of plans of a fleet, with the options of a task.
@@ -96,7 +93,7 @@ def plan_front(
         reference_point=task.options.reference_point,
         driven=driven,
     )
-    return plan_fleet(fleet, options, actor, stop, report)
+    return plan_fleet(fleet, options, actor, watch)
 
 
 def warm_up() -> None:

@@ -7,12 +7,13 @@ from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from service.actor_info import ActorInfo
 from service.construction.first_tours import Constructor
-from service.front import ReportOf, SearchFunction
+from service.front import SearchFunction
 from service.kinds.front_document import FrontDocument
 from service.kinds.parts import Part
 from service.requests.limits import Limits
 from service.requests.replan.way import ReplanSource
 from service.requests.task import KindName, Task, TaskSource
+from service.watch import ReportOf, Watch
 
 Report = ReportOf[FrontDocument]
 S = TypeVar("S")  # the subject of a kind's tasks
@@ -47,12 +48,7 @@ class Run(Protocol[S_contra]):
     """Plans the front of a task of one kind."""
 
     def __call__(
-        self,
-        subject: S_contra,
-        task: Task,
-        tools: Tools,
-        stop: Callable[[], bool],
-        report: Report,
+        self, subject: S_contra, task: Task, tools: Tools, watch: Watch[FrontDocument]
     ) -> FrontDocument:
         """Return the front of a task whose costs by road have been measured.
 
@@ -60,13 +56,11 @@ class Run(Protocol[S_contra]):
             subject: The subject of the task.
             task: The task.
             tools: The actors and limits.
-            stop: Called often; planning ends soon after it returns True.
-            report: Called regularly with the progress, and with a function that returns the best n
-                tours or plans found so far.
+            watch: Asked often whether to stop, and told the progress regularly.
 
         Raises:
             Refusal: No tour or plan exists or was found, or the task asks for too much.
-            Cancelled: `stop` returned True before a tour or plan was found.
+            Cancelled: The watch said to stop before a tour or plan was found.
         """
 
 

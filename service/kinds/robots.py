@@ -6,8 +6,7 @@ too, maybe by another robot. So such a place becomes two stops in the same cell:
 robot, and a stop to visit.
 """
 
-import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any
@@ -24,25 +23,25 @@ from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import VehicleType, Visit
-from service.front import reporting
 from service.kinds.fleet import document_of_plans, plan_front
 from service.kinds.front_document import FrontDocument, encode_path, with_member
-from service.kinds.kind import Report, Tools
+from service.kinds.kind import Tools
 from service.kinds.tour_document import on_map
 from service.kinds.tours import seconds_to_survey, unless_cancelled
 from service.requests.task import SharedCoverage, Task
+from service.watch import Watch
 
 Indices = NDArray[np.int64]
 
 
 def run_robots(
-    subject: SharedCoverage, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+    subject: SharedCoverage, task: Task, tools: Tools, watch: Watch[FrontDocument]
 ) -> FrontDocument:
     """Return the front of plans of a task; see `Run`."""
     actor, limits = tools.actors.get(task.actor), tools.limits
-    began = time.perf_counter()
+    began = watch.spent
     most, seconds = limits.most_places(shared=True), seconds_to_survey(task, limits)
-    surveyed = survey(subject.coverage, most, stop, seconds)
+    surveyed = survey(subject.coverage, most, watch.stopped, seconds)
     fleet = robot_fleet(surveyed, subject.over)
     known = {**on_map(surveyed), **subject.members}
 
@@ -57,17 +56,17 @@ def run_robots(
             **known,
         )
 
-    surveyed_at = time.perf_counter()
-    front = plan_front(task, fleet.fleet, actor, stop, reporting(report, encoded))
-    planned_at = time.perf_counter()
+    surveyed_at = watch.spent
+    front = plan_front(task, fleet.fleet, actor, watch.converting(encoded))
+    planned_at = watch.spent
     paths = None
     if task.paths:
         plans = [[fleet.way(route) for route in plan.routes] for plan in front.plans]
-        paths = unless_cancelled(surveyed.paths_of_plans(plans, limits.path_cells, stop))
+        paths = unless_cancelled(surveyed.paths_of_plans(plans, limits.path_cells, watch.stopped))
     timings = {
         "survey": 1000 * (surveyed_at - began),
         **front.timings,
-        "paths": 1000 * (time.perf_counter() - planned_at),
+        "paths": 1000 * (watch.spent - planned_at),
     }
     return encoded(replace(front, timings=timings), paths)
 

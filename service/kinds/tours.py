@@ -1,6 +1,5 @@
 """Plan fronts of tours: through stops or cities, or through the places of a map."""
 
-import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
@@ -12,11 +11,11 @@ from service.coverage.coverage import Coverage
 from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled, InvalidCoverage, NoTour
-from service.front import Front, PlanOptions, ReportOf, reporting
+from service.front import Front, PlanOptions
 from service.instance import Instance, step_lengths, tour_steps
 from service.kinds.detours import PlanWithDetours
 from service.kinds.front_document import FrontDocument
-from service.kinds.kind import Report, Tools
+from service.kinds.kind import Tools
 from service.kinds.tour_document import encode_front
 from service.over_the_day.plan import plan_over_the_day
 from service.planner import plan
@@ -26,18 +25,17 @@ from service.requests.parser import check_instance
 from service.requests.replan.rest_of_map import about_request
 from service.requests.stops import Stops
 from service.requests.task import Task
+from service.watch import Watch
 
 
-def run_front(
-    stops: Stops, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
-) -> FrontDocument:
+def run_front(stops: Stops, task: Task, tools: Tools, watch: Watch[FrontDocument]) -> FrontDocument:
     """Return the front of a task; see `Run`."""
-    began = time.perf_counter()
+    began = watch.spent
     instance, timings = stops.instance, {}
     if task.timings or not stops.measured:  # else it was checked when it came
         check_instance(task, instance)
-        timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
-    front = _plan(task, instance, tools, stop, report)
+        timings = {**task.timings, "costs": 1000 * (watch.spent - began)}
+    front = _plan(task, instance, tools, watch)
     if timings:
         front = replace(front, timings={**timings, **front.timings})
     return encode_front(
@@ -49,26 +47,26 @@ def run_front(
 
 
 def run_coverage(
-    coverage: Coverage, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+    coverage: Coverage, task: Task, tools: Tools, watch: Watch[FrontDocument]
 ) -> FrontDocument:
     """Return the front of a task; see `Run`."""
     limits = tools.limits
-    began = time.perf_counter()
-    surveyed = survey_map(coverage, task, limits, stop)
+    began = watch.spent
+    surveyed = survey_map(coverage, task, limits, watch.stopped)
     check_instance(task, surveyed.instance)
-    surveyed_at = time.perf_counter()
+    surveyed_at = watch.spent
     options = within_network(task.options, surveyed.instance.n, limits)
     task = replace(task, options=replace(options, start=surveyed.start))
-    front = _plan(task, surveyed.instance, tools, stop, report, surveyed)
-    planned_at = time.perf_counter()
+    front = _plan(task, surveyed.instance, tools, watch, surveyed)
+    planned_at = watch.spent
     paths = None
     if task.paths:
-        traced = surveyed.paths(front.tours, limits.path_cells, stop, front.leg_paths)
+        traced = surveyed.paths(front.tours, limits.path_cells, watch.stopped, front.leg_paths)
         paths = unless_cancelled(traced)
     timings = {
         "survey": 1000 * (surveyed_at - began),
         **front.timings,
-        "paths": 1000 * (time.perf_counter() - planned_at),
+        "paths": 1000 * (watch.spent - planned_at),
     }
     return encode_front(
         replace(front, timings=timings),
@@ -105,8 +103,7 @@ def _plan(
     task: Task,
     instance: Instance,
     tools: Tools,
-    stop: Callable[[], bool],
-    report: Report,
+    watch: Watch[FrontDocument],
     surveyed: Survey | None = None,
 ) -> Front:
     """Plan or replan the front of a task; `surveyed` is the map, if it has one."""
@@ -116,29 +113,24 @@ def _plan(
     def encoded(front: Front) -> FrontDocument:
         return encode_front(front, actor.info.identity, surveyed, labels=task.labels)
 
-    report_encoded = reporting(report, encoded)
+    of_fronts = watch.converting(encoded)
 
-    def planned(
-        instance: Instance,
-        options: PlanOptions,
-        stop: Callable[[], bool],
-        report: ReportOf[Front],
-    ) -> Front:
+    def planned(instance: Instance, options: PlanOptions, watch: Watch[Front]) -> Front:
         if task.earlier is not None:
-            return replan(actor, instance, task.earlier, options, stop, report)
+            return replan(actor, instance, task.earlier, options, watch)
         if tools.search is not None:
-            return plan(actor, instance, options, stop, report, tools.search)
-        return plan(actor, instance, options, stop, report)
+            return plan(actor, instance, options, watch, tools.search)
+        return plan(actor, instance, options, watch)
 
     try:
         if day is not None:
             under_means = partial(planned, instance)
-            return plan_over_the_day(under_means, day, options, task.earlier, stop, report_encoded)
+            return plan_over_the_day(under_means, day, options, task.earlier, of_fronts)
         if surveyed is not None and surveyed.legs.further is not None:
             legs = surveyed.legs
-            planning = PlanWithDetours(legs, options, task.earlier, stop, report_encoded)
+            planning = PlanWithDetours(legs, options, task.earlier, of_fronts)
             return planning.run(planned)
-        return planned(instance, options, stop, report_encoded)
+        return planned(instance, options, of_fronts)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
 

@@ -4,16 +4,15 @@ First a front is planned under mean costs. Its tours are driven through the day,
 there, each under a weighted sum of exact lengths. Up to eight stops all tours are tried.
 """
 
-import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Cancelled
-from service.front import Front, PlanOptions, Progress, ReportOf, Termination, reporting
+from service.front import Front, PlanOptions, Termination
 from service.instance import Instance
 from service.over_the_day.day import Day
 from service.over_the_day.search import DaySearch
@@ -23,18 +22,17 @@ from service.search.best_subset import best_subset, selection_limit, selection_s
 from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.open_routes import rotated
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
-# Plans a front, with `stop` and `report` as plan(...) has them.
-PlanUnderMeans = Callable[[PlanOptions, Callable[[], bool], ReportOf[Front]], Front]
+PlanUnderMeans = Callable[[PlanOptions, Watch[Front]], Front]
 # Of the time limit; the search over the day gains more the more seconds there are for each stop.
 _LEAST_SHARE, _MOST_SHARE, _LESS_BY_SECOND = 0.5, 0.85, 40.0
 _LEAST_OF_MEANS = 300  # tours under mean costs that are driven through the day, if there are
 _SHARE_OF_DRIVING = 0.05  # of the time limit: for driving the tours found under mean costs
 _DRIVEN_AT_ONCE = 20  # tours
 _MEASURED = 5  # tours whose best departures are timed
-_REPORT_EVERY = 0.1  # seconds
 
 
 def plan_over_the_day(
@@ -42,8 +40,7 @@ def plan_over_the_day(
     day: Day,
     options: PlanOptions,
     earlier: EarlierTours | None = None,
-    stop: Callable[[], bool] = lambda: False,
-    report: ReportOf[Front] = lambda *_: None,
+    watch: Watch[Front] | None = None,
 ) -> Front:
     """Return the best front found within the time limit, with exact lengths and departures.
 
@@ -55,13 +52,12 @@ def plan_over_the_day(
         day: The day.
         options: The options of the front and the search.
         earlier: What is left of the tours of the front that is replanned, if one is.
-        stop: As in plan(...).
-        report: As in plan(...).
+        watch: As in plan(...).
 
     Raises:
         Cancelled, NoTour, Refusal: As in plan(...) and replan(...).
     """
-    return _Planning(day, options, earlier, stop, report).run(plan_under_means)
+    return _Planning(day, options, earlier, watch or Watch()).run(plan_under_means)
 
 
 class _Planning:
@@ -72,16 +68,13 @@ class _Planning:
         day: Day,
         options: PlanOptions,
         earlier: EarlierTours | None,
-        stop: Callable[[], bool],
-        report: ReportOf[Front],
+        watch: Watch[Front],
     ) -> None:
-        self._began = time.monotonic()
-        self._deadline = self._began + options.time_limit
+        self._watch = watch.lasting(options.time_limit)
         self._earlier = earlier
         # A tour found over the day may keep less of the driven one.
         self._improves = options.time_limit > 0 and (earlier is None or earlier.min_kept == 0)
         self._day, self._instance, self._options = day, day.instance, options
-        self._stop, self._report = stop, report
         self._search = DaySearch(day, options.seed, options.start)
         point = options.reference_point
         self._reference_point = _reference_point_of(day) if point is None else point
@@ -90,7 +83,7 @@ class _Planning:
     def run(self, plan_under_means: PlanUnderMeans) -> Front:
         """Return the front."""
         means = self._under_means(plan_under_means)
-        began = time.monotonic()
+        began = self._watch.spent
         self._add(means.tours)
         if self._options.initial_tours is not None:
             self._search.add(_from_start(self._instance, self._options))
@@ -98,13 +91,13 @@ class _Planning:
         if self._improves:
             self._measure_finishing()
             terminated = self._improve(means)
-        improved = time.monotonic()
-        front = self._front(means, self._options.size, terminated, self._deadline)
+        improved = self._watch.spent
+        front = self._front(means, self._options.size, self._watch, terminated)
         if not len(front.tours):
             raise Cancelled
         timings = {
             "over_the_day": 1000 * (improved - began),
-            "departures": 1000 * (time.monotonic() - improved),
+            "departures": 1000 * (self._watch.spent - improved),
         }
         return replace(front, timings={**means.timings, **timings})
 
@@ -115,15 +108,16 @@ class _Planning:
             limit = _share_of_means(options.time_limit / self._instance.n) * options.time_limit
             size = max(options.size, _LEAST_OF_MEANS)
             options = replace(options, time_limit=limit, size=size)
-        return plan_under_means(options, self._stop, reporting(self._report, self._driven))
+        return plan_under_means(options, self._watch.converting(self._driven))
 
     def _add(self, tours: Tours) -> None:
         """Drive tours through the day, a few at a time, until a part of the time has gone."""
-        ends = time.monotonic() + _SHARE_OF_DRIVING * self._options.time_limit
+        limit = self._options.time_limit
+        driving = self._watch.lasting(_SHARE_OF_DRIVING * limit)
         parts = max(1, len(tours) // _DRIVEN_AT_ONCE)
         for part in range(parts):  # each of them spread over the front
             self._search.add(self._both_ways(tours[part::parts]))
-            if self._options.time_limit > 0 and time.monotonic() > ends:
+            if limit > 0 and driving.over():
                 return
 
     def _both_ways(self, tours: Tours) -> Tours:
@@ -139,22 +133,26 @@ class _Planning:
     def _driven(self, means: Front) -> Front:
         """Return a front that was found under mean costs so far, driven through the day."""
         self._search.add(self._both_ways(means.tours))
-        return self._front(means, self._options.size)
+        return self._so_far(means, self._options.size)
+
+    def _so_far(self, means: Front, size: int) -> Front:
+        """Return the best front so far, without a search for best departures."""
+        return self._front(means, size, self._watch.until(0.0), terminated=None)
 
     def _front(
         self,
         means: Front,
         size: int,
-        terminated: Termination | None = None,
-        deadline: float = -math.inf,
+        watch: Watch[Front],
+        terminated: Termination | None,
     ) -> Front:
-        """Return the best front so far; until the deadline, best departures are looked for."""
+        """Return the best front so far; best departures are looked for while there is time."""
         points, tours = self._search.found()
         front = FrontPoints(points, self._reference_point)
         seconds = selection_limit(self._options.time_limit)
         chosen = best_subset(front, min(size, self._options.size), seconds)
         # With their best departures, some may dominate others.
-        driven = self._search.driven(tours[chosen], deadline).best()
+        driven = self._search.driven(tours[chosen], watch).best()
         kept = None
         if self._earlier is not None:
             kept = kept_shares(self._instance, driven.tours, self._earlier.driven)
@@ -176,10 +174,10 @@ class _Planning:
     def _measure_finishing(self) -> None:
         """Note how long it takes to find the best departure of a tour."""
         tours = self._search.found()[1][:_MEASURED]
-        self._search.driven(tours[:1], math.inf)  # loads the compiled code
-        began = time.monotonic()
-        self._search.driven(tours, math.inf)
-        self._finishing = (time.monotonic() - began) / max(1, len(tours))
+        self._search.driven(tours[:1], Watch())  # loads the compiled code
+        timed = Watch[Front]()
+        self._search.driven(tours, timed)
+        self._finishing = timed.spent / max(1, len(tours))
 
     def _reserve(self) -> float:
         """Return the seconds that it takes to select the front."""
@@ -189,24 +187,19 @@ class _Planning:
         return selecting + self._finishing * min(size, points)
 
     def _improve(self, means: Front) -> Termination:
-        """Search until the deadline, and report on the way."""
-        reported = time.monotonic()
+        """Search until the time is over, and report on the way."""
         for _ in self._search.run():
-            now = time.monotonic()
-            if self._stop():
+            if self._watch.stopped():
                 return "cancelled"
-            if now + self._reserve() >= self._deadline:
+            if self._watch.over(self._reserve()):
                 return "time_limit"
-            if now - reported >= _REPORT_EVERY and self._deadline - now > _REPORT_EVERY:
-                self._tell(means, now)
-                reported = time.monotonic()
+            self._watch.report_if_due(self._found, partial(self._so_far, means))
         return "converged"
 
-    def _tell(self, means: Front, now: float) -> None:
+    def _found(self) -> tuple[float, int]:
+        """Return the hypervolume and the number of points found so far."""
         points, _ = self._search.found()
-        found = FrontPoints(points, self._reference_point).quick_hypervolume
-        progress = Progress(now - self._began, found, len(points))
-        self._report(progress, lambda size: self._front(means, size))
+        return FrontPoints(points, self._reference_point).quick_hypervolume, len(points)
 
 
 def _share_of_means(seconds_for_each: float) -> float:

@@ -1,9 +1,8 @@
 """The search over the day: all tours of a few stops; else weighted sums, one after another."""
 
-import time
 from collections.abc import Iterator
 from itertools import chain, count, permutations
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +31,7 @@ from service.over_the_day.travel import (
 from service.preferences import spread, weights
 from service.search.nondominated import nondominated
 from service.search.several.archive import BlockArchive, best_row, make_archive, rows_of
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
@@ -113,23 +113,23 @@ class DaySearch:
         allowed = np.isfinite(tour_lengths(self._instance, tours)).all(axis=1)
         return self._archive.points[rows[allowed]], tours[allowed]
 
-    def driven(self, tours: Tours, deadline: float) -> DrivenTours:
+    def driven(self, tours: Tours, watch: Watch[Any]) -> DrivenTours:
         """Drive tours through the day, with the best departures near the good ones.
 
-        After the deadline, by time.monotonic(), good departures are enough.
+        Once no time is left, good departures are enough.
         """
         cities = np.ascontiguousarray(tours, np.int32)
-        departures = np.array([self._departure(tour, deadline) for tour in cities])
+        departures = np.array([self._departure(tour, watch) for tour in cities])
         n, m = self._instance.n, self._instance.objectives
         reached = np.empty((len(cities), n + 1, m))
         write_reached(self._traffic, cities, departures, reached)
         return DrivenTours(tours, departures, reached)
 
-    def _departure(self, tour: NDArray[np.int32], deadline: float) -> float:
+    def _departure(self, tour: NDArray[np.int32], watch: Watch[Any]) -> float:
         if len(tour) <= MOST_TRIED:
             return best_departure(self._traffic, tour, *self._departures)
         good = good_departure(self._traffic, tour, *self._departures)
-        if time.monotonic() >= deadline:
+        if watch.over():
             return good
         return best_departure_near(self._traffic, tour, good, *self._departures)
 

@@ -1,11 +1,10 @@
 """Compile the search over the day, or load it from the cache."""
 
-import math
-
 import numpy as np
 
 from service.over_the_day.day import CostsOfDay, Day
 from service.over_the_day.search import DaySearch
+from service.watch import Watch
 
 _N = 12  # cities: too many to try all tours
 
@@ -15,7 +14,7 @@ def warm_up() -> None:
     for n in (4, _N):
         search = _search(n)
         any(search.run())  # until it has iterated
-        search.driven(search.found()[1], math.inf)
+        search.driven(search.found()[1], Watch())
 
 
 def _search(n: int) -> DaySearch:

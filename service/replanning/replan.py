@@ -1,7 +1,5 @@
 """replan(...): plan the front of the rest of the way from the tours of an earlier front."""
 
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -9,7 +7,7 @@ import numpy as np
 
 from service.construction.first_tours import Constructor
 from service.errors import Refusal
-from service.front import Front, PlanOptions, ReportOf, reporting
+from service.front import Front, PlanOptions
 from service.instance import Instance, tour_lengths
 from service.objectives import MOST_OBJECTIVES
 from service.planner import plan
@@ -18,6 +16,7 @@ from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, most_like_driven, with_most_kept_at
 from service.search.best_subset import best_subset, selection_limit
 from service.search.front_points import FrontPoints
+from service.watch import Watch
 
 _LEAST_SECONDS = 1e-3  # for the search, even if completing the earlier tours took all of the time
 _ROUNDING = 1e-9  # of a share
@@ -31,8 +30,7 @@ def replan(
     instance: Instance,
     earlier: EarlierTours,
     options: PlanOptions,
-    stop: Callable[[], bool] = lambda: False,
-    report: ReportOf[Front] = lambda *_: None,
+    watch: Watch[Front] | None = None,
 ) -> Front:
     """Return the best front found for an instance most of whose cities were in an earlier front.
 
@@ -47,24 +45,23 @@ def replan(
         instance: The rest of the way.
         earlier: The rest of the tours of the earlier front.
         options: The options of the front and the search.
-        stop: As in plan(...).
-        report: As in plan(...).
+        watch: As in plan(...).
 
     Raises:
         Cancelled, NoTour: As in plan(...).
         Refusal: No tour was found that keeps `min_kept` of the driven tour.
     """
-    began = time.perf_counter()
+    watch = (watch or Watch()).lasting(options.time_limit)
     first = _first_tours(instance, earlier)
     wanted = replace(_from_earlier(options, instance, earlier, first), initial_tours=first)
-    spent = time.perf_counter() - began
+    spent = watch.spent
     if wanted.time_limit > 0:
         wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
 
     def with_kept(front: Front) -> Front:
         return replace(front, kept=kept_shares(instance, front.tours, earlier.driven))
 
-    front = plan(constructor, instance, wanted, stop, reporting(report, with_kept))
+    front = plan(constructor, instance, wanted, watch.converting(with_kept))
     timings = {**front.timings, "construction": front.timings["construction"] + 1000 * spent}
     front = replace(front, timings=timings)
     if earlier.min_kept > 0:

@@ -1,8 +1,7 @@
 """The exact front of a few cities: all tours, but those that begin with too long a way."""
 
-import time
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from service.search.archive import ROUNDING, Archive, accepts, insert, make_arch
 from service.search.closing import closing_cost, is_open, opened_tours
 from service.search.costs import Costs, lengths, make_costs, travel_costs
 from service.search.several.enumeration import exact_tours_of_several
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -35,28 +35,24 @@ class Enumeration(NamedTuple):
     place: NDArray[np.int64]  # (1,): the place whose city is chosen next; 0 at the end
 
 
-def exact_tours(
-    instance: Instance,
-    deadline: float | None = None,
-    stop: Callable[[], bool] = lambda: False,
-) -> tuple[Cities, bool]:
+def exact_tours(instance: Instance, watch: Watch[Any] | None = None) -> tuple[Cities, bool]:
     """Return a tour for every point of the front of an instance, shape (m, n), and True.
 
     Where time runs out first, return those found so far, one at least, and False.
 
     Args:
         instance: The instance.
-        deadline: Time to stop, by time.monotonic(); None sets no limit.
-        stop: Called at least every few ms; True ends the enumeration at once.
+        watch: Asked at least every few ms whether to end. None sets no limit.
     """
+    watch = watch or Watch()
     if instance.objectives > OBJECTIVES:
-        return exact_tours_of_several(instance, deadline, stop)
+        return exact_tours_of_several(instance, watch)
     costs = make_costs(instance)
     archive = make_archive(len(costs.cities))
     complete = True
     for block, _ in enumerate(enumerate_tours(costs, archive)):
-        late = deadline is not None and block >= LEAST_BLOCKS and time.monotonic() >= deadline
-        if (late or stop()) and archive.counts[0] > 0:
+        late = block >= LEAST_BLOCKS and watch.over()
+        if (late or watch.stopped()) and archive.counts[0] > 0:
             complete = False
             break
     tours = archive.tours[archive.slots[np.flatnonzero(_distinct(archive))]]

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from service.front import Progress, ReportOf, SearchResult, Termination
+from service.front import SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
 from service.search.archive import MAX_POINTS
@@ -21,11 +21,10 @@ from service.search.front_points import FrontPoints
 from service.search.nondominated import nondominated
 from service.search.schedule import Search
 from service.search.several.schedule import SearchOfSeveral
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 
-REPORT_EVERY = 0.1  # seconds
-LONGEST_REPORTS = 10  # times as long as a report takes, the search goes on before the next
 # Of fewer points, and fewer blocks, a search goes on after its deadline, some 10 ms up to 200
 # cities: a process that was not run for a moment else answers with one tour. It goes on until there
 # is one: of 10,000 cities some 50 to 100 ms after it began, half of what nearest neighbours take.
@@ -39,12 +38,10 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     instance: Instance,
     tours: NDArray[np.integer],
     *,
-    deadline: float | None = None,
+    watch: Watch[SearchResult] | None = None,
     reserve: Callable[[int], float] = lambda _: 0.0,
-    iterations: int | None = None,
+    iterations: float = np.inf,
     seed: int = 0,
-    stop: Callable[[], bool] | None = None,
-    report: ReportOf[SearchResult] | None = None,
     reference_point: Array | None = None,
     capacity: int = MAX_POINTS,
     touched: NDArray[np.integer] | None = None,
@@ -59,17 +56,14 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     Args:
         instance: The instance.
         tours: Tours to start from, shape (m, n); m may be 0.
-        deadline: Time to stop, by time.monotonic(), or up to a few dozen ms later where hardly a
-            tour is found by then; None sets no limit.
-        reserve: Called with the number of points found so far: the seconds before the deadline at
-            which to stop, because they are needed for what follows the search.
-        iterations: Number of local optima to visit; one by three-opt counts as several. None sets
-            no limit. Without a deadline, the same seed and the same iterations give the
-            same front.
+        watch: Asked every millisecond or two whether to stop, which ends the search at once. At the
+            end of its time the search stops, or up to a few dozen ms later where hardly a tour is
+            found by then. None sets no limit.
+        reserve: Called with the number of points found so far: the seconds before the end at which
+            to stop, because they are needed for what follows the search.
+        iterations: Number of local optima to visit; one by three-opt counts as several. Without a
+            limit of time, the same seed and the same iterations give the same front.
         seed: The seed of all random choices.
-        stop: Called every millisecond or two; True ends the search at once.
-        report: Called about ten times a second with the progress, and with a function that copies
-            the n best tours found so far, which is valid until the report returns.
         reference_point: Shape (m,), of the hypervolume, in the instance's units; by default
             the instance's. The search works where this hypervolume grows fastest.
         capacity: The most tours that the search keeps, at least 16; the result has more only where
@@ -77,8 +71,9 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         touched: Where the given tours are of an earlier front: the cities at which they may have
             become worse, where the search looks first. It constructs no tours then.
     """
+    watch = watch or Watch()
     if instance.n <= MAX_ENUMERATED:
-        return _enumerated(instance, tours, deadline, stop)
+        return _enumerated(instance, tours, watch)
     if reference_point is None:
         reference_point = instance.reference_point
     search: Search | SearchOfSeveral
@@ -87,7 +82,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     else:
         search = SearchOfSeveral(instance, seed, reference_point, capacity, touched)
     search.add(tours)
-    terminated = _run(search, deadline, reserve, iterations, stop, report)
+    terminated = _run(search, watch, reserve, iterations)
     if not search.size:
         search.construct()
     dropped = search.not_covered(tours)
@@ -100,38 +95,34 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
 
 def _run(
     search: Search | SearchOfSeveral,
-    deadline: float | None,
+    watch: Watch[SearchResult],
     reserve: Callable[[int], float],
-    iterations: int | None,
-    stop: Callable[[], bool] | None,
-    report: ReportOf[SearchResult] | None,
+    iterations: float,
 ) -> Termination:
-    """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
-    began = reported = looked = time.monotonic()
+    """Run a search until it converges, its watch ends it, or its iterations are done."""
+    began = looked = watch.spent
     computed = time.thread_time()
-    pause, step = REPORT_EVERY, 0.0
-    spent = 0
+    step, visited = 0.0, 0
     for block, done in enumerate(search.run()):
-        spent += done
-        now = time.monotonic()
-        if stop is not None and stop():
+        visited += done
+        now = watch.spent
+        if watch.stopped():
             return "cancelled"
-        left = np.inf if deadline is None else deadline - now
-        before, step, looked = step, now - looked, now
+        before, step = step, now - looked
         begun = search.size >= (LEAST_POINTS if block < LEAST_BLOCKS else 1)
         next_step = min(before, step)  # the process may not have run during one of the two
         slowed = _slowed(now - began, time.thread_time() - computed)
-        late = begun and left <= slowed * reserve(search.size) + next_step
-        if late or (iterations is not None and spent >= iterations):
+        late = begun and watch.over(slowed * reserve(search.size) + next_step)
+        if late or visited >= iterations:
             return "time_limit"
-        # A report takes time; shortly before the deadline it could break it.
-        due = now - reported >= pause and left > pause
-        if report is not None and due and search.allowed:
-            progress = Progress(now - began, search.hypervolume, search.size)
-            report(progress, partial(_best_found, search))
-            reported = looked = time.monotonic()
-            pause = max(REPORT_EVERY, LONGEST_REPORTS * (reported - now))
+        watch.report_if_due(partial(_found, search), partial(_best_found, search))
+        looked = watch.spent
     return "converged"
+
+
+def _found(search: Search | SearchOfSeveral) -> tuple[float, int] | None:
+    """Return the hypervolume and the number of points found; None if all have a forbidden leg."""
+    return (search.hypervolume, search.size) if search.allowed else None
 
 
 def _slowed(seconds: float, computed: float) -> float:
@@ -142,18 +133,14 @@ def _slowed(seconds: float, computed: float) -> float:
 
 
 def _enumerated(
-    instance: Instance,
-    tours: NDArray[np.integer],
-    deadline: float | None,
-    stop: Callable[[], bool] | None,
+    instance: Instance, tours: NDArray[np.integer], watch: Watch[SearchResult]
 ) -> SearchResult:
     """Return the exact front, or where time runs out what was found of it and the given tours."""
-    found, complete = exact_tours(instance, deadline, stop or (lambda: False))
+    found, complete = exact_tours(instance, watch)
     if complete:
         return _front(instance, found, "converged")
-    cancelled = stop is not None and stop()
     every = np.concatenate((found, tours))
-    return _front(instance, every, "cancelled" if cancelled else "time_limit")
+    return _front(instance, every, "cancelled" if watch.stopped() else "time_limit")
 
 
 def _best_found(search: Search | SearchOfSeveral, size: int) -> SearchResult:

@@ -9,7 +9,6 @@ stores `results/ablation.json`; with `--only`, beside what is stored of the same
 """
 
 import argparse
-import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import partial
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from service.actor import OnnxActor
+from service.front import SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.preferences import fan, from_angles
@@ -30,6 +30,7 @@ from service.search.improve import improve
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
 from service.search.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks.actors import ACTORS
 from tests.benchmarks.instances import paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store
@@ -93,12 +94,12 @@ def _mean(
     build(instances[0])  # compiles, and fills caches
     shares, seconds, late = [], [], 0
     for instance in tqdm(instances, desc=f"{instances[0].n} cities, {limit} s", leave=False):
-        began = time.monotonic()
+        watch = Watch[SearchResult](limit)
         tours = build(instance)
-        late += time.monotonic() - began > limit
+        late += watch.over()
         with candidates(tours):
-            found = improve(instance, tours, deadline=began + limit)
-        seconds.append(time.monotonic() - began)
+            found = improve(instance, tours, watch=watch)
+        seconds.append(watch.spent)
         [reference_point, *_] = reference_points(instance.n).values()
         shares.append(100 * hypervolume(tour_lengths(instance, found.tours), reference_point))
     return {

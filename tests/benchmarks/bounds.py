@@ -29,8 +29,8 @@ from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route, kept_share
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import ALWAYS, VehicleType, Visit
-from service.front import Progress
 from service.pareto import knee
+from service.watch import Progress, Watch
 from tests.benchmarks.cells import of
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
@@ -112,7 +112,7 @@ def measured(n: int, over: Over | Measure, seed: int) -> dict[str, Any]:
         found.append((time.perf_counter() - began, progress.points))
 
     began = time.perf_counter()
-    front = plan_fleet(fleet, FleetOptions(time_limit=SECONDS), report=report)
+    front = plan_fleet(fleet, FleetOptions(time_limit=SECONDS), watch=Watch(report=report))
     found.append((time.perf_counter() - began, front.found))
     if broken := [each for plan in front.plans for each in violations(fleet, plan)]:
         raise RuntimeError(f"a plan breaks a rule: {broken[0]}")

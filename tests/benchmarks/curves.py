@@ -24,6 +24,7 @@ from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.pareto_local_search import bisection_order
 from service.search.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks import provenance as of_run
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import PICTURES, load, picture, provenance, store
@@ -92,8 +93,7 @@ def paretour(instance: Instance) -> Snapshots:
     snapshots = []
     for mark in MARKS:
         began = time.process_time()
-        deadline = time.monotonic() + mark
-        found = improve(instance, none, deadline=deadline)
+        found = improve(instance, none, watch=Watch(mark))
         snapshots.append((time.process_time() - began, tour_lengths(instance, found.tours)))
         if found.terminated == "converged":
             break

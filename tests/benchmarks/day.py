@@ -16,7 +16,6 @@ Shares are hypervolumes in the box of all four. Prints a table and stores `resul
 
 import argparse
 import asyncio
-import math
 import tempfile
 from collections.abc import Callable
 from functools import partial
@@ -39,6 +38,7 @@ from service.planner import plan
 from service.preferences import fan, from_angles
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
+from service.watch import Watch
 from tests.benchmarks.day_table import PROFILES, SHAPES, SIZES, day_table
 from tests.benchmarks.rows import resume
 from tests.helpers.helsinki import reachable_places
@@ -169,7 +169,7 @@ def _of_means(actor: Any, day: Day) -> Array:
     """Points of tours planned under mean costs, both ways, each at its best departure."""
     tours = plan(actor, day.instance, _options(BRIEF)).tours
     both = np.concatenate((tours, np.roll(tours[:, ::-1], 1, axis=1)))
-    return DaySearch(day, 0).driven(both, math.inf).best().points
+    return DaySearch(day, 0).driven(both, Watch()).best().points
 
 
 def _static(actor: Any, day: Day) -> Array:
@@ -179,7 +179,7 @@ def _static(actor: Any, day: Day) -> Array:
     best: Array | None = None
     for departure in np.linspace(day.earliest, day.latest, DEPARTURES):
         fixed = Day(day.costs, day.clock, day.service, departure, departure, day.ends)
-        points = DaySearch(fixed, 0).driven(tours, math.inf).points
+        points = DaySearch(fixed, 0).driven(tours, Watch()).points
         best = points if best is None else np.minimum(best, points)
     assert best is not None
     return best[nondominated(best)]

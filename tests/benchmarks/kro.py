@@ -17,10 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
+from service.front import SearchResult
 from service.instance import Instance
 from service.pareto import hypervolume, nondominated
 from service.search.improve import improve
 from service.search.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks.provenance import provenance, store
 
 Array = NDArray[np.float64]
@@ -62,8 +64,8 @@ def rounded_distances(path: Path) -> Array:
 
 def _run(instance: Instance, limit: float | None, seed: int) -> dict[str, Any]:
     began = time.monotonic()
-    deadline = None if limit is None else began + limit
-    found = improve(instance, np.empty((0, instance.n), np.int32), deadline=deadline, seed=seed)
+    watch = Watch[SearchResult](np.inf if limit is None else limit)
+    found = improve(instance, np.empty((0, instance.n), np.int32), watch=watch, seed=seed)
     seconds = time.monotonic() - began
     return {"seconds": round(seconds, 3), "points": len(found.points), "front": found.points}
 

@@ -7,7 +7,6 @@ instance; what is stored is not measured again.
 """
 
 import argparse
-import time
 from functools import partial
 from typing import Any
 
@@ -17,6 +16,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks.instances import COUNT, check_tours, paper_instances
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
@@ -78,6 +78,6 @@ def section() -> str:
 
 def _found(instance: Instance, limit: float) -> float:
     none = np.empty((0, instance.n), np.int32)
-    tours = improve(instance, none, deadline=time.monotonic() + limit).tours
+    tours = improve(instance, none, watch=Watch(limit)).tours
     check_tours(tours, instance.n)
     return hypervolume(tour_lengths(instance, tours), np.full(2, float(instance.n)))

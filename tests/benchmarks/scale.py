@@ -28,6 +28,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.rivals.construction import Construct, greedy_edge, spread_weights, under_each
 from tests.benchmarks.rows import Points, resume
@@ -79,7 +80,7 @@ def searched(shape: str, limit: float, n: int) -> dict[str, Any]:
     warm_up()
     instance = drawn(shape, n)
     began = time.monotonic()
-    found = improve(instance, np.empty((0, n), np.int32), deadline=began + limit)
+    found = improve(instance, np.empty((0, n), np.int32), watch=Watch(limit))
     seconds = time.monotonic() - began
     check_tours(found.tours_at(np.array([0, len(found.points) - 1])), n)
     return {**_row(found.points, n, seconds), "late": round(max(0.0, seconds - limit), 3)}

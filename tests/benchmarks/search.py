@@ -19,6 +19,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks import provenance as of_run
 from tests.benchmarks.instances import COUNT, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store
@@ -65,7 +66,7 @@ def paretour(cities: NDArray[np.float64]) -> list[dict[str, Any]]:
     rows = []
     for mark in MARKS[n]:
         began = time.monotonic()
-        found = improve(instance, np.empty((0, n), np.int32), deadline=began + mark)
+        found = improve(instance, np.empty((0, n), np.int32), watch=Watch(mark))
         seconds = time.monotonic() - began
         rows.append({"limit": mark, **_row(instance, found.tours, seconds)})
     return rows

@@ -32,6 +32,7 @@ from service.instance import Instance, step_lengths, tour_lengths
 from service.preferences import spread
 from service.search.improve import improve
 from service.search.several.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks.kro import rounded_distances
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals import evolutionary, fast_tsp_weights, ortools_routing
@@ -125,7 +126,7 @@ def _summed_up(seconds: float, instance: Instance) -> dict[str, Any]:
 
 def _search(instance: Instance, seconds: float) -> Array:
     nothing = np.empty((0, instance.n), np.int32)
-    return improve(instance, nothing, deadline=time.monotonic() + seconds).points
+    return improve(instance, nothing, watch=Watch(seconds)).points
 
 
 def _served(size: int, instance: Instance, seconds: float) -> Array:

@@ -29,6 +29,7 @@ from service.instance import Instance
 from service.onnx_runtime import onnxruntime
 from service.search.improve import improve
 from service.search.several.warm_up import warm_up
+from service.watch import Watch
 from tests.benchmarks.printed import TRI_CORNERS
 from tests.benchmarks.rows import resume
 
@@ -108,9 +109,8 @@ def _whole_front(
 ) -> Tours:
     instance = Instance(coordinates=cities.astype(np.float64))
     corner = np.full(preferences.shape[1], float(TRI_CORNERS[len(cities)]))
-    deadline = time.monotonic() + seconds
     nothing = np.empty((0, len(cities)), np.int32)
-    found = improve(instance, nothing, deadline=deadline, reference_point=corner)
+    found = improve(instance, nothing, watch=Watch(seconds), reference_point=corner)
     return found.tours.astype(np.int64)
 
 

@@ -4,8 +4,8 @@ from service.cluster.celery_app import QUEUE, TASK
 from service.cluster.records import STOP_REASONS, TAKEN_OVER, record_arguments, report_arguments
 from service.cluster.script import CHANNEL, SCRIPT
 from service.errors import Cancelled, DeadlineExceeded
-from service.front import Progress
 from service.jobs.record import UNFINISHED
+from service.watch import Progress
 from tests.helpers.released_records import REDIS_HASHES
 from tests.helpers.scripted_runner import document
 from tests.helpers.stores import job, record

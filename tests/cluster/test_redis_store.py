@@ -13,8 +13,8 @@ from service.cluster.redis_engine import connect
 from service.cluster.script import connect_redis, wait_for_redis
 from service.cluster.worker_store import WorkerStore
 from service.errors import Expired, StoreUnavailable
-from service.front import Progress
 from service.requests.task import TaskSource
+from service.watch import Progress
 from tests.helpers.ports import free_port
 from tests.helpers.redis_server import FORGETFUL, Redis, redis_server
 from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS

@@ -22,6 +22,7 @@ from service.fleet.schedule import schedule
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.instance import Instance
 from service.pareto import nondominated
+from service.watch import Watch
 from tests.helpers.fleets import exact_front, random_fleet
 
 VAN = VehicleType(start=0, end=0, count=2, capacity=(9,))
@@ -180,7 +181,7 @@ def test_enumeration_leaves_the_search_its_time_and_stops_when_told(limit: float
     rules = Rules(visits=(Visit(),) * 7, vehicles=(van,) * 6)
     fleet = Fleet(rules=rules, costs=np.random.default_rng(1).random((2, 7, 7)))
     with pytest.raises((Cancelled, Refusal)):
-        plan_fleet(fleet, FleetOptions(time_limit=limit), stop=lambda: True)
+        plan_fleet(fleet, FleetOptions(time_limit=limit), watch=Watch(stop=lambda: True))
     calls: list[None] = []
     assert exact_plans(fleet, lambda: bool(calls.append(None)) or len(calls) > 100) is None
 

@@ -28,8 +28,8 @@ from service.fleet.solver import Solver
 from service.fleet.sweep import Searches, Sweep
 from service.fleet.translation import Translation
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
-from service.front import Progress
 from service.pareto import nondominated
+from service.watch import Progress, Watch
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.fleets import (
     Point,
@@ -87,7 +87,7 @@ def searched(fleet: Fleet, sweep: type[Searches] = Sweep, searches: int = 8) -> 
     """Return the points that PyVRP finds of a fleet so small that it would be enumerated."""
     translation = Translation(fleet)
     archive = SolutionArchive(translation)
-    solver = Solver(translation, 0, archive.offer, lambda: False)
+    solver = Solver(translation, 0, archive.offer, lambda: False, Watch())
     random = np.random.default_rng(0)
     mover = Mover(translation, archive, random)
     for step in islice(sweep(translation, archive, random, lambda: inf).steps(), searches):
@@ -148,7 +148,7 @@ def test_progress_is_reported_and_a_stop_ends_with_what_was_found() -> None:
 
     fleet = deliveries(20)
     options = FleetOptions(time_limit=60.0)
-    front = plan_fleet(fleet, options, stop=lambda: len(reports) > 1, report=report)
+    front = plan_fleet(fleet, options, watch=Watch(stop=lambda: len(reports) > 1, report=report))
     assert front.terminated == "cancelled"
     assert front.plans
     assert all(0 < plans <= min(3, points) for points, plans in reports)
@@ -156,7 +156,7 @@ def test_progress_is_reported_and_a_stop_ends_with_what_was_found() -> None:
 
 def test_a_stop_before_the_first_plan_cancels() -> None:
     with pytest.raises(Cancelled):
-        plan_fleet(deliveries(20), FleetOptions(time_limit=60.0), stop=lambda: True)
+        plan_fleet(deliveries(20), FleetOptions(time_limit=60.0), watch=Watch(stop=lambda: True))
 
 
 def test_the_time_limit_is_kept_and_a_front_there() -> None:
@@ -365,7 +365,7 @@ def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
     with pytest.raises(Refusal, match="need an actor"):
         plan_fleet(fleet, options)
     with pytest.raises(Cancelled):
-        plan_fleet(fleet, options, shuffler(), stop=lambda: True)
+        plan_fleet(fleet, options, shuffler(), watch=Watch(stop=lambda: True))
 
 
 @pytest.mark.parametrize("size", [1, 100])

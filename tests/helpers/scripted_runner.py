@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from service.front import Front, PlanOptions, Progress
+from service.front import Front, PlanOptions
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
@@ -22,6 +22,7 @@ from service.kinds.tour_document import encode_front
 from service.preferences import spread
 from service.requests.stops import Plane, Stops
 from service.requests.task import Task
+from service.watch import Progress
 
 _TERMINATED = Event()  # of the process that runs
 

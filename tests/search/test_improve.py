@@ -10,13 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from service.front import Progress, SearchResult
+from service.front import SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.improve import LEAST_POINTS, improve
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import BLOCK, Search
+from service.watch import Progress, Watch
 from tests.helpers.instances import (
     ENDS,
     KINDS,
@@ -208,7 +209,7 @@ def test_a_deadline_is_obeyed_at_the_first_look_after_it(n: int) -> None:
         return False
 
     deadline = time.monotonic() + 0.4
-    found = improve(instance, no_tours(n), deadline=deadline, stop=stop)
+    found = improve(instance, no_tours(n), watch=Watch(0.4, stop))
     assert found.terminated == "time_limit"
     assert is_front(instance, found)
     # The deadline may pass between a look at the clock and this one.
@@ -226,7 +227,7 @@ def test_the_search_looks_at_the_clock_after_few_iterations(n: int) -> None:
 @pytest.mark.parametrize("objectives", [2, 3])
 def test_a_deadline_that_has_passed_still_gives_a_small_front(n: int, objectives: int) -> None:
     instance = uniform(n, objectives=objectives)
-    found = improve(instance, no_tours(n), deadline=time.monotonic() - 1)
+    found = improve(instance, no_tours(n), watch=Watch(-1.0))
     assert found.terminated == "time_limit"
     assert len(found.tours) >= LEAST_POINTS
     assert is_front(instance, found)
@@ -241,14 +242,14 @@ def test_a_deadline_that_has_passed_ends_a_search_from_a_front() -> None:
         looks.append(None)
         return False
 
-    improve(instance, given.tours, deadline=time.monotonic() - 1, stop=stop)
+    improve(instance, given.tours, watch=Watch(-1.0, stop))
     assert len(looks) == 1
 
 
 def test_a_stopped_search_keeps_what_it_found() -> None:
     instance = uniform(100)
     calls = iter(range(300))
-    found = improve(instance, no_tours(100), stop=lambda: next(calls) == 250)
+    found = improve(instance, no_tours(100), watch=Watch(stop=lambda: next(calls) == 250))
     assert found.terminated == "cancelled"
     assert next(calls) == 251
     assert len(found.tours) > 20
@@ -260,8 +261,7 @@ def test_progress_is_reported_and_only_ever_upwards() -> None:
     improve(
         uniform(100),
         no_tours(100),
-        deadline=time.monotonic() + 1.0,
-        report=lambda progress, _: reported.append(progress),
+        watch=Watch(1.0, report=lambda progress, _: reported.append(progress)),
     )
     assert len(reported) >= 2
     shares = [progress.hypervolume for progress in reported]
@@ -282,7 +282,7 @@ def test_random_tours_are_improved_a_great_deal() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_search_that_is_stopped_at_once_gives_a_nearest_neighbour_tour(kind: str) -> None:
     instance = small_integers(kind, 60, seed=4)
-    found = improve(instance, no_tours(60), stop=lambda: True)
+    found = improve(instance, no_tours(60), watch=Watch(stop=lambda: True))
     search = Search(instance, 0, 60 * instance.scale)
     matrices = np.ldexp(instance.scale, instance.shifts)[:, None, None] * instance.scaled_matrices
     cost = np.tensordot(search.weights[WEIGHTS // 2], matrices, 1)
@@ -301,6 +301,6 @@ def test_the_search_stops_before_its_deadline_by_the_seconds_reserved_for_its_po
         sizes.append(points)
         return 60.0 if points > 20 else 0.0
 
-    found = improve(instance, no_tours(40), deadline=time.monotonic() + 60, reserve=reserve)
+    found = improve(instance, no_tours(40), watch=Watch(60.0), reserve=reserve)
     assert found.terminated == "time_limit"
     assert len(found.points) == sizes[-1] > 20

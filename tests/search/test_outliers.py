@@ -1,6 +1,5 @@
 """Costs of very different sizes, and legs that are forbidden, hide no tour from the search."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +12,7 @@ from service.pareto import hypervolume, nondominated
 from service.preferences import fan, from_angles
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import improve
+from service.watch import Watch
 from tests.helpers.instances import ENDS, every_tour, no_tours, opened
 
 pytestmark = pytest.mark.usefixtures("compiled")
@@ -198,7 +198,7 @@ def test_the_network_plans_the_others_as_if_the_far_city_was_nearer(kind: str) -
 @pytest.mark.parametrize("seed", range(8))
 def test_a_bound_is_above_what_is_found_of_costs_of_any_size(seed: int) -> None:
     instance = drawn(seed + 9_000, 13)
-    found = improve(instance, no_tours(13), deadline=time.monotonic() + 0.3)
+    found = improve(instance, no_tours(13), watch=Watch(0.3))
     bound = hypervolume_bound(instance, instance.reference_point)
     assert hypervolume(found.points, instance.reference_point) <= bound <= 1
 
@@ -211,8 +211,7 @@ def test_a_front_is_empty_where_every_tour_has_a_forbidden_leg() -> None:
     found = improve(
         instance,
         np.arange(20)[None],
-        deadline=time.monotonic() + 0.4,
-        report=lambda progress, _: reports.append(progress.points),
+        watch=Watch(0.4, report=lambda progress, _: reports.append(progress.points)),
     )
     assert found.points.shape == (0, 2)
     assert found.tours.shape == (0, 20)
@@ -222,11 +221,11 @@ def test_a_front_is_empty_where_every_tour_has_a_forbidden_leg() -> None:
 def test_enumeration_stops_in_time_and_keeps_what_it_found() -> None:
     first = np.random.default_rng(7).random((9, 9))
     instance = Instance(matrices=np.stack([first, 1 - first]), closed=False)
-    found = improve(instance, no_tours(9), deadline=time.monotonic())
+    found = improve(instance, no_tours(9), watch=Watch(0.0))
     assert found.terminated == "time_limit"
     assert len(found.points) > 0
     calls = iter(range(10**6))
-    found = improve(instance, no_tours(9), stop=lambda: next(calls) > 3)
+    found = improve(instance, no_tours(9), watch=Watch(stop=lambda: next(calls) > 3))
     assert found.terminated == "cancelled"
     assert len(found.points) > 0
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, BinaryIO
 
-from service.front import Progress
 from service.kinds.front_document import FrontDocument
 from service.kinds.parts import Part
 from service.requests.task import Task
+from service.watch import Progress
 
 _LENGTH = struct.Struct("!Q")
 

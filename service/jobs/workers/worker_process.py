@@ -18,7 +18,6 @@ from threading import Condition, Lock, Thread
 from typing import Protocol
 
 from service.extensions.names import NO_EXTENSIONS, Extensions
-from service.front import Progress
 from service.jobs.workers import fork_server
 from service.jobs.workers.messages import (
     Do,
@@ -39,6 +38,7 @@ from service.kinds.kind import Report
 from service.kinds.parts import Compiling, Part
 from service.requests.limits import Limits
 from service.requests.task import Task
+from service.watch import Progress
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
 _LARGE = 1_000_000  # kilobytes; a process that has grown beyond is replaced after its task

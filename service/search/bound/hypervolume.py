@@ -5,8 +5,8 @@ the half-plane w . f >= L(w). So a front dominates no more of the box than what 
 these half-planes.
 """
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from service.search.costs import Costs, make_costs, scaled_reference
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.hypervolume import hypervolume
 from service.search.pareto_local_search import bisection_order
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 
@@ -30,10 +31,7 @@ SLACK = 1e-9  # share by which a lower bound is lowered, far above what rounding
 
 
 def hypervolume_bound(
-    instance: Instance,
-    reference_point: Array,
-    deadline: float | None = None,
-    stop: Callable[[], bool] = lambda: False,
+    instance: Instance, reference_point: Array, watch: Watch[Any] | None = None
 ) -> float:
     """Return an upper bound on the hypervolume of any front of the instance, 0 to 1.
 
@@ -44,15 +42,15 @@ def hypervolume_bound(
     Args:
         instance: The instance.
         reference_point: Shape (m,), positive, in the instance's own units.
-        deadline: Time to stop, by time.monotonic(); None sets no limit.
-        stop: Called at least every few ms; True ends the tightening at once.
+        watch: Asked at least every few ms whether to end. None sets no limit.
     """
+    watch = watch or Watch()
     if instance.n <= MAX_ENUMERATED:
-        tours, complete = exact_tours(instance, deadline, stop)
+        tours, complete = exact_tours(instance, watch)
         if complete:
             return hypervolume(tour_lengths(instance, tours), reference_point)
     if instance.objectives > OBJECTIVES:
-        return bound_of_several(instance, reference_point, deadline, stop)
+        return bound_of_several(instance, reference_point, watch)
     share = np.linspace(0.0, 1.0, WEIGHTS)
     scale = np.ldexp(instance.scale, instance.shifts)
     weights = np.stack([share, 1 - share], axis=1) / scale
@@ -61,7 +59,7 @@ def hypervolume_bound(
     lowest = np.zeros(WEIGHTS)
     for k, value in bound(costs, weights):
         lowest[k] = max(lowest[k], value * (1 - SLACK))
-        if stop() or (deadline is not None and time.monotonic() >= deadline):
+        if watch.ended():
             break
     return area_above(weights * scaled_reference(instance, reference_point), lowest)
 

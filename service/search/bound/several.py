@@ -1,8 +1,8 @@
 """The same bound of three and four objectives: half-spaces cut the box instead of half-planes."""
 
 import math
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from service.search.bound.assignment import augment, make_assignment, price_boun
 from service.search.bound.one_tree import ascend, make_ascent
 from service.search.costs import Costs, scaled_reference
 from service.search.several.costs import make_objective_costs, weighted_costs
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 
@@ -24,17 +25,13 @@ SLACK = 1e-9  # share by which bounds are loosened, far above what rounding can 
 THINNEST = 1e-6  # share of the box's diagonal that is left, below which one half-space alone counts
 
 
-def bound_of_several(
-    instance: Instance, reference_point: Array, deadline: float | None, stop: Callable[[], bool]
-) -> float:
+def bound_of_several(instance: Instance, reference_point: Array, watch: Watch[Any]) -> float:
     """Return an upper bound on the hypervolume of any front of the instance, 0 to 1."""
-    weights, lowest = lowest_lengths(instance, deadline, stop)
+    weights, lowest = lowest_lengths(instance, watch)
     return volume_above(weights * scaled_reference(instance, reference_point), lowest)
 
 
-def lowest_lengths(
-    instance: Instance, deadline: float | None = None, stop: Callable[[], bool] = lambda: False
-) -> tuple[Array, Array]:
+def lowest_lengths(instance: Instance, watch: Watch[Any]) -> tuple[Array, Array]:
     """Return weights, shape (k, m), and a lower bound on the length of all tours under each."""
     shares = lattice(instance.objectives, PARTS[instance.objectives]).clip(LEAST_SHARE)
     weights = shares[spread_out(shares)] / np.ldexp(instance.scale, instance.shifts)
@@ -43,7 +40,7 @@ def lowest_lengths(
     lowest = np.zeros(len(weights))
     for k, value in _bounds([weighted_costs(costs, each) for each in weights], weights):
         lowest[k] = max(lowest[k], value * (1 - SLACK))
-        if stop() or (deadline is not None and time.monotonic() >= deadline):
+        if watch.ended():
             break
     return weights, lowest
 

@@ -1,7 +1,6 @@
 """The exact front of a few cities under three or four objectives: all tours are compared."""
 
-import time
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from service.search.archive import ROUNDING
 from service.search.closing import opened_tours
 from service.search.several.archive import BlockArchive, insert, make_archive, rows_of
 from service.search.several.costs import ObjectiveCosts, make_objective_costs, sum_lengths
+from service.watch import Watch
 
 Cities = NDArray[np.int32]
 
@@ -19,9 +19,7 @@ BLOCK = 500  # tours between two checks of the deadline, a fraction of a ms
 ANY = -1  # no fixed end
 
 
-def exact_tours_of_several(
-    instance: Instance, deadline: float | None, stop: Callable[[], bool]
-) -> tuple[Cities, bool]:
+def exact_tours_of_several(instance: Instance, watch: Watch[Any]) -> tuple[Cities, bool]:
     """Return a tour for every point of the front of up to nine cities, and True.
 
     Where time runs out first, return those found so far, one at least, and False.
@@ -34,8 +32,7 @@ def exact_tours_of_several(
     complete, left = True, True
     while left:
         left = insert_some(costs, archive, order, ends, BLOCK)
-        late = stop() or (deadline is not None and time.monotonic() >= deadline)
-        if left and late and archive.counts[0] > 0:
+        if left and watch.ended() and archive.counts[0] > 0:
             complete = False
             break
     rows = rows_of(archive)

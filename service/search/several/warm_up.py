@@ -13,6 +13,7 @@ from service.search.enumeration import exact_tours
 from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.improve import improve
+from service.watch import Watch
 
 _N = 12  # cities: too many to enumerate
 
@@ -41,7 +42,7 @@ def beside_local_search() -> None:
 def bounds() -> None:
     """Compile the bounds on the hypervolume, up to the volume, for which nothing is compiled."""
     for instance in _instances():
-        lowest_lengths(instance)
+        lowest_lengths(instance, Watch())
 
 
 def _instances() -> tuple[Instance, Instance]:

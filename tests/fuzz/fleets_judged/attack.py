@@ -14,6 +14,7 @@ from service.kinds.kind import Tools
 from service.kinds.parsing import parse_task
 from service.requests.limits import Limits
 from service.requests.task import TaskSource
+from service.watch import Watch
 from tests.fuzz.fleets_judged.all_plans import Point, exact_points
 from tests.fuzz.fleets_judged.judge import Judge
 from tests.fuzz.fleets_judged.requests import random_fleet, with_bounds_at_arrivals
@@ -96,7 +97,7 @@ def answer_to(request: Json) -> Any:
     """Return the answer to a request as JSON, or the refusal."""
     try:
         task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
-        document = run_fleet(task.subject, task, Tools({}, LIMITS), lambda: False, lambda *_: None)
+        document = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
     except Refusal as refusal:
         return refusal
     return json.loads(document.json(id="", status="done"))

@@ -1,7 +1,5 @@
 """No front exceeds the bound."""
 
-import time
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -20,6 +18,7 @@ from service.search.bound.hypervolume import (
 from service.search.costs import make_costs
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
+from service.watch import Watch
 from tests.helpers.instances import ENDS, all_tours, every_tour, opened
 
 pytestmark = pytest.mark.usefixtures("compiled")
@@ -130,8 +129,7 @@ def test_a_bound_out_of_time_is_loose_yet_valid(symmetric: bool) -> None:
     hasty = hypervolume_bound(
         instance,
         corner,
-        deadline=time.monotonic(),
-        stop=lambda: bool(checks.append(None)),  # type: ignore[func-returns-value]
+        Watch(0.0, lambda: bool(checks.append(None))),  # type: ignore[func-returns-value]
     )
     assert len(checks) == 1
     assert hypervolume_bound(instance, corner) <= hasty <= 1
@@ -149,7 +147,7 @@ def test_a_bound_that_is_told_to_stop_is_loose_yet_valid() -> None:
     instance = drawn(7, 60, True, planar=True)
     corner = 60 * instance.scale
     answers = iter([False, True])
-    hasty = hypervolume_bound(instance, corner, stop=lambda: next(answers))
+    hasty = hypervolume_bound(instance, corner, Watch(stop=lambda: next(answers)))
     with pytest.raises(StopIteration):
         next(answers)
     assert hypervolume_bound(instance, corner) <= hasty <= 1

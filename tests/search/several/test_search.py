@@ -1,6 +1,5 @@
 """The search for three and four objectives: exact for few cities, and it keeps what limits it."""
 
-import time
 from itertools import islice
 
 import numpy as np
@@ -13,6 +12,7 @@ from service.search.bound.hypervolume import hypervolume_bound
 from service.search.hypervolume import hypervolume
 from service.search.improve import improve
 from service.search.several.schedule import SearchOfSeveral
+from service.watch import Watch
 from tests.helpers.instances import (
     ENDS,
     KINDS,
@@ -118,8 +118,7 @@ def test_tours_that_take_over_from_others_stay_on_the_front(kind: str) -> None:
 
 def test_it_ends_at_its_deadline_with_what_it_has() -> None:
     instance = uniform(200, objectives=3)
-    deadline = time.monotonic() + 0.5
-    found = improve(instance, no_tours(200), deadline=deadline)
+    found = improve(instance, no_tours(200), watch=Watch(0.5))
     assert found.terminated == "time_limit"
     assert is_front(instance, found)
 
