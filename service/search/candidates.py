@@ -30,7 +30,7 @@ Cities = NDArray[np.int32]
 CANDIDATES_PER_CITY = 8  # from 5 to 12 make no difference that could be measured
 POOL_WEIGHTS = 5  # weights under which the pool collects candidates
 POOL_BLOCK = 200_000  # costs computed between two checks of the deadline
-TREE_BLOCK = 100  # rows filled by trees between two checks of the deadline
+TREE_BLOCK = 500  # rows filled by a tree between two checks of the deadline
 
 
 class CandidatePool(NamedTuple):
@@ -59,10 +59,11 @@ def make_candidate_pool(n: int) -> CandidatePool:
     )
 
 
-def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterator[None]:
-    """Fill a pool with the cheapest cities under weights (k, 2), and yield every few milliseconds.
+def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterator[int]:
+    """Fill an empty pool with the cheapest cities under weights (k, 2).
 
-    O(n^2) where costs are tabulated, else O(n log n).
+    O(n^2) where costs are tabulated, else O(n log n). Yields every few milliseconds under how many
+    of the weights it is filled so far.
     """
     n = len(pool.cities)
     if len(costs.matrix):
@@ -73,14 +74,14 @@ def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterato
         trees = make_kd_trees(weights, cities, costs.cities.shape[1])
         for k in range(len(weights)):
             fill_kd_tree(trees, costs, k)
-            yield
-        for begin in range(compared, n, TREE_BLOCK):
-            fill_pool_by_trees(pool, costs, trees, begin, min(begin + TREE_BLOCK, n))
-            yield
+            for begin in range(compared, n, TREE_BLOCK):
+                fill_pool_by_tree(pool, costs, trees, k, begin, min(begin + TREE_BLOCK, n))
+                yield k
     rows = max(1, POOL_BLOCK // n)
     for begin in range(0, compared, rows):
         fill_pool(pool, costs, weights, begin, min(begin + rows, compared))
-        yield
+        yield 0
+    yield len(weights)
 
 
 def warm_up(instance: Instance) -> None:
@@ -144,20 +145,21 @@ def fill_pool(pool: CandidatePool, costs: Costs, weights: Array, begin: int, end
 
 
 @allocating
-def fill_pool_by_trees(
-    pool: CandidatePool, costs: Costs, trees: KdTrees, begin: int, end: int
+def fill_pool_by_tree(
+    pool: CandidatePool, costs: Costs, trees: KdTrees, k: int, begin: int, end: int
 ) -> None:
-    """Fill the rows begin to end - 1 of a pool with the cheapest cities under the trees' weights.
+    """Fill the rows begin to end - 1 of a pool with the cheapest cities under weights k as well.
 
-    That is what fill_pool() fills in, but for cities at equal costs. O(log n) a row.
+    Under all weights in turn, that is what fill_pool() fills in, but for cities at equal costs.
+    O(log n) a row.
     """
     found = make_nearest(CANDIDATES_PER_CITY)
     seen = np.full(len(pool.cities), -1, np.int32)
     for i in range(begin, end):
-        pool.sizes[i] = 0
-        for k in range(len(trees.weights)):
-            find_nearest(trees, costs, k, i, found)
-            pool_chosen(pool, costs, i, found.cities, seen)
+        for place in range(pool.sizes[i]):
+            seen[pool.cities[i, place]] = i
+        find_nearest(trees, costs, k, i, found)
+        pool_chosen(pool, costs, i, found.cities, seen)
 
 
 @inlined

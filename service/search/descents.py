@@ -72,6 +72,12 @@ class Descents:
             if scalarization.w0 * first + scalarization.w1 * second < least:
                 load(tour, first, second)
 
+    def construct(self, k: int) -> None:
+        """Offer a tour that is constructed under weight k, whose candidates are ranked."""
+        scalarization = self.scalarization(k)
+        self.load_start(self.local_search, scalarization, construct=True)
+        offer(self.local_search.working, scalarization, self.state.archive)
+
     def _best_tour(self, scalarization: Scalarization) -> tuple[Cities, float, float] | None:
         """Return the best tour known for a weighted sum and its lengths, if there is any."""
         archive = self.state.archive

@@ -202,10 +202,18 @@ class Search:
             yield 1
 
     def pool_candidates(self) -> Iterator[int]:
-        """Fill the pool from which the candidates under each weight are ranked."""
-        self.pool = make_candidate_pool(self.n)
-        pooled = self.weights[np.linspace(0, len(self.weights) - 1, POOL_WEIGHTS).astype(int)]
-        for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
+        """Fill the pool from which the candidates under each weight are ranked.
+
+        Of very many cities without a tour the first one is then constructed as soon as it can be.
+        """
+        self.pool, middle = make_candidate_pool(self.n), len(self.weights) // 2
+        pooled = np.linspace(0, len(self.weights) - 1, POOL_WEIGHTS).astype(int)
+        if self.n >= VAST:
+            pooled = pooled[np.argsort(np.abs(pooled - middle), kind="stable")]
+        for filled in fill_in_blocks(self.pool, self.state.costs, self.weights[pooled]):
+            if filled == 1 and self.n >= VAST and not self.size:
+                rank_candidates(self.pool, self.descents.scalarization(middle))
+                self.descents.construct(middle)
             yield 0
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from service.instance import tour_lengths
+from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
 from service.search.pareto_local_search import (
@@ -15,6 +15,7 @@ from service.search.pareto_local_search import (
     MANY,
     MENDED_WEIGHTS,
     MENDING,
+    VAST,
     WEIGHTS,
     rounds,
 )
@@ -128,3 +129,9 @@ def _is_on_hull(points: np.ndarray) -> list[int]:
 def _turns_right(first: np.ndarray, second: np.ndarray, third: np.ndarray) -> bool:
     one, other = second - first, third - first
     return bool(one[0] * other[1] <= one[1] * other[0])
+
+
+def test_without_time_the_first_tour_of_very_many_cities_is_good_under_both_objectives() -> None:
+    instance = Instance(coordinates=np.random.default_rng(0).random((VAST, 4)))
+    front = improve(instance, np.empty((0, VAST), np.int64), deadline=0.0)
+    assert (front.points < 0.1 * instance.reference_point).all()

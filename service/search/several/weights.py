@@ -52,7 +52,8 @@ class WeightedSums:
             return
         scalarization = self.scalarization(k)
         pool = make_candidate_pool(len(self._costs.planes))
-        yield from fill_in_blocks(pool, scalarization.costs, np.ones((1, 2)))
+        for _ in fill_in_blocks(pool, scalarization.costs, np.ones((1, 2))):
+            yield
         rank_candidates(pool, scalarization)
         self._ranked[k] = True
         yield
