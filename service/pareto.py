@@ -1,4 +1,4 @@
-"""Dominance, losses and knee of points of minimised objectives; hypervolume and balance of two.
+"""Dominance of points of minimised objectives, and the hypervolume of points of two.
 
 A point dominates another if it is at least as good in all objectives and better in one. The
 hypervolume of points is the share of the box between the origin and a reference point that they
@@ -87,51 +87,6 @@ def area(front: Array) -> float:
     """
     heights = np.concatenate(([1.0], front[:-1, 1])) - front[:, 1]
     return min(1.0, float(((1 - front[:, 0]) * heights).sum()))  # 1 at most, for all rounding
-
-
-def balances(points: Array) -> Array:
-    """Return the balance of each point: 0 at the least first length, 1 at the least second.
-
-    With u and v the two lengths in the points' own box, 0 at its least and 1 at its greatest, the
-    balance is (u + 1 - v) / 2. Where all points have one length in common, that one counts as 0.
-
-    Args:
-        points: Shape (m, 2), in any order and unit.
-
-    >>> balances(np.array([[2.0, 70.0], [3.0, 40.0], [6.0, 30.0]]))
-    array([0. , 0.5, 1. ])
-    >>> balances(np.array([[5.0, 5.0]]))
-    array([0.5])
-    """
-    u, v = losses(points).T
-    return (u + 1 - v) / 2
-
-
-def knee(points: Array) -> int:
-    """Return the index of the point with the least sum of losses, of equal ones the first.
-
-    Args:
-        points: Shape (k, m), k at least 1.
-
-    >>> knee(np.array([[2.0, 70.0], [3.0, 40.0], [6.0, 30.0]]))
-    1
-    """
-    return int(losses(points).sum(axis=1).argmin())
-
-
-def losses(points: Array) -> Array:
-    """Return points in their own box, shape (k, m): 0 at the least of a length, 1 at the greatest.
-
-    >>> losses(np.array([[2.0, 70.0, 1.0], [3.0, 40.0, 1.0], [6.0, 30.0, 1.0]]))
-    array([[0.  , 1.  , 0.  ],
-           [0.25, 0.25, 0.  ],
-           [1.  , 0.  , 0.  ]])
-    """
-    if not len(points):
-        return points
-    least = points.min(axis=0)
-    extent = points.max(axis=0) - least
-    return (points - least) / np.where(extent > 0, extent, 1.0)
 
 
 def shares_of(points: Array, reference_point: Array) -> Array:

@@ -4,12 +4,15 @@ import doctest
 from types import ModuleType
 
 import pytest
+from paretour import choice
 
 from service import instance, pareto, preferences
 from service.coverage import frame
 
 
-@pytest.mark.parametrize("module", [instance, pareto, preferences, frame], ids=lambda m: m.__name__)
+@pytest.mark.parametrize(
+    "module", [choice, instance, pareto, preferences, frame], ids=lambda m: m.__name__
+)
 def test_the_examples_in_docstrings_are_true(module: ModuleType) -> None:
     results = doctest.testmod(module)
     assert results.attempted > 0

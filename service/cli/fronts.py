@@ -1,13 +1,13 @@
 """Plan, print and draw a front of any kind for the command."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from paretour import Front, FrontOfAnyKind, Plan
-from paretour.choice import the_way
+from paretour.choice import numbers_in, the_way
 from paretour.expect import unexpected
 from paretour.kinds import Kind, kind_of
 from rich.console import Console
@@ -17,7 +17,7 @@ from service.cli.data import print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import Ids
 from service.cli.notes import print_request_notes
-from service.cli.options import OutputFormat, Ways, ways_of
+from service.cli.options import OutputFormat, Ways
 from service.cli.output import (
     actors_as_table,
     front_as_rows,
@@ -77,7 +77,7 @@ def run_tour(
         if path_file is not None:
             check_path_file(path_file)
         with _usage_errors():
-            ways = ways_of(choice)
+            ways = _as_numbers(vars(choice))
             the_way(ways)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
@@ -103,6 +103,16 @@ def run_actors(backend: Backend, as_json: bool) -> None:
         print_data(json.dumps({"actors": [vars(actor) for actor in actors]}))
     else:
         Console().print(actors_as_table(actors))
+
+
+def _as_numbers(ways: Mapping[str, Any]) -> dict[str, Any]:
+    """Return ways to choose with names and numbers in place of texts such as `time:0.5`."""
+    return {
+        name: list(numbers_in(f"--{name.replace('_', '-')}", value))
+        if isinstance(value, list)
+        else value
+        for name, value in ways.items()
+    }
 
 
 @contextmanager

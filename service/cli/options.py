@@ -141,12 +141,14 @@ def _contrary(given: bool | None) -> bool | None:
 
 def _option(made: Mapping[str, Any]) -> Any:
     """Return the annotation of an option, which is None where it was not given."""
-    name, kind = made["name"], _KINDS.get(made["type"], str)
+    name = made["name"]
+    kind: Any = list[str] if "each" in made else _KINDS.get(made["type"], str)
     flag = made.get("flag", name).replace("_", "-")
     hidden, is_flag = made.get("hidden", False), kind is bool
     option = Option(
         f"--{flag}",
         help=made["help"],
+        metavar=made.get("each"),
         callback=_contrary if "flag" in made else None,
         hidden=hidden,
         min=made.get("min"),
@@ -222,89 +224,9 @@ class OutputFormat:
     ] = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@_of_forms("TourQuery")
 class Ways:
     """The ways to choose a tour. Exactly one must be given."""
-
-    angle: Annotated[
-        float | None,
-        Option(
-            min=0, max=90, help="The tour nearest to this angle: near 0 the second length is small."
-        ),
-    ] = None
-    balance: Annotated[
-        float | None,
-        Option(
-            min=0,
-            max=1,
-            help="The tour nearest to this balance: 0 at the least first length, 1 at the second.",
-        ),
-    ] = None
-    first_at_most: Annotated[
-        float | None, Option(help="The least second length, with at most this first length.")
-    ] = None
-    second_at_most: Annotated[
-        float | None, Option(help="The least first length, with at most this second length.")
-    ] = None
-    weights: Annotated[
-        list[str] | None,
-        Option(
-            metavar="NAME:NUMBER",
-            help="For an objective, again for each: the least of the greatest weighted loss, where"
-            " a loss is a length scaled to 0 to 1 over the front.",
-        ),
-    ] = None
-    at_most: Annotated[
-        list[str] | None,
-        Option(
-            metavar="NAME:NUMBER",
-            help="For an objective, again for each: the most that its length may be.",
-        ),
-    ] = None
-    prefer: Annotated[
-        str | None,
-        Option(metavar="NAME", help="With --at-most: the objective whose length is to be least."),
-    ] = None
-    knee: Annotated[
-        bool,
-        Option(
-            "--knee", help="The least sum of all lengths, each scaled to 0 to 1 over the front."
-        ),
-    ] = False
-
-
-def ways_of(choice: Ways) -> dict[str, Any]:
-    """Return the ways to choose as the client takes them.
-
-    Raises:
-        ValueError: A part of `weights` or `at_most` is not a name and a number.
-    """
-    prefer = None if choice.prefer is None else _objective(choice.prefer)
-    return {
-        **vars(choice),
-        "weights": _numbers_by_name("--weights", choice.weights),
-        "at_most": _numbers_by_name("--at-most", choice.at_most),
-        "prefer": prefer,
-    }
-
-
-def _numbers_by_name(option: str, parts: list[str] | None) -> dict[str | int, float] | None:
-    """Return the number for each objective in parts such as `time:3600`; None without parts."""
-    found: dict[str | int, float] = {}
-    for part in parts or ():
-        name, colon, number = part.rpartition(":")
-        try:
-            found[_objective(name)] = float(number)
-        except ValueError:
-            colon = ""
-        if not colon:
-            raise ValueError(f"{option} must be a name, a colon and a number, got {part!r}")
-    return found or None
-
-
-def _objective(name: str) -> str | int:
-    """Return an objective by its index where it is a digit, else by its name."""
-    return int(name) if name.isdecimal() else name
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
+from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import NoTour
@@ -17,7 +18,6 @@ from service.fleet.schedule import schedule
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
-from service.pareto import balances, losses
 from service.requests.limits import check_reference_point
 from service.requests.task import Task, UnmeasuredFleet, VehicleName
 from service.watch import Watch

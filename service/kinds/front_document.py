@@ -14,13 +14,13 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import balances
 from pydantic_core import to_json
 
 from service.coverage.frame import CoveragePath
 from service.fleet.plans import FleetFront
 from service.front import Front, Termination
 from service.objectives import OBJECTIVES
-from service.pareto import balances
 from service.preferences import angles
 from service.requests.notes.note import Note
 from service.requests.task import KindName

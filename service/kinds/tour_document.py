@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.coverage.frame import CoveragePath
@@ -20,7 +21,6 @@ from service.kinds.front_document import (
     with_member,
 )
 from service.objectives import OBJECTIVES
-from service.pareto import balances, losses
 from service.requests.stops import Labels
 
 

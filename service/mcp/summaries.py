@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from paretour import FrontOfAnyKind, Refused
+from paretour.choice import knee
 from paretour.display import shown
 from paretour.kinds import Routes, kind_of
 
@@ -36,9 +37,9 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
         document["notes"] = [note[:_LONGEST_NOTE] for note in notes[:_MOST_NOTES]]
     if not len(front):
         return _fitted({**document, "hint": "the front is empty: give it more time_limit"})
-    knee = _knee(front)
+    middle = knee(front.lengths)
     hint = "choose_tour gives the stops of another one; explain_front says what is traded"
-    return _with_stops({**document, "hint": hint, "stops_of": knee}, front, knee, 0)
+    return _with_stops({**document, "hint": hint, "stops_of": middle}, front, middle, 0)
 
 
 def unreadable_text(error: Refused) -> str:
@@ -114,11 +115,11 @@ def _representatives(front: FrontOfAnyKind) -> list[Named]:
     names = _names(front)
     for index, name in enumerate(names):
         chosen.setdefault(int(front.lengths[:, index].argmin()), []).append(f"least {name}")
-    knee = _knee(front)
-    chosen.setdefault(knee, []).append("knee")
+    middle = knee(front.lengths)
+    chosen.setdefault(middle, []).append("knee")
     if len(names) == OBJECTIVES:
         for end in (0, len(front) - 1):
-            chosen.setdefault(round(knee + _NEAR * (end - knee)), []).append("between")
+            chosen.setdefault(round(middle + _NEAR * (end - middle)), []).append("between")
     return [
         {"number": number, "is": ", ".join(chosen[number]), "lengths": _lengths(front, number)}
         for number in sorted(chosen)
@@ -226,10 +227,6 @@ def _left(pairs: Sequence[Any], first: int, kept: Sequence[Any]) -> Named:
     sentence = f"{len(pairs) - len(kept)} of {len(pairs)} stops are not in this text"
     more = f": choose_tour with first_stop {last} has the next" if last < len(pairs) else ""
     return {"left_out": f"{sentence}{more}"}
-
-
-def _knee(front: FrontOfAnyKind) -> int:
-    return int(front.losses.sum(axis=1).argmin())
 
 
 def _noun(front: FrontOfAnyKind) -> str:

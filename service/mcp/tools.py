@@ -12,6 +12,7 @@ from paretour import (
     Refused,
     replan_plan,
 )
+from paretour.choice import choose
 from pydantic import BaseModel, ValidationError
 
 from service.mcp.arguments import (
@@ -149,20 +150,9 @@ async def _choose_tour(planner: Planner, asked: ChooseTour) -> str:
 
 def _chosen(front: FrontOfAnyKind, asked: ChooseTour) -> int:
     """Return the number of the tour that is chosen by a budget, weights, the knee or a balance."""
-    ways: dict[str, Any] = asked.model_dump(include={"knee", "balance"})
-    known = [each.name for each in front.objectives or ()]
-    for name in ("at_most", "weights"):
-        given = getattr(asked, name)
-        ways[name] = given and {_objective(each, known): given[each] for each in given}
-    ways["prefer"] = None if asked.prefer is None else _objective(asked.prefer, known)
-    item = front.choose(**ways)
-    [number] = np.flatnonzero((front.lengths == item.lengths).all(axis=1))[:1]
-    return int(number)
-
-
-def _objective(name: str, known: list[str]) -> str | int:
-    """Return a text such as "1" as an index, unless an objective has that name; else the text."""
-    return int(name) if name not in known and name.isdecimal() else name
+    names = [each.name for each in front.objectives or ()]
+    no_angles = np.empty(0)  # agents do not choose by them
+    return choose(front.lengths, no_angles, names, asked.model_dump())
 
 
 async def _replan(planner: Planner, asked: Changes) -> str:

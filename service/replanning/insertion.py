@@ -2,11 +2,11 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import losses
 
 from service.instance import Instance, step_lengths, tour_steps
 from service.jit import compiled
 from service.objectives import OBJECTIVES
-from service.pareto import losses
 from service.replanning.earlier_tours import EarlierTours, Tours
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import Costs, make_costs, step_costs

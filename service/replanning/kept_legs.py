@@ -2,10 +2,10 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import balances
 
 from service.front import SearchResult
 from service.instance import Instance, tour_lengths, tour_steps
-from service.pareto import balances
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]

@@ -88,6 +88,7 @@ class Offered:
 
     Args:
         option: The help on its option of the command, "" for its description; None for no option.
+        each: What a value of an option looks like that may be given several times.
         flag: The name of a flag that stands for false, in place of an option or an input.
         label: The label of its input on the page; None for none.
         more: Its rank among the inputs that few need, from 1; 0 if it is none of them.
@@ -95,6 +96,7 @@ class Offered:
     """
 
     option: str | None = None
+    each: str | None = None
     flag: str | None = None
     label: str | None = None
     more: int = 0

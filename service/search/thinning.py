@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from service.pareto import losses
+from paretour.choice import losses
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

@@ -20,6 +20,7 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from paretour.choice import knee
 
 from service.errors import Refusal
 from service.fleet.evaluation import violations
@@ -29,7 +30,6 @@ from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route, kept_share
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import ALWAYS, VehicleType, Visit
-from service.pareto import knee
 from service.watch import Progress, Watch
 from tests.benchmarks.cells import of
 from tests.benchmarks.markdown import table

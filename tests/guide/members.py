@@ -12,6 +12,7 @@ from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.tour import TourQuery
 from tests.guide.offered import inputs, options
 from tests.guide.pages import ROOT
 
@@ -69,7 +70,7 @@ def json_file() -> str:
         ]
         for request in FORMS
     }
-    of_command = {request: options(FORMS[request]) for request in FORMS}
+    of_command = {name: options(form) for name, form in {**FORMS, "TourQuery": TourQuery}.items()}
     made = {"help": lines, "options": of_command, "inputs": inputs()}
     return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
 

@@ -42,6 +42,7 @@ def _option(name: str, shown: Offered, schema: dict[str, Any]) -> dict[str, Any]
         "name": name,
         "type": schema.get("type", "string"),
         "help": shown.option or f"{sentence[0].upper()}{sentence[1:]}.",
+        "each": shown.each,
         "flag": shown.flag,
         "hidden": schema.get("deprecated"),
         "default": schema.get("default"),

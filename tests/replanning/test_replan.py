@@ -4,12 +4,13 @@ import json
 
 import numpy as np
 import pytest
+from paretour.choice import balances
 
 from service.errors import Refusal
 from service.front import Front, PlanOptions, SearchResult
 from service.instance import Instance, tour_lengths
 from service.kinds.parsing import parse_replan
-from service.pareto import balances, nondominated
+from service.pareto import nondominated
 from service.preferences import spread
 from service.replanning.earlier_tours import EarlierTours, few_enough, touched_cities
 from service.replanning.insertion import completed

@@ -56,10 +56,9 @@ def test_service_and_client_choose_what_a_plain_search_finds(
     asked.check()
     expected = best(points, query)
     directions = angles(points, np.ones(2))
-    angle, others = query.get("angle"), {k: v for k, v in query.items() if k != "angle"}
     if expected is not None:
         assert asked.choose(points, directions) == expected
-        assert choose(points, directions, [], angle, others) == expected
+        assert choose(points, directions, [], query) == expected
         return
     with pytest.raises(Refusal) as refused:
         asked.choose(points, directions)
@@ -68,7 +67,7 @@ def test_service_and_client_choose_what_a_plain_search_finds(
     assert (refused.value.code, refused.value.limit) == ("no-such-tour", budget)
     assert refused.value.actual == least > budget
     with pytest.raises(ValueError, match=f"the least is {least:g}"):
-        choose(points, directions, [], angle, others)
+        choose(points, directions, [], query)
 
 
 @pytest.mark.parametrize(
@@ -124,7 +123,7 @@ def test_weights_choose_the_least_of_the_greatest_loss(
     query.check()
     nowhere = np.full(len(points), np.nan)
     assert query.choose(points, nowhere, names) == min(found)[2]
-    assert choose(points, nowhere, names, None, {"weights": weights}) == min(found)[2]
+    assert choose(points, nowhere, names, {"weights": weights}) == min(found)[2]
 
 
 @pytest.mark.parametrize("objectives", [2, 3, 4])
@@ -147,7 +146,7 @@ def test_budgets_choose_the_least_of_the_objective_preferred(
     if within:
         assert query.choose(points, nowhere, names) == min(within)[1]
         choice = {"at_most": budgets, "prefer": prefer}
-        assert choose(points, nowhere, names, None, choice) == min(within)[1]
+        assert choose(points, nowhere, names, choice) == min(within)[1]
         return
     with pytest.raises(Refusal) as refused:
         query.choose(points, nowhere, names)

@@ -255,7 +255,7 @@ class Calls:
         self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
     ) -> Call[Tour]:
         """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
-        params = parameters(angle, choice) | ({} if front is None else {"front": front})
+        params = parameters({"angle": angle, **choice}, front)
         return parse_tour(_answer((yield from self._get("/tour", params))).document)
 
     def geojson(

@@ -157,7 +157,7 @@ class _FrontOfPlans(StoredFront[Plan]):
                 the front is still empty.
         """
         angles = np.empty(0)  # no choice by angle can be asked for
-        return self[choose(self.lengths, angles, self.names, None, choice)]
+        return self[choose(self.lengths, angles, self.names, choice)]
 
     def _item(self, number: int) -> Plan:
         return self.plans[number]

@@ -171,7 +171,7 @@ class Front(StoredFront[Tour]):
                 tour is within the budgets, or the front is still empty.
         """
         names = self.names if self.objectives else ()
-        return self[choose(self.lengths, self.angles, names, angle, choice)]
+        return self[choose(self.lengths, self.angles, names, {"angle": angle, **choice})]
 
     def _item(self, number: int) -> Tour:
         return Tour(

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from paretour.choice import knee
 from pydantic_core import from_json
 
 from service.errors import invalid
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
-from service.pareto import knee
 from service.requests.replan.fields import NewStop
 from service.requests.replan.fleet_fields import ReplanFleetRequest, RouteOnTheWay
 from service.requests.replan.way import StoredFront, not_replannable

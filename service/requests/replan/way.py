@@ -7,12 +7,12 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import balances, knee
 
 from service.coverage.coverage import Coverage
 from service.errors import Refusal, invalid
 from service.instance import CLOSED, RouteEnds
 from service.objectives import NTH, OBJECTIVES, Objective
-from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index

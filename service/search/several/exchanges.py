@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.choice import losses
 
 from service.jit import compiled, inlined
-from service.pareto import losses
 from service.search.several.greedy_choice import Choice, added_volume, drop_chosen, keep_chosen
 
 CLOSE = 30  # points that are tried in the place of one

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from paretour.choice import balances
 
 from service.errors import Refusal
 from service.kinds.parsing import parse_replan
-from service.pareto import balances
 from service.requests.limits import Limits
 from service.requests.replan.way import MOST_TOURS, ReplanSource, StoredFront
 from service.requests.stops import Stops, cost_matrices
