@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from service.requests.coverage import CoverageRequest
+from service.requests.fields import PlanFields, SearchFields
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
@@ -27,6 +28,17 @@ FORMS: Mapping[str, type[BaseModel]] = {
     "ReplanFleetRequest": ReplanFleetRequest,
 }
 _OF_ROBOTS = ("robots", "over")
+_SHARED = {"SearchOptions": SearchFields, "PlanOptions": PlanFields}
+# The types that have the members of another one, too.
+_BASES = {
+    "PlanOptions": "SearchOptions",
+    "FrontRequest": "PlanOptions",
+    "FleetRequest": "SearchOptions",
+    "CoverageRequest": "PlanOptions",
+    "RobotsRequest": "CoverageRequest",
+    "ReplanRequest": "PlanOptions",
+    "ReplanFleetRequest": "SearchOptions",
+}
 _PLAIN = {
     "integer": "int",
     "number": "float",
@@ -78,15 +90,15 @@ def json_file() -> str:
 def type_file() -> str:
     """Return the module with the type of each request, and of all that is in it."""
     types: dict[str, str] = {}
-    for request in FORMS:
+    for request in ("SearchOptions", *_BASES):
         schema = _form(request)
-        _add(types, request, schema, schema["$defs"])
+        _add(types, request, schema, schema.get("$defs", {}))
     return "\n\n".join((_HEAD, *types.values()))
 
 
 def _form(request: str) -> dict[str, Any]:
     """Return the JSON schema of a request; the one for a single robot has no others."""
-    schema = FORMS[request].model_json_schema()
+    schema = {**FORMS, **_SHARED}[request].model_json_schema()
     if request == "CoverageRequest":
         for name in _OF_ROBOTS:
             del schema["properties"][name]
@@ -100,11 +112,12 @@ def _add(types: dict[str, str], name: str, form: Any, parts: Mapping[str, Any]) 
     for part in _parts(form["properties"]):
         if _type_name(part, parts) not in types and _is_closed(parts[part]):
             _add(types, _type_name(part, parts), parts[part], parts)
-    base, fields = "TypedDict", form["properties"]
-    if name == "RobotsRequest":
-        base, fields = "CoverageRequest", {each: fields[each] for each in _OF_ROBOTS}
+    base = _BASES.get(name, "TypedDict")
+    known = _form(base)["properties"] if name in _BASES else {}
     members = {}
-    for member, schema in fields.items():
+    for member, schema in form["properties"].items():
+        if member in known:
+            continue
         choices = _choices(schema, parts)
         if len(schema.get("enum", _enumerated(schema))) > _SHORT:
             types[member] = f"{member.title()} = {choices[0]}\n"

@@ -12,6 +12,25 @@ from paretour.frames import Costs, Frame
 DEFAULT_TIME_LIMIT = 1.0  # seconds
 
 
+class SearchOptions(TypedDict, total=False):
+    """The fields of every request: how long to plan, and how much to return."""
+
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    seed: int
+
+
+class PlanOptions(SearchOptions, total=False):
+    """The fields of every request for a front of tours."""
+
+    preferences: int | ArrayLike
+    repairs: int
+    arrivals: bool
+    bound: bool
+    actor: str
+
+
 class DepartureRangeRequest(TypedDict, total=False):
     """The times at which a tour may begin."""
 
@@ -63,18 +82,9 @@ ObjectiveRequest = TypedDict(
 )
 
 
-class FrontRequest(TypedDict, total=False):
+class FrontRequest(PlanOptions, total=False):
     """Cities or stops under two to four objectives, and the options of their front."""
 
-    time_limit: float
-    size: int
-    reference_point: ArrayLike
-    seed: int
-    preferences: int | ArrayLike
-    repairs: int
-    arrivals: bool
-    bound: bool
-    actor: str
     closed: bool
     start: int | str | None
     end: int | str | None
@@ -175,13 +185,9 @@ ClockRequest = TypedDict(
 )
 
 
-class FleetRequest(TypedDict, total=False):
+class FleetRequest(SearchOptions, total=False):
     """Stops, vehicles and two or three objectives, and the options of their front of plans."""
 
-    time_limit: float
-    size: int
-    reference_point: ArrayLike
-    seed: int
     stops: Required[Sequence[FleetStopRequest] | Frame]
     vehicles: Required[Sequence[VehicleRequest]]
     objectives: Required[Sequence[FleetObjectiveRequest]]
@@ -198,18 +204,9 @@ class LayerRequest(TypedDict, total=False):
     layer: Required[ArrayLike]
 
 
-class CoverageRequest(TypedDict, total=False):
+class CoverageRequest(PlanOptions, total=False):
     """Places on a map, the objectives between them, and the options of their front."""
 
-    time_limit: float
-    size: int
-    reference_point: ArrayLike
-    seed: int
-    preferences: int | ArrayLike
-    repairs: int
-    arrivals: bool
-    bound: bool
-    actor: str
     closed: bool
     start: int | None
     end: int | None
@@ -288,18 +285,9 @@ CostEntryRequest = TypedDict(
 )
 
 
-class ReplanRequest(TypedDict, total=False):
+class ReplanRequest(PlanOptions, total=False):
     """The changes since a front was planned, and the options of the front of the rest."""
 
-    time_limit: float
-    size: int
-    reference_point: ArrayLike
-    seed: int
-    preferences: int | ArrayLike
-    repairs: int
-    arrivals: bool
-    bound: bool
-    actor: str
     done: Sequence[int | str] | ArrayLike
     position: int | str | NewStopRequest | ArrayLike | None
     add: Sequence[NewStopRequest | ArrayLike] | ArrayLike
@@ -346,13 +334,9 @@ class NewFleetStopRequest(TypedDict, total=False):
     prize: float | None
 
 
-class ReplanFleetRequest(TypedDict, total=False):
+class ReplanFleetRequest(SearchOptions, total=False):
     """The changes since a fleet was planned, and the options of the front of the rest."""
 
-    time_limit: float
-    size: int
-    reference_point: ArrayLike
-    seed: int
     plan: int | None
     now: float | None
     routes: Sequence[RouteOnTheWayRequest]
