@@ -1,5 +1,6 @@
 """Set-up of every test run: Ctrl-C, property tests, and the servers that a session shares."""
 
+import gc
 import os
 import signal
 from collections.abc import Iterator
@@ -12,12 +13,15 @@ from hypothesis import settings
 from service.jobs.compiled_code import warm_up
 from tests.helpers.artifacts import by_coordinates, by_row_sums
 from tests.helpers.redis_server import Redis, redis_server
+from tests.helpers.sampled import third
 from tests.helpers.serving import serving_released
 from tests.helpers.valhalla import RunningValhalla, valhalla_service
 
 NO_CERTIFICATES = Path(__file__).parent
 
-settings.register_profile("project", deadline=None, derandomize="CI" in os.environ)
+settings.register_profile(
+    "project", deadline=None, derandomize="CI" in os.environ, max_examples=third(100)
+)
 settings.load_profile("project")
 
 
@@ -34,6 +38,13 @@ def pytest_configure(config: pytest.Config) -> None:
     DEFAULT_TIMEOUT_CONFIG.read = 60.0
     if config.getoption("numprocesses") and not hasattr(config, "workerinput"):
         warm_up()  # once, before the processes of the tests and of their servers all do it at once
+    else:
+        gc.disable()  # until the tests are collected, which takes half as long without
+
+
+def pytest_collection_finish() -> None:
+    """Collect garbage again."""
+    gc.enable()
 
 
 @pytest.fixture(scope="session")

@@ -20,6 +20,7 @@ from service.preferences import fan, spread
 from service.search.warm_up import warm_up
 from service.settings import Settings
 from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
+from tests.helpers.sampled import third
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -96,7 +97,7 @@ def test_no_front_is_better_than_brute_force(actor: OnnxActor, n: int) -> None:
 
 
 def test_open_routes_equal_brute_force_on_200_instances(actor: OnnxActor) -> None:
-    for seed in range(200):
+    for seed in range(third(200)):
         n, kind, ends = 3 + seed % 7, KINDS[seed % 3], ENDS[seed % 4]
         instance = opened(small_integers(kind, n, seed), ends, seed)
         options = PlanOptions(directions=spread(5), size=1000, time_limit=1.0)
@@ -146,7 +147,7 @@ def test_a_larger_front_is_cut_to_size(size: int) -> None:
     assert cut.hypervolume <= whole.hypervolume
 
 
-@settings(max_examples=20)
+@settings(max_examples=third(20))
 @given(st.data())
 def test_every_tour_is_reported_from_the_start(data: st.DataObject) -> None:
     instance = data.draw(SMALL)

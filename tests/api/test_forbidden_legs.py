@@ -13,6 +13,7 @@ import pytest
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from tests.helpers.instances import every_tour
+from tests.helpers.sampled import third
 from tests.helpers.serving import app_of, problem, serving
 
 N = 7
@@ -66,7 +67,7 @@ def objectives(costs: np.ndarray) -> list[dict[str, Any]]:
     return [{"name": f"cost {m}", "matrix": as_json(each)} for m, each in enumerate(costs)]
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(third(12)))
 @pytest.mark.parametrize("form", ["matrices", "stops", "file"])
 @pytest.mark.parametrize("closed", [True, False])
 def test_a_front_is_the_exact_one_without_the_forbidden_legs(
@@ -152,7 +153,7 @@ def test_not_a_number_in_a_file_is_refused_with_what_to_write(client: httpx.Clie
     assert document["detail"] == sentence
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(third(12)))
 @pytest.mark.parametrize("form", ["matrices", "mixed"])
 def test_a_replanned_front_avoids_closed_legs_and_can_be_replanned_again(
     client: httpx.Client, seed: int, form: str

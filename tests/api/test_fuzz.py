@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from service.api.app import Edge
+from tests.helpers.sampled import tenth, third
 from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 JSON = {"Content-Type": "application/json"}
@@ -80,8 +81,8 @@ ANY_JSON = st.recursive(
     lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=9), inner),
     max_leaves=20,
 )
-OFTEN = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
-MORE_OFTEN = settings(OFTEN, max_examples=400)
+OFTEN = settings(max_examples=third(100), deadline=None, suppress_health_check=list(HealthCheck))
+MORE_OFTEN = settings(OFTEN, max_examples=tenth(400))
 PATHS = st.sampled_from(sorted({path for path, _ in REQUESTS}))
 Statuses = dict[str, set[str]]
 Broken = tuple[str, dict[str, Any], str]

@@ -16,6 +16,7 @@ import httpx
 import pytest
 
 from tests.guide.pages import GUIDE, blocks, commands
+from tests.helpers.sampled import at_night
 from tests.helpers.serving import app_of, serving
 
 PYTHON_GENERATOR = ("openapi-python-client>=0.29,<0.30", "mypy>=2", "ruff>=0.15")
@@ -111,11 +112,13 @@ def typescript_folder(document: Path, tmp_path_factory: pytest.TempPathFactory) 
     return folder
 
 
+@at_night
 def test_a_generated_client_in_python_plans_from_stops(python_folder: Path, address: str) -> None:
     (python_folder / "use.py").write_text(IN_PYTHON)
     assert run(["venv/bin/python", "use.py", address], python_folder) == "order-18 True\n"
 
 
+@at_night
 def test_its_types_are_real_ones(python_folder: Path) -> None:
     (python_folder / "use.py").write_text(IN_PYTHON)
     (python_folder / "wrong.py").write_text(WRONG_IN_PYTHON)
@@ -126,6 +129,7 @@ def test_its_types_are_real_ones(python_folder: Path) -> None:
     assert 'Argument "id" to "StopItem" has incompatible type "int"' in fault
 
 
+@at_night
 def test_generated_types_in_typescript_are_those_of_stops(typescript_folder: Path) -> None:
     (typescript_folder / "use.ts").write_text(IN_TYPESCRIPT)
     (typescript_folder / "wrong.ts").write_text(WRONG_IN_TYPESCRIPT)
@@ -139,6 +143,7 @@ def test_generated_types_in_typescript_are_those_of_stops(typescript_folder: Pat
     assert "Type 'number' is not assignable to type 'string'" in fault
 
 
+@at_night
 def test_the_program_of_the_guide_has_the_types_of_the_service(typescript_folder: Path) -> None:
     make_types = commands(FROM_TYPESCRIPT)[:2]
     assert set(make_types[0].split()[3:]) == set(TYPESCRIPT_GENERATOR)

@@ -15,6 +15,7 @@ from service.api.responses import PROBLEM_JSON, Problem
 from service.errors import PROBLEMS
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.actors import Shuffler, info_of
+from tests.helpers.sampled import IS_WHOLE, tenth
 from tests.helpers.serving import LIMITS, app_of, serving
 
 ROOT = Path(__file__).parents[2]
@@ -117,9 +118,10 @@ def test_every_code_has_an_example_for_the_guide(code: str) -> None:
 
 def test_schemathesis_finds_nothing(address: str, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "schemathesis.cli", "run", f"{address}/openapi.json"]
-    # Its phase "coverage", of 3,000 requests more, takes three minutes: it is run by hand.
-    phases = "--phases=examples,fuzzing,stateful"
-    options = ["--no-color", "--generation-deterministic", "--max-examples=20", phases]
+    # Its phase "coverage", of 3,000 requests more, takes three minutes.
+    phases = f"--phases=examples,fuzzing,stateful{',coverage' * IS_WHOLE}"
+    most = f"--max-examples={tenth(20)}"
+    options = ["--no-color", "--generation-deterministic", most, phases]
     options.append("--exclude-path=/files")  # which takes forms alone
     hooks = {"SCHEMATHESIS_HOOKS": "tests.helpers.schemathesis_hooks", "PYTHONPATH": str(ROOT)}
     found = subprocess.run(

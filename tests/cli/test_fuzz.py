@@ -29,9 +29,10 @@ from tests.files.test_examples import FOLDER as WHOLE
 from tests.files.test_fuzz import FILES, broken, harmless
 from tests.helpers.answers import events, progress, status
 from tests.helpers.fleet_requests import fleet_request
+from tests.helpers.sampled import tenth
 from tests.helpers.serving import LIMITS
 
-COUNT = 1000
+COUNT = tenth(1000)
 COMMAND = get_command(app)
 PLANNED = 130  # the exit code of a command that ends before there is a front
 HOSTILE = "\x1b]0;owned\x07\x1b[31mred\x9b2J\u202eabc\u2028[bold]\r\n=end\x00\x7f{}%s$"

@@ -12,6 +12,7 @@ from redis.asyncio import Redis as AsyncRedis
 from service.cluster.script import LEASE
 from service.jobs.record import Record
 from tests.helpers.redis_server import Redis
+from tests.helpers.sampled import third
 from tests.helpers.stores import FullRedisStore, Worker, job, record
 from tests.helpers.turns import EVENTS, clients_by_policy
 
@@ -41,7 +42,7 @@ def finished(id_: str) -> Record:
     return record(id_)
 
 
-@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=third(30), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(events=EVENTS)
 @example("aaa.b.-.c..")
 @example("aab..b--.a.")

@@ -17,6 +17,7 @@ from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.helpers.fleets import Point, every_plan, hull_corners, random_fleet
+from tests.helpers.sampled import third
 
 
 def cut(fleet: Fleet, *sequences: Indices) -> list[Plan]:
@@ -43,7 +44,7 @@ def without_shipments(seed: int) -> Fleet:
     return Fleet(rules=dataclasses.replace(fleet.rules, shipments=()), costs=fleet.costs)
 
 
-@pytest.mark.parametrize("seed", range(80))
+@pytest.mark.parametrize("seed", range(third(80)))
 def test_cuts_have_the_front_of_all_plans_that_follow_the_sequence(seed: int) -> None:
     fleet = without_shipments(seed)
     sequence = np.random.default_rng(seed).permutation(fleet.rules.clients)

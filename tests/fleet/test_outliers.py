@@ -24,6 +24,7 @@ from service.instance import Instance
 from service.pareto import nondominated
 from service.watch import Watch
 from tests.helpers.fleets import exact_front, random_fleet
+from tests.helpers.sampled import tenth, third
 
 VAN = VehicleType(start=0, end=0, count=2, capacity=(9,))
 ITERATIONS = 300
@@ -42,7 +43,7 @@ def with_costs(seed: int, n: int, over: tuple[str, str]) -> Fleet:
 
 
 @pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max"), ("max", "sum")])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(third(8)))
 def test_a_few_stops_of_any_costs_give_the_front_of_all_plans(
     seed: int, over: tuple[str, str]
 ) -> None:
@@ -103,7 +104,7 @@ def test_a_stop_without_a_way_is_named() -> None:
         plan_fleet(Fleet(rules=rules, costs=costs), FleetOptions(time_limit=1))
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(third(12)))
 def test_a_tight_capacity_hides_neither_end_of_two_sums(seed: int) -> None:
     rng = np.random.default_rng(seed)
     costs = rng.integers(1, 100, (2, 8, 8)).astype(float)
@@ -136,7 +137,7 @@ def test_no_plan_takes_a_forbidden_leg_without_time_either() -> None:
     assert not any(violations(fleet, plan) for plan in front.plans)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(third(40)))
 def test_what_was_answered_is_accepted_as_windows(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n = 9
@@ -208,7 +209,7 @@ def test_a_shipment_that_closes_before_it_opens_is_no_plan() -> None:
 TIMES = st.sampled_from([0.0, 1e-9, 0.5, 7.0, 1e3, 86_400.0, 1e9, 1e15, 1e18, 1e300, inf])
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=tenth(400), deadline=None)
 @given(data=st.data(), seed=st.integers(0, 10**6))
 def test_what_no_engine_would_take_is_refused_and_never_an_error(
     data: st.DataObject, seed: int

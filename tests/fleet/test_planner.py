@@ -39,6 +39,7 @@ from tests.helpers.fleets import (
     mixed_fleet,
     random_fleet,
 )
+from tests.helpers.sampled import third
 
 ENOUGH = FleetOptions(time_limit=inf, iterations=20_000)
 
@@ -67,7 +68,7 @@ def deliveries(
     return Fleet(rules=rules, costs=np.stack([costs**2, costs]))
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(third(60)))
 @pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet, mixed_fleet])
 def test_a_handful_of_stops_has_the_front_of_brute_force(
     fleet_of: Callable[[int], Fleet], seed: int
@@ -192,7 +193,7 @@ def test_a_necessary_condition_that_fails_is_named(rules: dict[str, Any], senten
         plan_fleet(fleet, FleetOptions(time_limit=1))
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(third(60)))
 def test_no_plan_goes_below_the_least_lengths(seed: int) -> None:
     fleet = random_fleet(seed)
     least = least_lengths(fleet)

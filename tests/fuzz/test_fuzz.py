@@ -9,12 +9,13 @@ import pytest
 from tests.fuzz.attack import largest_memory, parse_many, post_many, strict_json
 from tests.fuzz.bodies import GENERATORS, extreme
 from tests.fuzz.fleets import extreme_fleet
+from tests.helpers.sampled import tenth, third
 from tests.helpers.serving import ACTORS, LIMITS, app_of, serving, workers_of
 
 INFO = {actor.info.name: actor.info for actor in ACTORS}
-COUNT = 2000
-SAMPLE = 15
-EXTREMES = 500
+COUNT = tenth(2000)
+SAMPLE = third(15)
+EXTREMES = tenth(500)
 
 
 @pytest.mark.parametrize("name", GENERATORS)

@@ -1,8 +1,9 @@
 """Mutated tables from a seed: no row vanishes, and no column is unused without a note."""
 
 from tests.fuzz.tables import tried
+from tests.helpers.sampled import third
 
-COUNT = 400
+COUNT = third(400)
 
 
 def test_no_row_vanishes_and_no_column_is_unused_without_a_note() -> None:

@@ -14,6 +14,7 @@ import pytest
 
 from tests.helpers.processes import serve_process
 from tests.helpers.processors import ANOTHER_NAME, of_the_level
+from tests.helpers.sampled import at_night
 
 PLANS = """
 import json, sys
@@ -119,6 +120,7 @@ def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path)
     assert ran.returncode == 1
 
 
+@at_night
 def test_processes_that_compile_end_with_the_service(tmp_path: Path) -> None:
     settings = {"NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_DISABLE_JIT": "0", "PARETOUR_WORKERS": "1"}
     with serve_process(settings) as service:

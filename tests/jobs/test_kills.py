@@ -12,6 +12,7 @@ import pytest
 
 from tests.helpers.engines import Served, engine_of
 from tests.helpers.jobs import CITIES, check, ended, later
+from tests.helpers.sampled import third
 from tests.helpers.serving import problem
 
 # Long enough for a report on the fastest machine.
@@ -27,10 +28,11 @@ FLEET = {
     "time_limit": 0.8,
 }
 CALLERS = 3
+KILLS = third(10)
 
 
 @pytest.mark.parametrize("kind", ["embedded", "cluster"])
-def test_ten_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureRequest) -> None:
+def test_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureRequest) -> None:
     over = Event()
     with (
         engine_of(kind, request, workers=2) as engine,
@@ -45,7 +47,7 @@ def test_ten_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureReq
         fleets = [later(served.client, FLEET, "/fleet") for _ in range(3)]
         rests = [later(served.client, CHANGES, rest) for _ in range(3)]
         try:
-            kill_ten(served)
+            kill_many(served)
         finally:
             over.set()
         for path in paths:
@@ -89,12 +91,12 @@ def ask(client: httpx.Client, over: Event) -> list[httpx.Response]:
     return answers
 
 
-def kill_ten(served: Served) -> None:
-    """Kill a process in mid-search, ten times, each time over another front."""
+def kill_many(served: Served) -> None:
+    """Kill a process in mid-search many times, each time over another front."""
     killed = set()
-    while len(killed) < 10:
+    while len(killed) < KILLS:
         for front, pid in served.searching().items():
-            if front not in killed and len(killed) < 10:
+            if front not in killed and len(killed) < KILLS:
                 os.kill(pid, signal.SIGKILL)
                 killed.add(front)
         time.sleep(0.01)

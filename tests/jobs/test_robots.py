@@ -14,6 +14,7 @@ from service.kinds.parsing import parse_task
 from service.requests.limits import Limits
 from service.requests.task import TaskSource
 from tests.helpers.robot_plans import best_plans, check_answer
+from tests.helpers.sampled import third
 from tests.helpers.serving import ACTORS
 
 LIMITS = Limits(body_bytes=10**6, cities=60, cells=900, preferences=20, size=50, seconds=30.0)
@@ -52,7 +53,7 @@ def random_request(seed: int, places: int, robots: int = 2) -> dict[str, Any]:
     return request
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(third(12)))
 def test_of_two_robots_every_plan_is_compared(seed: int) -> None:
     request = random_request(seed, places=5)
     answer = answer_to(request)

@@ -22,6 +22,7 @@ from service.requests.stops import Stops
 from service.requests.task import Task
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.changes import Change, random_change
+from tests.helpers.sampled import third
 
 CHANGES, PARTS = 300, 10
 LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
@@ -66,7 +67,7 @@ def test_up_to_nine_stops_the_front_of_the_rest_is_that_of_all_ways(part: int) -
 
 
 def test_tours_that_keep_enough_are_no_worse_than_the_earlier_ones_that_do() -> None:
-    for seed in range(40):
+    for seed in range(third(40)):
         change = random_change(seed)
         task = task_of(change, min_kept=0.5)
         enough = [way for way in _completions(task, change) if change.kept(way) >= 0.5]
@@ -134,7 +135,7 @@ def test_fewer_tours_are_completed_where_all_would_take_too_long() -> None:
 
 def test_cities_that_are_not_touched_have_the_neighbours_and_costs_that_they_had() -> None:
     left_alone = 0
-    for seed in range(60):
+    for seed in range(third(60)):
         change = random_change(seed, least=7)
         task = task_of(change)
         assert task.earlier is not None

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from service.instance import Instance
 from service.search.candidates import CandidatePool, fill_in_blocks, make_candidate_pool
 from service.search.costs import Costs, make_costs
+from tests.helpers.sampled import third
 
 WEIGHTS = np.array([[0.001, 0.999], [0.3, 0.7], [0.5, 0.5], [0.999, 0.001]])
 
@@ -31,7 +32,7 @@ def least_costs(pool: CandidatePool, weight: NDArray) -> list[NDArray]:
 
 
 @pytest.mark.parametrize("closed", [True, False])
-@settings(max_examples=30)
+@settings(max_examples=third(30))
 @given(n=st.integers(10, 150), clusters=st.integers(1, 100), seed=st.integers(0, 10**6))
 def test_trees_find_the_same_candidates_as_a_look_at_all_pairs(
     n: int, clusters: int, seed: int, closed: bool
@@ -43,7 +44,7 @@ def test_trees_find_the_same_candidates_as_a_look_at_all_pairs(
         assert np.array_equal(found, expected)
 
 
-@settings(max_examples=30)
+@settings(max_examples=third(30))
 @given(n=st.integers(10, 150), side=st.integers(1, 5), seed=st.integers(0, 10**6))
 def test_among_cities_that_coincide_trees_find_as_near_ones(n: int, side: int, seed: int) -> None:
     cities = np.random.default_rng(seed).integers(0, side, (n, 4)).astype(float)

@@ -29,6 +29,7 @@ from tests.helpers.instances import (
     small_integers,
     uniform,
 )
+from tests.helpers.sampled import third
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -74,7 +75,7 @@ def test_a_few_cities_give_the_exact_front(kind: str, n: int) -> None:
 @pytest.mark.parametrize("ends", ENDS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_open_routes_through_a_few_cities_give_the_exact_front(kind: str, ends: str) -> None:
-    for seed in range(17):
+    for seed in range(third(17)):
         n = 2 + seed % 8
         instance = opened(small_integers(kind, n, seed), ends, seed)
         found = improve(instance, no_tours(n))
@@ -89,7 +90,7 @@ def test_of_an_open_route_through_one_city_there_is_one() -> None:
         assert improve(instance, no_tours(1)).tours.tolist() == [[0]]
 
 
-@settings(max_examples=40)
+@settings(max_examples=third(40))
 @given(kind=st.sampled_from(KINDS), n=st.integers(10, 30), m=st.integers(0, 5), seed=st.integers(0))
 def test_every_given_tour_is_dominated_or_equalled(kind: str, n: int, m: int, seed: int) -> None:
     instance = small_integers(kind, n, seed % 1000)
@@ -99,7 +100,7 @@ def test_every_given_tour_is_dominated_or_equalled(kind: str, n: int, m: int, se
     assert covers(found.points, tour_lengths(instance, tours))
 
 
-@settings(max_examples=60)
+@settings(max_examples=third(60))
 @given(
     kind=st.sampled_from(KINDS),
     ends=st.sampled_from(ENDS),

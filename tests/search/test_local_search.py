@@ -11,12 +11,13 @@ from service.search.working_tour import dequeue as dequeue_kernel
 from service.search.working_tour import enqueue_cities, load, make_working_tour
 from tests.helpers.instances import random_matrices, scalarization_of
 from tests.helpers.kernels import for_python
+from tests.helpers.sampled import third
 
 improve_at = for_python(improve_at_kernel)
 dequeue = for_python(dequeue_kernel)
 
 
-@settings(max_examples=30)
+@settings(max_examples=third(30))
 @given(seed=st.integers(0, 10**6), symmetric=st.booleans(), n=st.integers(8, 40))
 def test_every_improving_move_gains_what_it_says(seed: int, symmetric: bool, n: int) -> None:
     scalarization = scalarization_of(random_matrices(n, seed, symmetric))

@@ -19,6 +19,7 @@ from service.search.bound.hypervolume import hypervolume_bound
 from service.search.front_points import FrontPoints
 from service.search.improve import improve
 from tests.helpers.instances import no_tours
+from tests.helpers.sampled import third
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -85,7 +86,7 @@ def is_right(instance: Instance, front: Front) -> None:
             assert abs(Fraction(came) - right) <= right * Fraction(1e-9) + Fraction(2.0**-1070)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=third(150), deadline=None)
 @given(
     seed=st.integers(0, 10**6),
     n=st.sampled_from([2, 5, 9, 12]),

@@ -3,9 +3,12 @@
 import pytest
 
 from tests.fuzz.fleets_judged.attack import judge_many
+from tests.helpers.sampled import IS_WHOLE
+
+SEEDS = 2 if IS_WHOLE else 1
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(SEEDS))
 def test_plans_of_fleets_are_as_the_judge_says(seed: int) -> None:
     outcome = judge_many(70, seed)
     assert outcome.faults == []

@@ -16,6 +16,7 @@ from service.requests.stops import Stops, cost_matrices
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Change, Found, random_change
+from tests.helpers.sampled import third
 
 LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
 INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
@@ -56,7 +57,7 @@ def stops_of(task: Task) -> Stops:
 
 
 def test_the_rest_has_the_stops_costs_ends_and_tour_that_are_left() -> None:
-    for seed in range(300):
+    for seed in range(third(300)):
         change = random_change(seed)
         task = task_of(change)
         stops, labels = stops_of(task), task.labels
@@ -307,7 +308,7 @@ def test_new_objectives_may_have_touched_every_city() -> None:
 
 
 def test_the_driven_tour_has_the_balance_that_it_had_in_the_earlier_front() -> None:
-    for seed in range(40):
+    for seed in range(third(40)):
         change = random_change(seed)
         found = change.front.found
         driven = [change.ids.index(stop) for stop in change.request["tour"]]

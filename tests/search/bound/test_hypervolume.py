@@ -20,6 +20,7 @@ from service.search.enumeration import exact_tours
 from service.search.improve import improve
 from service.watch import Watch
 from tests.helpers.instances import ENDS, all_tours, every_tour, opened
+from tests.helpers.sampled import third
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -39,7 +40,7 @@ def drawn_closed(seed: int, n: int, symmetric: bool, planar: bool) -> Instance:
     return Instance(matrices=matrices + (matrices.transpose(0, 2, 1) if symmetric else 0))
 
 
-@settings(max_examples=150)
+@settings(max_examples=third(150))
 @given(
     seed=st.integers(0, 10**6),
     n=st.integers(1, 8),
@@ -67,7 +68,7 @@ def test_the_exact_front_of_ten_cities_is_within_the_bound(symmetric: bool, ends
     assert hypervolume(points, reference_point) <= bound < 1
 
 
-@settings(max_examples=60)
+@settings(max_examples=third(60))
 @given(
     seed=st.integers(0, 10**6),
     n=st.integers(4, 8),

@@ -14,6 +14,7 @@ from service.search.best_subset import best_subset
 from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.nondominated import nondominated
+from tests.helpers.sampled import third
 
 several = pytest.mark.parametrize("objectives", [3, 4])
 
@@ -50,7 +51,7 @@ def test_that_of_a_large_front_too(objectives: int, k: int) -> None:
 
 @several
 def test_chosen_points_have_nearly_the_largest_hypervolume(objectives: int) -> None:
-    for seed in range(10):
+    for seed in range(third(10)):
         points = shell(14, objectives, seed)
         front = in_order(points)
         chosen = best_subset(front, 4)

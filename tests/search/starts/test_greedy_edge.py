@@ -12,6 +12,7 @@ from service.search.candidates import Scalarization
 from service.search.starts.constructed_tour import constructed_tour
 from service.search.starts.greedy_edge import greedy_edge
 from tests.helpers.instances import random_matrices, scalarization_of, steps_of, uniform
+from tests.helpers.sampled import third
 
 
 def greedy_steps(scalarization: Scalarization) -> set[frozenset[int]]:
@@ -37,7 +38,7 @@ def _joined(beside: dict[int, set[int]], i: int, j: int) -> bool:
     return j in reached
 
 
-@settings(max_examples=30)
+@settings(max_examples=third(30))
 @given(seed=st.integers(0, 10**6), n=st.integers(3, 60))
 def test_it_takes_the_edges_that_greedy_edge_takes(seed: int, n: int) -> None:
     scalarization = scalarization_of(random_matrices(n, seed, symmetric=True))
@@ -47,7 +48,7 @@ def test_it_takes_the_edges_that_greedy_edge_takes(seed: int, n: int) -> None:
     assert greedy_steps(scalarization) <= steps_of(tour)
 
 
-@settings(max_examples=30)
+@settings(max_examples=third(30))
 @given(
     seed=st.integers(0, 10**6),
     start=st.none() | st.integers(0, 9),

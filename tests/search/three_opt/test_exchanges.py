@@ -34,6 +34,7 @@ from tests.helpers.instances import (
     weighted_length,
 )
 from tests.helpers.kernels import for_python
+from tests.helpers.sampled import third
 
 make_exchange = for_python(make_exchange_kernel)
 find_exchanges = for_python(find_exchanges_kernel)
@@ -89,7 +90,7 @@ def best_of_all(scalarization: Scalarization, tour: list[int]) -> float:
     return length(tour) - least
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(third(40)))
 def test_an_exchange_gains_what_it_says_changes_three_steps_and_can_be_undone(seed: int) -> None:
     scalarization = scalarization_of(random_matrices(N, seed, symmetric=True))
     working = shuffled(scalarization, seed)
