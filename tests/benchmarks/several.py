@@ -55,6 +55,7 @@ SIZES = {  # by the name of the instances: kind of plane, cities, objectives, ho
     "5000 uniform": (uniform, 5000, 3, 1, 60.0),
 }
 KRO_SECONDS = 10.0
+MOST_IN_ANSWER = 2_000_000  # stops of all tours, each with its return
 
 
 def main(arguments: list[str]) -> None:
@@ -134,8 +135,9 @@ def _served(size: int, instance: Instance, seconds: float) -> Array:
     given = instance.coordinates if instance.matrices is None else instance.matrices
     kind = "coordinates" if instance.matrices is None else "matrices"
     assert given is not None
-    body = {kind: given.tolist()}
-    answer = _client().post("/front", json={**body, "time_limit": seconds, "size": size})
+    size = min(size, MOST_IN_ANSWER // (instance.n + 1))
+    body = {kind: given.tolist(), "time_limit": seconds, "size": size}
+    answer = _client().post("/front", json=body)
     answer.raise_for_status()
     return np.array([tour["lengths"] for tour in answer.json()["front"]])
 
