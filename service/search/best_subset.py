@@ -32,7 +32,7 @@ _A_POINT, _A_LOOK = {3: (1.2e-7, 0.66), 4: (1.4e-7, 0.70)}, {3: (2.5e-8, 0.75), 
 _DIVIDING = 4e-7  # for each point: to divide the points into cells, and to find those close by
 _MOST_DIVIDING = 0.4  # of the seconds: where there are more points, some are left out evenly
 _SEEKING = 1e-9  # for each point: to find those that are close to one
-_FIRST = 0.5  # of the seconds, for choosing one after another where that takes too long
+_FIRST = 0.5  # of the seconds, for choosing one after another; of all where exchanges take longer
 _ALMOST = 0.95  # of the seconds are over when the last point is exchanged
 _PASSES = 10  # times that each chosen point is exchanged, at most
 _PATIENCE = 4.0  # times as long as it may take, the choice goes on
@@ -157,7 +157,9 @@ def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
     most = points
     if points * _for_each(size, objectives) > left:
         comparing = size * _comparing(points / size, size, objectives)
-        most = max(size, int((_FIRST * left - comparing) / _for_each(size, objectives)))
+        exchanges = size * _an_exchange(size, points, objectives) < (1 - _FIRST) * left
+        first = _FIRST * left if exchanges else left
+        most = max(size, int((first - comparing) / _for_each(size, objectives)))
         if most == size:
             wanted = _affordable(size, points, objectives, left)
     cells = divided(shares, most)
