@@ -6,7 +6,6 @@ between what they reach are filled. Every nondominated tour that is visited is k
 
 import time
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +14,8 @@ from service.front import SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
 from service.search.archive import MAX_POINTS
-from service.search.best_subset import SHORTLY, best_subset
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.front_points import FrontPoints
+from service.search.front_search import FrontSearch
 from service.search.nondominated import nondominated
 from service.search.schedule import Search
 from service.search.several.schedule import SearchOfSeveral
@@ -76,11 +74,8 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         return _enumerated(instance, tours, watch)
     if reference_point is None:
         reference_point = instance.reference_point
-    search: Search | SearchOfSeveral
-    if instance.objectives == OBJECTIVES:
-        search = Search(instance, seed, reference_point, capacity, touched)
-    else:
-        search = SearchOfSeveral(instance, seed, reference_point, capacity, touched)
+    kind = Search if instance.objectives == OBJECTIVES else SearchOfSeveral
+    search = kind(instance, seed, reference_point, capacity, touched)
     search.add(tours)
     terminated = _run(search, watch, reserve, iterations)
     if not search.size:
@@ -94,7 +89,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
 
 
 def _run(
-    search: Search | SearchOfSeveral,
+    search: FrontSearch,
     watch: Watch[SearchResult],
     reserve: Callable[[int], float],
     iterations: float,
@@ -115,14 +110,9 @@ def _run(
         late = begun and watch.over(slowed * reserve(search.size) + next_step)
         if late or visited >= iterations:
             return "time_limit"
-        watch.report_if_due(partial(_found, search), partial(_best_found, search))
+        watch.report_if_due(search.progress, search.best)
         looked = watch.spent
     return "converged"
-
-
-def _found(search: Search | SearchOfSeveral) -> tuple[float, int] | None:
-    """Return the hypervolume and the number of points found; None if all have a forbidden leg."""
-    return (search.hypervolume, search.size) if search.allowed else None
 
 
 def _slowed(seconds: float, computed: float) -> float:
@@ -143,15 +133,8 @@ def _enumerated(
     return _front(instance, every, "cancelled" if watch.stopped() else "time_limit")
 
 
-def _best_found(search: Search | SearchOfSeveral, size: int) -> SearchResult:
-    """Return the best subset of a size of the front that a search has found so far."""
-    points = search.points()
-    indices = best_subset(FrontPoints(points, search.reference_point), size, SHORTLY)
-    return SearchResult(points[indices], search.tours(indices).__getitem__, None)
-
-
 def _with_dropped(
-    search: Search | SearchOfSeveral, dropped: NDArray[np.integer], terminated: Termination
+    search: FrontSearch, dropped: NDArray[np.integer], terminated: Termination
 ) -> SearchResult:
     """Return the front of a search, and of tours that its full archive had to drop."""
     found = search.size

@@ -22,7 +22,7 @@ from itertools import cycle
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance
 from service.search.archive import (
     MAX_POINTS,
     accepts,
@@ -32,15 +32,15 @@ from service.search.archive import (
 )
 from service.search.candidates import (
     POOL_WEIGHTS,
+    Scalarization,
     fill_in_blocks,
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.descents import Descents
 from service.search.enumeration import enumerate_tours
-from service.search.front_points import FrontPoints
+from service.search.front_search import FrontSearch
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -51,11 +51,11 @@ from service.search.pareto_local_search import (
     make_weighted_candidates,
     rounds,
 )
-from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import choose_local_searches
 from service.search.working_tour import make_working_tour
 
 Array = NDArray[np.float64]
+Cities = NDArray[np.int32]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
@@ -67,20 +67,8 @@ MAX_PROVED = 11  # cities, the invented one among them, up to which convergence 
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
 
-class Search:
-    """A search for the front of one instance of at least eight cities.
-
-    It depends on the seed and on what it has found, never on the clock: stopped after the same
-    number of iterations, it has found the same.
-
-    Args:
-        instance: The instance.
-        seed: The seed of all random choices.
-        reference_point: Shape (2,), positive, in the instance's units.
-        capacity: The most tours that the archive holds.
-        touched: If the tours that are added are those of an earlier front: the cities of the
-            instance at which they may have become worse. Then no tour is constructed.
-    """
+class Search(FrontSearch):
+    """A search for the front of an instance of two objectives; see FrontSearch."""
 
     def __init__(
         self,
@@ -90,14 +78,13 @@ class Search:
         capacity: int = MAX_POINTS,
         touched: NDArray[np.integer] | None = None,
     ) -> None:
-        self.instance = instance
-        self.touched = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
         self.shifts = instance.shifts
-        self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
         self.common = scaled_reference(instance, instance.reference_point)
         costs = make_costs(instance)
         self.n = len(costs.cities)
+        archive = make_archive(self.n, capacity)
+        super().__init__(instance, reference_point, archive, touched)
         self.large = self.n >= LARGE
         self.block = max(STEPS, BLOCK * FULL_BLOCK // max(FULL_BLOCK, self.n))
         mending = touched is not None
@@ -107,58 +94,25 @@ class Search:
         self.state = SearchState(
             costs,
             weighted_candidates,
-            make_archive(self.n, capacity),
+            archive,
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
         descent, self.local_search = choose_local_searches(self.state, mending)
         self.descents = Descents(instance, self.state, descent, self.touched)
 
-    @property
-    def hypervolume(self) -> float:
-        """The hypervolume of the front found so far, 0 to 1."""
-        return FrontPoints(self.points(), self.reference_point).hypervolume
-
-    @property
-    def allowed(self) -> bool:
-        """Whether the tours found so far have no forbidden leg: either none of them has, or all."""
-        first = self.tours(np.arange(min(1, self.size)))
-        return len(first) > 0 and bool(np.isfinite(tour_lengths(self.instance, first)).all())
-
-    @property
-    def size(self) -> int:
-        """The number of points of the front found so far."""
-        return int(self.state.archive.counts[0])
-
-    def tours(self, indices: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
-        """Return the tours of the front, or those at indices, by ascending first length."""
+    def _front(self) -> tuple[Cities, Array]:
         archive = self.state.archive
-        slots = archive.slots[: self.size]
-        tours = archive.tours[slots if indices is None else slots[indices]]
-        return opened_tours(self.instance, tours)
+        return archive.slots[: self.size], archive.points[: self.size]
 
-    def points(self) -> Array:
-        """Return the points of the front, shape (p, 2), in the instance's units."""
-        return np.ldexp(self.state.archive.points[: self.size], -self.shifts)
-
-    def not_covered(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
-        """Return the tours that the front neither dominates nor equals.
-
-        Of tours that were added there are some only where a full archive had to drop them.
-        """
-        costs, archive = self.state.costs, self.state.archive
-        points = [lengths(costs, tour) for tour in closed_tours(self.instance, tours)]
-        return tours[[k for k in range(len(tours)) if accepts(archive, *points[k])]]
-
-    def add(self, tours: NDArray[np.integer]) -> None:
-        """Add tours, shape (m, n), to the front."""
-        for tour in closed_tours(self.instance, tours):
-            insert(self.state.archive, lengths(self.state.costs, tour), tour)
-
-    def construct(self) -> None:
-        """Add a nearest-neighbour tour under equal weights, at most O(n^2)."""
-        tour = constructed_tour(self.instance, self.descents.scalarization(len(self.weights) // 2))
+    def _insert(self, tour: Cities) -> None:
         insert(self.state.archive, lengths(self.state.costs, tour), tour)
+
+    def _accepts(self, tour: Cities) -> bool:
+        return accepts(self.state.archive, *lengths(self.state.costs, tour))
+
+    def _middle(self) -> Scalarization:
+        return self.descents.scalarization(len(self.weights) // 2)
 
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.

@@ -11,12 +11,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance
 from service.search.archive import MAX_POINTS
 from service.search.archive import make_archive as make_sorted_archive
 from service.search.candidates import Scalarization
-from service.search.closing import closed_tours, opened_tours
-from service.search.front_points import FrontPoints
+from service.search.front_search import FrontSearch
 from service.search.pareto_local_search import SearchState, WeightedCandidates
 from service.search.several.archive import (
     accepts,
@@ -37,11 +36,11 @@ from service.search.several.local_search import (
     search_from_points,
 )
 from service.search.several.weights import WeightedSums, search_weights
-from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import TwoOptSearch, choose_local_searches
 from service.search.working_tour import make_working_tour
 
 Array = NDArray[np.float64]
+Cities = NDArray[np.int32]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
@@ -52,20 +51,8 @@ PATIENCE = 1_000  # iterations per city without a new tour, after which the sear
 ROUNDS = ((0.25, 0.0), (0.5, 0.5), (0.5, 1.0))
 
 
-class SearchOfSeveral:
-    """A search for the front of an instance of at least eight cities and three or four objectives.
-
-    It depends on the seed and on what it has found, never on the clock: stopped after the same
-    number of iterations, it has found the same.
-
-    Args:
-        instance: The instance.
-        seed: The seed of all random choices.
-        reference_point: Shape (m,), positive, in the instance's units.
-        capacity: The most tours that the archive holds.
-        touched: If the tours that are added are those of an earlier front: the cities of the
-            instance at which they may have become worse. Then no tour is constructed.
-    """
+class SearchOfSeveral(FrontSearch):
+    """A search for the front of an instance of three or four objectives; see FrontSearch."""
 
     def __init__(
         self,
@@ -75,13 +62,12 @@ class SearchOfSeveral:
         capacity: int = MAX_POINTS,
         touched: NDArray[np.integer] | None = None,
     ) -> None:
-        self.instance = instance
-        self.reference_point = reference_point
         self._costs = make_objective_costs(instance)
         self._n = len(self._costs.planes)
         self._sums = WeightedSums(self._costs, search_weights(instance))
         self._weights = self._sums.weights
         self._archive = make_archive(self._n, instance.objectives, capacity)
+        super().__init__(instance, reference_point, self._archive, touched)
         self._state = StateOfSeveral(
             self._costs,
             self._archive,
@@ -91,9 +77,7 @@ class SearchOfSeveral:
         descent, self._local_search = choose_local_searches(
             self._state_of_two(), touched is not None
         )
-        cities = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
-        self._descents = DescentsOfSeveral(instance, self._state, self._sums, descent, cities)
-        self._constructing = touched is None
+        self._descents = DescentsOfSeveral(instance, self._state, self._sums, descent, self.touched)
         self._lengths = np.empty(instance.objectives)
         self._sorted = 0, np.empty(0, np.int32)  # tours ever inserted, and the rows then
 
@@ -113,61 +97,23 @@ class SearchOfSeveral:
             self._state.random,
         )
 
-    @property
-    def hypervolume(self) -> float:
-        """The hypervolume of the front found so far, 0 to 1; of four objectives of a part of it."""
-        return FrontPoints(self.points(), self.reference_point).quick_hypervolume
-
-    @property
-    def allowed(self) -> bool:
-        """Whether the tours found so far have no forbidden leg: either none of them has, or all."""
-        first = self.tours(np.arange(min(1, self.size)))
-        return len(first) > 0 and bool(np.isfinite(tour_lengths(self.instance, first)).all())
-
-    @property
-    def size(self) -> int:
-        """The number of points of the front found so far."""
-        return int(self._archive.counts[0])
-
-    def tours(self, indices: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
-        """Return the tours of the front, or those at indices, by ascending first length."""
-        rows = self._rows()
-        tours = self._archive.tours[rows if indices is None else rows[indices]]
-        return opened_tours(self.instance, tours)
-
-    def points(self) -> Array:
-        """Return the points of the front, shape (p, m), in the instance's units."""
-        return np.ldexp(self._archive.points[self._rows()], -self.instance.shifts)
-
-    def _rows(self) -> NDArray[np.int32]:
-        """Return the rows of the archive in the order of the front; sorted once for each front."""
+    def _front(self) -> tuple[Cities, Array]:
         inserted = int(self._archive.counts[2])
-        if inserted != self._sorted[0]:
+        if inserted != self._sorted[0]:  # else it is sorted already
             self._sorted = inserted, rows_of(self._archive)
-        return self._sorted[1]
+        rows = self._sorted[1]
+        return rows, self._archive.points[rows]
 
-    def not_covered(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
-        """Return the tours that the front neither dominates nor equals.
+    def _insert(self, tour: Cities) -> None:
+        sum_lengths(self._costs, tour, self._lengths)
+        insert(self._archive, self._lengths, tour)
 
-        Of tours that were added there are some only where a full archive had to drop them.
-        """
-        missing = []
-        for k, tour in enumerate(closed_tours(self.instance, tours)):
-            sum_lengths(self._costs, tour, self._lengths)
-            if accepts(self._archive, self._lengths):
-                missing.append(k)
-        return tours[missing]
+    def _accepts(self, tour: Cities) -> bool:
+        sum_lengths(self._costs, tour, self._lengths)
+        return accepts(self._archive, self._lengths)
 
-    def add(self, tours: NDArray[np.integer]) -> None:
-        """Add tours, shape (k, n), to the front."""
-        for tour in closed_tours(self.instance, tours):
-            sum_lengths(self._costs, tour, self._lengths)
-            insert(self._archive, self._lengths, tour)
-
-    def construct(self) -> None:
-        """Add a nearest-neighbour tour under the first weight, at most O(n^2)."""
-        tour = constructed_tour(self.instance, self._sums.scalarization(0))
-        self.add(opened_tours(self.instance, tour[np.newaxis]))
+    def _middle(self) -> Scalarization:
+        return self._sums.scalarization(0)
 
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.
@@ -176,7 +122,7 @@ class SearchOfSeveral:
         """
         for k in range(len(self._weights)):
             yield from self._rank(k)
-            construct = k < CONSTRUCTIONS and self._constructing
+            construct = k < CONSTRUCTIONS and self.touched is None
             yield from self._descents.descend(k, self._sums.scalarization(k), construct)
         rounds = iter(ROUNDS)
         share, quiet = next(rounds), 0
