@@ -5,7 +5,6 @@ the half-plane w . f >= L(w). So a front dominates no more of the box than what 
 these half-planes.
 """
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -13,10 +12,9 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
-from service.search.bound.assignment import augment, make_assignment, price_bound
-from service.search.bound.one_tree import ascend, make_ascent
 from service.search.bound.several import bound_of_several
-from service.search.costs import Costs, make_costs, scaled_reference
+from service.search.bound.weighted import lowest_sums
+from service.search.costs import make_costs, scaled_reference
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.hypervolume import hypervolume
 from service.search.pareto_local_search import bisection_order
@@ -25,9 +23,6 @@ from service.watch import Watch
 Array = NDArray[np.float64]
 
 WEIGHTS = 33
-STEPS = 200  # of the subgradient ascent at each weight
-BLOCK = 1_000_000  # costs computed between two checks of the deadline
-SLACK = 1e-9  # share by which a lower bound is lowered, far above what rounding can raise it
 
 
 def hypervolume_bound(
@@ -55,47 +50,10 @@ def hypervolume_bound(
     scale = np.ldexp(instance.scale, instance.shifts)
     weights = np.stack([share, 1 - share], axis=1) / scale
     costs = make_costs(instance)
-    bound = one_tree_bounds if instance.symmetric else assignment_bounds
-    lowest = np.zeros(WEIGHTS)
-    for k, value in bound(costs, weights):
-        lowest[k] = max(lowest[k], value * (1 - SLACK))
-        if watch.ended():
-            break
+    sums = [(costs, w0, w1) for w0, w1 in weights.tolist()]
+    places = np.arange(float(WEIGHTS))[:, np.newaxis]
+    lowest = lowest_sums(sums, bisection_order(WEIGHTS), places, watch)
     return area_above(weights * scaled_reference(instance, reference_point), lowest)
-
-
-def one_tree_bounds(costs: Costs, weights: Array) -> Iterator[tuple[int, float]]:
-    """Yield pairs of a weight's index and a lower bound under that weight, ever better.
-
-    Costs must be symmetric; weights have shape (k, 2), for scaled lengths.
-    """
-    n = len(costs.cities)
-    block = max(1, BLOCK // n**2)
-    shares = (1 - np.arange(STEPS) / STEPS) ** 2
-    penalties: dict[int, Array] = {}
-    for k in bisection_order(len(weights)):
-        nearest = min(penalties, key=lambda done: abs(done - k), default=None)
-        ascent = make_ascent(np.zeros(n) if nearest is None else penalties[nearest])
-        w0, w1 = weights[k].tolist()
-        for begin in range(0, STEPS, block):
-            ascend(costs, w0, w1, ascent, shares[begin : begin + block])
-            yield k, float(ascent.best_bound[0])
-        penalties[k] = ascent.best_penalties
-
-
-def assignment_bounds(costs: Costs, weights: Array) -> Iterator[tuple[int, float]]:
-    """Yield pairs of a weight's index and a lower bound under that weight, ever better.
-
-    Weights have shape (k, 2), for scaled lengths.
-    """
-    n = len(costs.cities)
-    for k in bisection_order(len(weights)):
-        assignment = make_assignment(n)
-        w0, w1 = weights[k].tolist()
-        for city in range(n):
-            augment(costs, w0, w1, assignment, city)
-            if city == n - 1 or city % max(1, BLOCK // n**2) == 0:
-                yield k, price_bound(costs, w0, w1, assignment.prices)
 
 
 def area_above(weights: Array, lowest: Array) -> float:

@@ -1,7 +1,6 @@
 """The same bound of three and four objectives: half-spaces cut the box instead of half-planes."""
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,9 +8,8 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.preferences import lattice, spread_out
-from service.search.bound.assignment import augment, make_assignment, price_bound
-from service.search.bound.one_tree import ascend, make_ascent
-from service.search.costs import Costs, scaled_reference
+from service.search.bound.weighted import SLACK, lowest_sums
+from service.search.costs import scaled_reference
 from service.search.several.costs import make_objective_costs, weighted_costs
 from service.watch import Watch
 
@@ -19,9 +17,6 @@ Array = NDArray[np.float64]
 
 PARTS = {3: 6, 4: 4}  # of 1, that the weights share: 28 and 35 weights
 LEAST_SHARE = 1e-3  # of a weight, so that every half-space is cut by each axis
-STEPS = 200  # of the subgradient ascent at each weight
-BLOCK = 1_000_000  # costs computed between two checks of the deadline
-SLACK = 1e-9  # share by which bounds are loosened, far above what rounding can do to them
 THINNEST = 1e-6  # share of the box's diagonal that is left, below which one half-space alone counts
 
 
@@ -37,40 +32,8 @@ def lowest_lengths(instance: Instance, watch: Watch[Any]) -> tuple[Array, Array]
     weights = shares[spread_out(shares)] / np.ldexp(instance.scale, instance.shifts)
     weights /= weights.sum(axis=1, keepdims=True)
     costs = make_objective_costs(instance)
-    lowest = np.zeros(len(weights))
-    for k, value in _bounds([weighted_costs(costs, each) for each in weights], weights):
-        lowest[k] = max(lowest[k], value * (1 - SLACK))
-        if watch.ended():
-            break
-    return weights, lowest
-
-
-def _bounds(costs: list[Costs], weights: Array) -> Iterator[tuple[int, float]]:
-    """Yield pairs of a weight's index and a lower bound under that weight, ever better."""
-    one_tree = costs[0].symmetric
-    penalties: list[Array] = []
-    for k, weighted in enumerate(costs):
-        if not one_tree:
-            yield from ((k, value) for value in _assignment_bounds(weighted))
-            continue
-        distances = np.linalg.norm(weights[:k] - weights[k], axis=1)
-        start = penalties[int(distances.argmin())] if k else np.zeros(len(weighted.cities))
-        ascent = make_ascent(start)
-        shares = (1 - np.arange(STEPS) / STEPS) ** 2
-        block = max(1, BLOCK // len(start) ** 2)
-        for begin in range(0, STEPS, block):
-            ascend(weighted, 1.0, 1.0, ascent, shares[begin : begin + block])
-            yield k, float(ascent.best_bound[0])
-        penalties.append(ascent.best_penalties)
-
-
-def _assignment_bounds(costs: Costs) -> Iterator[float]:
-    n = len(costs.cities)
-    assignment = make_assignment(n)
-    for city in range(n):
-        augment(costs, 1.0, 0.0, assignment, city)
-        if city == n - 1 or city % max(1, BLOCK // n**2) == 0:
-            yield price_bound(costs, 1.0, 0.0, assignment.prices)
+    sums = [(weighted_costs(costs, each), 1.0, 1.0) for each in weights]
+    return weights, lowest_sums(sums, range(len(weights)), weights, watch)
 
 
 def volume_above(weights: Array, lowest: Array) -> float:

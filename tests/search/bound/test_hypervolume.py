@@ -11,10 +11,9 @@ from service.pareto import hypervolume
 from service.search.bound.hypervolume import (
     WEIGHTS,
     area_above,
-    assignment_bounds,
     hypervolume_bound,
-    one_tree_bounds,
 )
+from service.search.bound.weighted import lowest_sums
 from service.search.costs import make_costs
 from service.search.enumeration import exact_tours
 from service.search.improve import improve
@@ -82,21 +81,21 @@ def test_no_tour_is_shorter_than_the_bound_under_a_weight(
     share = np.linspace(0, 1, WEIGHTS)
     weights = np.stack([share, 1 - share], axis=1) / instance.scale
     shortest = (tour_lengths(instance, every_tour(instance)) @ weights.T).min(axis=0)
-    bounds = one_tree_bounds if instance.symmetric else assignment_bounds
-    for k, value in bounds(make_costs(instance), weights / 2.0**instance.shifts):
-        assert value <= shortest[k] + 1e-9
+    sums = [(make_costs(instance), *each) for each in (weights / 2.0**instance.shifts).tolist()]
+    lowest = lowest_sums(sums, range(WEIGHTS), share[:, np.newaxis], Watch())
+    assert (lowest > 0).all()
+    assert (lowest <= shortest + 1e-9).all()
 
 
 def test_the_assignment_bound_is_the_least_assignment() -> None:
     n = 7
     instance = Instance(matrices=np.random.default_rng(5).random((2, n, n)))
-    weights = np.array([[0.5, 0.5]])
     costs = make_costs(instance)
-    weighted: NDArray[np.float64] = costs.matrix @ weights[0]
+    weighted: NDArray[np.float64] = costs.matrix @ (0.5, 0.5)
     orders = np.array([order for order in _permutations(n) if (order != np.arange(n)).all()])
     least = weighted[np.arange(n), orders].sum(axis=1).min()
-    *_, (_, last) = assignment_bounds(costs, np.vstack([weights, weights]))
-    assert last == pytest.approx(least)
+    [lowest] = lowest_sums([(costs, 0.5, 0.5)], [0], np.zeros((1, 1)), Watch())
+    assert lowest == pytest.approx(least)
 
 
 def _permutations(n: int) -> NDArray[np.int32]:
