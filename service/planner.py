@@ -19,13 +19,13 @@ from service.front import Front, PlanOptions, SearchFunction, SearchResult
 from service.instance import Instance, tour_lengths
 from service.search.best_subset import best_subset, selection_limit, selection_seconds
 from service.search.bound.hypervolume import hypervolume_bound
-from service.search.enumeration import MAX_ENUMERATED
 from service.search.forbidden_legs import tightest
 from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.improve import improve
 from service.search.nondominated import nondominated
 from service.search.open_routes import oriented, plain_tours, rotated
+from service.search.sizes import MAX_ENUMERATED
 from service.watch import Progress, Watch
 
 Array = NDArray[np.float64]

@@ -13,12 +13,10 @@ from service.errors import WarmingUp
 from service.objectives import OBJECTIVES
 from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
+from service.search.sizes import DENSE_BELOW, GREEDY, MAX_ENUMERATED, THREE_OPT
 
-# The limits of the search, which cannot be imported here.
-_ENUMERATED = 9  # cities up to which all tours are tried
-_THREE_OPT = 250  # cities from which on three-opt searches; fewer where costs differ by direction
 # Cities from which on candidates or tours are found by other code.
-_MANY = {"coordinates": 600, "matrices": 2_000}
+_MANY = {"coordinates": DENSE_BELOW, "matrices": GREEDY}
 
 
 class Part(Enum):
@@ -73,8 +71,10 @@ def parts_for_fleet(fleet: UnmeasuredFleet, _: Task) -> frozenset[Part]:
 
 def parts_for_map(coverage: Coverage, _: Task) -> frozenset[Part]:
     """Return the parts that one robot on a map needs."""
-    several = set() if coverage.objectives > OBJECTIVES else {Part.SEVERAL_OBJECTIVES}
-    return frozenset(Part) - {Part.FLEETS, Part.OVER_THE_DAY} - several
+    unneeded = {Part.FLEETS, Part.OVER_THE_DAY}
+    if coverage.objectives == OBJECTIVES:
+        unneeded.add(Part.SEVERAL_OBJECTIVES)
+    return frozenset(Part) - unneeded
 
 
 def parts_for_stops(stops: Stops, task: Task) -> frozenset[Part]:
@@ -82,10 +82,10 @@ def parts_for_stops(stops: Stops, task: Task) -> frozenset[Part]:
     several, replanned = len(stops.sources) > OBJECTIVES, task.earlier is not None
     if not (_needs_search(task) or several or stops.hours is not None):
         return frozenset()
-    few = stops.kind == "coordinates" and stops.n < _THREE_OPT and not several and not replanned
+    few = stops.kind == "coordinates" and stops.n < THREE_OPT and not several and not replanned
     needed = {
         Part.FEW_CITIES: True,
-        Part.FEWEST_CITIES: stops.n <= _ENUMERATED,
+        Part.FEWEST_CITIES: stops.n <= MAX_ENUMERATED,
         Part.MORE_CITIES: not few,
         Part.CHANGES: replanned,
         Part.SEVERAL_OBJECTIVES: several or stops.hours is not None,

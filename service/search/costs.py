@@ -13,12 +13,9 @@ from service.search.closing import (
     is_closing,
     largest_steps,
 )
+from service.search.sizes import DENSE_BELOW
 
 Array = NDArray[np.float64]
-
-# From this many cities on, two square roots are faster than a look-up that misses the
-# second-level cache, and memory stays linear in the number of cities.
-DENSE_BELOW = 600
 
 SIDES = 4  # coordinates of a city in the first two planes
 

@@ -16,7 +16,8 @@ from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.local_search import least_gain, offer, sum_afresh
 from service.search.pareto_local_search import LARGE, SearchState
-from service.search.starts.constructed_tour import GREEDY, constructed_tour
+from service.search.sizes import GREEDY
+from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import LocalSearch
 from service.search.working_tour import enqueue_cities
 

@@ -18,7 +18,6 @@ from service.watch import Watch
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
-MAX_ENUMERATED = 9  # cities: at most 9! tours
 DIGITS = 40  # binary, of the least costs that are summed
 LEAST_BLOCKS = 50  # of steps before the deadline counts: most instances need fewer, some 20 ms
 STEPS = 5_000  # cities put into a tour between two checks of the deadline, a fraction of a ms

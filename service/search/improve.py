@@ -14,11 +14,12 @@ from service.front import SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
 from service.search.archive import MAX_POINTS
-from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.enumeration import exact_tours
 from service.search.front_search import FrontSearch
 from service.search.nondominated import nondominated
 from service.search.schedule import Search
 from service.search.several.schedule import SearchOfSeveral
+from service.search.sizes import MAX_ENUMERATED
 from service.watch import Watch
 
 Array = NDArray[np.float64]

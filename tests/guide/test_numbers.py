@@ -30,8 +30,7 @@ from service.requests.coverage import CoverageRequest
 from service.requests.front import FrontRequest
 from service.requests.notes import costs, places
 from service.requests.task import TaskSource
-from service.search import enumeration as all_tours
-from service.search import schedule
+from service.search import schedule, sizes
 from service.settings import Settings, variable_of
 from service.webhooks import sender
 from tests.guide.pages import GUIDE, PAGES, README
@@ -60,7 +59,7 @@ def cells(page: Path, heading: str) -> list[list[str]]:
         (r"up to (\w+) cities \((\w+) for an open route\)", [schedule.MAX_PROVED, 10]),
         (r"exact for up to (\w+) cities \(of closed tours, for up to (\w+)\)", [10, 11]),
         (r"nothing better for ([\d,]+) iterations per city", [schedule.PATIENCE]),
-        (r"[Uu]p to (\w+) cities it tries all", [all_tours.MAX_ENUMERATED]),
+        (r"[Uu]p to (\w+) cities it tries all", [sizes.MAX_ENUMERATED]),
         (r"up to (\w+) stops to visit and (\w+) vehicles", [all_plans.MOST_STOPS, 6]),
         (r"it takes up to (\d+) s more", [planner.BOUND_SECONDS]),
         (r"For up to (\d+) stops it also names stops", [conflicts.FEW_STOPS]),

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from service.front import SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
-from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.enumeration import exact_tours
 from service.search.improve import LEAST_POINTS, improve
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import BLOCK, Search
+from service.search.sizes import MAX_ENUMERATED
 from service.watch import Progress, Watch
 from tests.helpers.instances import (
     ENDS,

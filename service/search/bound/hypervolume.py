@@ -15,9 +15,10 @@ from service.objectives import OBJECTIVES
 from service.search.bound.several import bound_of_several
 from service.search.bound.weighted import lowest_sums
 from service.search.costs import make_costs, scaled_reference
-from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.enumeration import exact_tours
 from service.search.hypervolume import hypervolume
 from service.search.pareto_local_search import bisection_order
+from service.search.sizes import MAX_ENUMERATED
 from service.watch import Watch
 
 Array = NDArray[np.float64]

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from service.instance import Instance
 from service.jit import compiled
 from service.search.closing import closing_costs, is_closing, largest_steps
-from service.search.costs import DENSE_BELOW, Costs, distance
+from service.search.costs import Costs, distance
+from service.search.sizes import DENSE_BELOW
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]

@@ -19,7 +19,8 @@ from service.search.pareto_local_search import LARGE
 from service.search.several.archive import best_row
 from service.search.several.local_search import StateOfSeveral, offer
 from service.search.several.weights import WeightedSums
-from service.search.starts.constructed_tour import GREEDY, constructed_tour
+from service.search.sizes import GREEDY
+from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import LocalSearch
 from service.search.working_tour import enqueue_cities
 

@@ -9,8 +9,6 @@ from service.search.closing import with_end_last
 from service.search.starts.greedy_edge import greedy_edge
 from service.search.starts.nearest_neighbour import nearest_neighbour
 
-GREEDY = 2_000  # cities from which on it is by greedy edge; of 1,000 clustered ones it is worse
-
 
 def constructed_tour(
     instance: Instance, scalarization: Scalarization, greedy: bool = False

@@ -10,6 +10,7 @@ from service.search import working_tour
 from service.search.candidates import Scalarization
 from service.search.local_search import NO_END, iterated_local_search
 from service.search.pareto_local_search import LARGE, MENDING, SearchState
+from service.search.sizes import THREE_OPT
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
 from service.search.three_opt.undoable_tour import UndoableTour, make_undoable_tour
@@ -17,9 +18,6 @@ from service.search.working_tour import QueuedTour, WorkingTour
 
 Cities = NDArray[np.int32]
 
-# Cities from which on iterations use three-opt; at 200 clustered ones it is worse. Where costs
-# differ by direction it is better at any number.
-THREE_OPT = 250
 EFFORT = 3  # of an iteration by three-opt, which takes three or four times as long as by two-opt
 OFFERED = 2_000  # cities up to which every local optimum is offered; beyond, proportionally fewer
 

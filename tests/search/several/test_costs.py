@@ -7,13 +7,14 @@ from numpy.typing import NDArray
 from service.instance import Instance, step_lengths, tour_lengths
 from service.search.candidates import CANDIDATES_PER_CITY, fill_in_blocks, make_candidate_pool
 from service.search.closing import closed_tours
-from service.search.costs import DENSE_BELOW, lengths
+from service.search.costs import lengths
 from service.search.several.costs import (
     ObjectiveCosts,
     make_objective_costs,
     sum_lengths,
     weighted_costs,
 )
+from service.search.sizes import DENSE_BELOW
 from tests.helpers.instances import opened, random_routes, uniform
 
 several = pytest.mark.parametrize("objectives", [3, 4])

@@ -1,0 +1,10 @@
+"""Numbers of cities from which on the search does something else. This loads no compiled code."""
+
+MAX_ENUMERATED = 9  # up to which all tours are tried: at most 9!
+# From which on iterations use three-opt; at 200 clustered cities it is worse. Where costs differ by
+# direction it is better at any number.
+THREE_OPT = 250
+# From which on costs are not tabulated: two square roots are faster than a look-up that misses the
+# second-level cache, and memory stays linear in the number of cities.
+DENSE_BELOW = 600
+GREEDY = 2_000  # from which on tours are constructed by greedy edge; of 1,000 clustered it is worse
