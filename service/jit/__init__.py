@@ -1,4 +1,4 @@
-"""Compile functions with numba, and cache them: the one place that configures numba."""
+"""Compile functions with numba, and cache them: no other module imports numba or sets it up."""
 
 from service.jit.before_numba import IGNORED
 from service.jit.cache import CACHED, PRECOMPILED, folder, locked

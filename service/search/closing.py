@@ -24,8 +24,12 @@ NEVER_ADDED = 2.0**900  # above the cost of any step
 def closing_costs(instance: Instance, barrier: float) -> Array:
     """Return the costs from city 0 to each city, and from each city to city 0, shape (2, n + 1).
 
-    They are empty, of shape (2, 0), for closed tours. A barrier is what kept and forbidden steps
-    count: the greater of largest_steps().
+    They are empty, of shape (2, 0), for closed tours.
+
+    Args:
+        instance: The instance.
+        barrier: The greater of largest_steps(). A forbidden step costs as much, and a step that has
+            to stay in the tour costs the negative of it.
     """
     if instance.closed:
         return np.zeros((2, 0))
@@ -43,7 +47,7 @@ def closing_costs(instance: Instance, barrier: float) -> Array:
 
 
 def largest_steps(instance: Instance) -> Array:
-    """Return the most that a step can cost in the search, shape (2,), also a step to city 0."""
+    """Return the greatest cost of a step in the search, steps of city 0 included, shape (m,)."""
     matrices = instance.kind == "matrices"
     largest = instance.penalised_matrices.max(axis=(1, 2)) if matrices else instance.extents
     scaled = np.ldexp(largest, instance.shifts)
@@ -51,10 +55,7 @@ def largest_steps(instance: Instance) -> Array:
 
 
 def _barrier(largest: Array) -> float:
-    """Return the cost of a forbidden step, and less zero that of a kept one.
-
-    It is a power of two, and larger than what any move can gain.
-    """
+    """Return the cost of a forbidden step: a power of two that no move can gain."""
     exponent = int(np.frexp(largest.max())[1])
     return float(np.ldexp(LEAST_BARRIER, max(0, exponent - 1)))
 

@@ -1,7 +1,7 @@
-"""Descents to a local optimum under one weight: from the best tour known, or from its neighbours'.
+"""Descend to a local optimum under one weight, from the best tour known.
 
-Of a large instance the tours under the weights before and after are descended from as well, and of
-all that these and the best one have the better parts are put together in one.
+Of a large instance, descents also begin at the best tours under the weights before and after. Then
+the best tour takes the better parts of what these have found (edge assembly).
 """
 
 from collections.abc import Iterator, Sequence
@@ -102,8 +102,8 @@ class Descents:
     def descend_from_neighbours(self, k: int, assembling: bool) -> Iterator[int]:
         """Descend under weight k from the best tours under the weights before and after it.
 
-        With `assembling` then put together what is best in these and in the best one before, where
-        costs are symmetric.
+        With `assembling`, and symmetric costs, the best tour then takes the better parts of the
+        tours found, and of the best one before.
         """
         scalarization = self.scalarization(k)
         assembling = assembling and scalarization.costs.symmetric
@@ -121,7 +121,7 @@ class Descents:
             yield from self._assemble(scalarization, tours)
 
     def _assemble(self, scalarization: Scalarization, tours: Sequence[Cities]) -> Iterator[int]:
-        """Put what is better in these tours into the best one, and descend from there."""
+        """Put the better parts of these tours into the best one, and descend from there."""
         local_search, working = self.local_search, self.local_search.working
         self.load_start(local_search, scalarization)
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
@@ -137,7 +137,8 @@ class Descents:
     def _sweep(self, scalarization: Scalarization, cities: Cities, offering: bool) -> Iterator[int]:
         """Descend from the working tour, beginning at these cities, and offer the local optimum.
 
-        With `offering` tours on the way are offered too: from another weight's they lie between.
+        With `offering`, tours on the way are offered too. Those between the best tours of two
+        weights may be on the front.
         """
         working, archive = self.local_search.working, self.state.archive
         enqueue_cities(working, cities)

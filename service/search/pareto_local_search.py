@@ -109,11 +109,13 @@ class Round(NamedTuple):
 def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
     """Return the rounds of a search for n cities, before weights and gaps compete.
 
-    A search that starts from the tours of an earlier front, whose `touched` cities have changed,
-    has short rounds, and fills gaps after each. These tours are good enough for both. Weights come
-    in their order then, so that what one weight gains serves the next one at once. Filling gaps
-    without a round would find more tours than an answer returns, and none as short. Of thousands
-    of cities even a short round takes too long: there is one only if most cities are touched.
+    Args:
+        n: The number of cities.
+        touched: The cities that have changed, if the search starts from the tours of an earlier
+            front. Rounds are short then, as these tours are good already, and gaps are filled after
+            each. If gaps alone were filled, more tours would be found than an answer returns, and
+            none as short. Of thousands of cities even a short round takes too long: there is one
+            only if most cities are touched.
     """
     if touched is None:
         by_iterations = Round(4, 4 if n < LARGE else 0), Round(1, 0)

@@ -1,8 +1,8 @@
-"""Descend to a local optimum under one weight of several, and join what is best in neighbours.
+"""Descend to a local optimum under one weight of three or four objectives.
 
-Each weight's descent begins at the best tour known under it. Of some hundred cities or more the
-tours under the weights nearest to it are then descended from as well, and the best tour takes what
-is better in them, difference by difference (edge assembly).
+A descent begins at the best tour known under its weight. Of some hundred cities or more, descents
+then begin at the best tours of the nearest weights as well, and the best tour takes the better
+parts of what these have found (edge assembly).
 """
 
 from collections.abc import Iterator
@@ -79,8 +79,8 @@ class DescentsOfSeveral:
         Args:
             k: The number of the weight.
             scalarization: Its weighted sum, and the candidates under it.
-            construct: Whether to begin at a constructed tour where that is better than the best
-                known; where none is known it is done as well.
+            construct: Whether to begin at a constructed tour if that is better than the best known.
+                If none is known, one is constructed in any case.
         """
         known = self._state.archive.counts[0] > 0
         constructed = (construct or not known) and self._load_constructed(k, scalarization)
@@ -92,9 +92,9 @@ class DescentsOfSeveral:
         yield 1
 
     def assemble(self, k: int, scalarization: Scalarization) -> Iterator[int]:
-        """Join what is best under weight k in the tours of the weights nearest to it.
+        """Improve the best tour under weight k by the tours of the weights nearest to it.
 
-        Each is descended from first, and the best tour takes what is better in any of them.
+        A descent begins at each of these. Then the best tour takes their better parts.
         """
         local_search, working = self._local_search, self._local_search.working
         tours = [self._best_tour(k)]
@@ -135,7 +135,8 @@ class DescentsOfSeveral:
     def _sweep(self, scalarization: Scalarization, cities: Cities, offering: bool) -> Iterator[int]:
         """Descend from the working tour, beginning at these cities, and offer the local optimum.
 
-        With `offering` tours on the way are offered too: from another weight's they lie between.
+        With `offering`, tours on the way are offered too. Those between the best tours of two
+        weights may be on the front.
         """
         working = self._local_search.working
         enqueue_cities(working, cities)

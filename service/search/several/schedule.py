@@ -1,9 +1,10 @@
 """The schedule of a search for three or four objectives: which weight, and from which tours.
 
-First every weight gets a tour by descent, from the best one known under it. Then each in turn has
-its tour improved by what is better in those of other weights and by iterated local search, and the
-front near to it is searched from its points.
-Up to some hundred cities every tour on the way is offered to the archive.
+1. Every weight gets a tour by descent, from the best one known under it.
+2. Each weight in turn has its tour improved: by the better parts of the tours of other weights,
+   then by iterated local search. Then the search goes on from points of the front near that tour.
+
+Up to some hundred cities, every tour on the way is offered to the archive.
 """
 
 from collections.abc import Iterator
