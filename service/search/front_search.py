@@ -1,4 +1,4 @@
-"""What the searches for two and for more objectives have in common: the front found so far."""
+"""The base of the searches for two and for more objectives: the front found so far."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Numbers of cities from which on the search does something else. This loads no compiled code."""
+"""The numbers of cities at which the search changes its ways, without any compiled code."""
 
 MAX_ENUMERATED = 9  # up to which all tours are tried: at most 9!
 # From which on iterations use three-opt; at 200 clustered cities it is worse. Where costs differ by
