@@ -20,6 +20,7 @@ from service.search.pareto_local_search import (
     rounds,
 )
 from service.search.schedule import Search
+from service.watch import Watch
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
 
@@ -133,5 +134,5 @@ def _turns_right(first: np.ndarray, second: np.ndarray, third: np.ndarray) -> bo
 
 def test_without_time_the_first_tour_of_very_many_cities_is_good_under_both_objectives() -> None:
     instance = Instance(coordinates=np.random.default_rng(0).random((VAST, 4)))
-    front = improve(instance, np.empty((0, VAST), np.int64), deadline=0.0)
+    front = improve(instance, np.empty((0, VAST), np.int64), watch=Watch(0.0))
     assert (front.points < 0.1 * instance.reference_point).all()
