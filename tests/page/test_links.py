@@ -254,7 +254,7 @@ def kept(page: Page, request: dict[str, Any], chosen: dict[str, Any]) -> bool:
     ids = [stop["id"] for stop in request["stops"]]
     shown = page.evaluate(
         """async ([link, request, ids]) => {
-          const { src } = document.querySelector("script");
+          const { src } = document.querySelector("script[src]");
           const { keptAnswer } = await import(new URL("result/chosen.js", src));
           return keptAnswer(link, request, ids) !== null;
         }""",
