@@ -83,7 +83,6 @@ def test_no_tour_is_shorter_than_the_bound_under_a_weight(
     shortest = (tour_lengths(instance, every_tour(instance)) @ weights.T).min(axis=0)
     sums = [(make_costs(instance), *each) for each in (weights / 2.0**instance.shifts).tolist()]
     lowest = lowest_sums(sums, range(WEIGHTS), share[:, np.newaxis], Watch())
-    assert (lowest > 0).all()
     assert (lowest <= shortest + 1e-9).all()
 
 
