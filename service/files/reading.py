@@ -15,6 +15,7 @@ _PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
 LONGEST_NAME = 200  # characters of the name of a column by which it is known
 _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
 _OTHER_ROWS = 10  # of totals, at most
+_BYTES = 64  # of XML that are unpacked or parsed for one unit of work
 MOST_WRONG = 1000  # cells; a table with more of them is not read any further
 
 
@@ -253,15 +254,8 @@ class Source:
             raise FileTooLarge(f"{self.name}: must have fewer lines, got {lines + 1}") from None
 
     def spend_on_xml(self, piece: bytes) -> None:
-        """Spend work on bytes of XML that were unpacked.
-
-        Raises:
-            FileTooLarge: Less is left.
-        """
-        try:
-            self.work.spend_on_xml(piece)
-        except TooMuchWork:
-            raise self.too_much_work() from None
+        """Spend work on bytes of XML that were unpacked, and on the tags in them."""
+        self.spend(piece.count(b"<") + len(piece) // _BYTES)
 
     def too_much_work(self) -> FileTooLarge:
         """Return the exception for a file that has too much beside what a request is made of."""

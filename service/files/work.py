@@ -3,7 +3,6 @@
 UNITS = 2**20  # of about half a microsecond: half a second
 LINE_OF_TEXT = 0.5  # units of a line in which keywords are looked for
 LINE_OF_TABLE = 4  # units of a line of a table, more than of the text that it is in
-_BYTES = 64  # that are unpacked or parsed for one unit
 
 
 class TooMuchWork(Exception):
@@ -40,10 +39,6 @@ class Work:
         self._spent += units
         if self._left < 0:
             raise TooMuchWork
-
-    def spend_on_xml(self, piece: bytes) -> None:
-        """Spend units on bytes of XML that were unpacked, and on the tags in them."""
-        self.spend(piece.count(b"<") + len(piece) // _BYTES)
 
     def earn(self, units: int) -> None:
         """Add units for a field with text, which a request is made of."""
