@@ -3,7 +3,6 @@
 import asyncio
 import hashlib
 import uuid
-from dataclasses import dataclass
 from typing import Any
 
 from fastapi import APIRouter
@@ -53,15 +52,6 @@ _QUICK = 8  # times as fast as a request stored tours are read
 _LONG = 2**20  # bytes of a body; the task of a longer one takes a while to write
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
-
-
-@dataclass(frozen=True)
-class _Body:
-    """A received body, the id of the front to replan, if any, and the deadline of the answer."""
-
-    source: TaskSource
-    front: str | None
-    deadline: Deadline
 
 
 class PlanRoutes:
@@ -173,12 +163,13 @@ class PlanRoutes:
         # Counted until there is an answer: a task that waits or is being planned holds its body.
         with self._budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._most_bytes, allowance)
-            body = _Body(received, front, Deadline.after(self._seconds))
+            deadline = Deadline.after(self._seconds)
             if front is None:
                 task = await self._parser.parse(received, client_of(request))
             else:
                 task = await self._rest(request, received, front)
-            return await self._planned(request, task, body, allowance)
+            record = await self._new_record(request, task, received, front)
+            return await self._planned(request, record, task, allowance, deadline)
 
     async def _rest(self, request: Request, body: TaskSource, front: str) -> Task:
         """Return the rest of the way of a stored front.
@@ -200,22 +191,26 @@ class PlanRoutes:
         return await self._parser.replan(asked, length, client_of(request))
 
     async def _planned(
-        self, request: Request, task: Task, body: _Body, allowance: BodyAllowance
+        self,
+        request: Request,
+        record: Record,
+        task: Task,
+        allowance: BodyAllowance,
+        deadline: Deadline,
     ) -> Response:
         """Have the engine plan a task, and answer as the request's headers ask for."""
         geometry = task.geometry
-        record = await self._new_record(request, task, body)
         self._answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
             first = await self._submit(request, record, task, allowance)
             return _accepted_response(request, self._engine.state(first).record, geometry)
         if record.key is None:
-            record = await self._run(request, record, task, body.deadline)
+            record = await self._run(request, record, task, deadline)
         else:
             first = await self._submit(request, record, task, allowance)
-            record = await record_in_time(self._engine, first, body.deadline)
+            record = await record_in_time(self._engine, first, deadline)
         if record.problem is None:
-            return await self._answers.front(request, record, geometry, body.deadline.left())
+            return await self._answers.front(request, record, geometry, deadline.left())
         # The problem may be that of an earlier request that this one repeats.
         scope = request.scope
         document = problem_under(root_path_of(scope), record.problem)
@@ -245,10 +240,12 @@ class PlanRoutes:
         if idempotency_key(request) is None:
             await self._engine.check_place(client_of(request))
 
-    async def _new_record(self, request: Request, task: Task, body: _Body) -> Record:
+    async def _new_record(
+        self, request: Request, task: Task, body: TaskSource, front: str | None
+    ) -> Record:
         key = idempotency_key(request)
         url = webhook_url(request, self._targets)
-        long = body.source.length > _LONG
+        long = body.length > _LONG
         id_ = uuid.uuid4().hex
         return Record(
             id=id_,
@@ -258,7 +255,7 @@ class PlanRoutes:
             front=empty_document(task),
             source=await asyncio.to_thread(stored, task) if long else stored(task),
             key=key,
-            digest=await asyncio.to_thread(_digest, body) if key else "",
+            digest=await asyncio.to_thread(_digest, body, front) if key else "",
             client=client_of(request),
             webhook=Webhook(url, _location(request, id_, task.geometry)) if url else None,
         )
@@ -285,12 +282,11 @@ def _location(request: Request, id: str, geometry: Geometry) -> str:  # noqa: A0
     return f"{root_path_of(request.scope)}/front/{id}{query}"
 
 
-def _digest(body: _Body) -> str:
+def _digest(body: TaskSource, front: str | None) -> str:
     """Return the SHA-256 of a body, by which a reused idempotency key is recognised."""
     digest = hashlib.sha256()
-    source = body.source
-    front = [] if body.front is None else [body.front.encode()]
-    parts = [source.kind.encode(), source.body, source.upload or b"", *front]
+    parts = [body.kind.encode(), body.body, body.upload or b""]
+    parts += [] if front is None else [front.encode()]
     for part in parts:
         digest.update(b"%d:" % len(part))
         digest.update(part)
