@@ -20,12 +20,12 @@ import paretour
 from numpy.typing import NDArray
 
 from service.coverage.grid import free_cells
-from service.examples import warehouse
 from service.pareto import hypervolume
 from tests.benchmarks.cells import of
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rows import resume
+from tests.examples import warehouse
 
 Array = NDArray[np.float64]
 SECONDS = 1.0

@@ -16,10 +16,6 @@ import pytest
 
 from service.construction.call_estimate import CallEstimate
 from service.coverage.survey import survey
-from service.examples.deliveries import BLACK_SPOTS
-from service.examples.helsinki import CROWDS, metres_beside, people_along
-from service.examples.streets import KINDS
-from service.examples.warehouse import DOCKS
 from service.fleet.fronts import FleetOptions
 from service.fleet.planner import plan_fleet
 from service.front import PlanOptions
@@ -33,6 +29,10 @@ from service.roads.client import RoadClient, RoadCosts
 from service.roads.great_circle import great_circle_distances
 from service.roads.router import RouterSettings
 from service.settings import Settings
+from tests.examples.deliveries import BLACK_SPOTS
+from tests.examples.helsinki import CROWDS, metres_beside, people_along
+from tests.examples.streets import KINDS
+from tests.examples.warehouse import DOCKS
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.helsinki import Array
 from tests.helpers.serving import app_of, serving
@@ -100,7 +100,7 @@ def matrix_actor() -> Shuffler:
 
 
 def test_the_script_makes_the_examples(tmp_path: Path, valhalla: RunningValhalla) -> None:
-    command = [sys.executable, "-m", "service.examples", str(tmp_path), "--router", valhalla.url]
+    command = [sys.executable, "-m", "tests.examples", str(tmp_path), "--router", valhalla.url]
     subprocess.run(command, check=True)
     for file in FILES:
         made = json.loads((tmp_path / file).read_text())
@@ -133,7 +133,7 @@ def test_time_against_distance_of_the_same_stops_leaves_little_to_choose(
 
 
 def test_without_a_routing_engine_the_script_says_what_it_leaves(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "service.examples", str(tmp_path)]
+    command = [sys.executable, "-m", "tests.examples", str(tmp_path)]
     said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
     assert "--router" in said
     left = {path.name for path in EXAMPLES.glob("*.json")} - {

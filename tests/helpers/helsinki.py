@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from service.examples.helsinki import NORTH_EAST, SOUTH_WEST, reachable_places
+from tests.examples.helsinki import NORTH_EAST, SOUTH_WEST, reachable_places
 
 Array = NDArray[np.float64]
 HARBOUR = (24.9606, 60.1652)  # on the water

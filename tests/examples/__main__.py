@@ -1,4 +1,4 @@
-"""Write the examples into this folder, or into the directory given as argument."""
+"""Write the examples into `service/examples`, or into the directory given as argument."""
 
 import argparse
 import json
@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from service.examples.deliveries import deliveries
-from service.examples.helsinki import helsinki, rush_hour, three_costs, vans
-from service.examples.streets import legs, lines_of, streets
-from service.examples.warehouse import cleaning, shared
+from tests.examples.deliveries import deliveries
+from tests.examples.helsinki import helsinki, rush_hour, three_costs, vans
+from tests.examples.streets import legs, lines_of, streets
+from tests.examples.warehouse import cleaning, shared
 
+FOLDER = Path(__file__).parents[2] / "service/examples"
 _NO_ROUTER = (
     "helsinki-deliveries.json, helsinki-three-costs.json, helsinki-streets.json and"
     " helsinki-legs.json are left as they are:"
@@ -36,9 +37,7 @@ def write(directory: Path, router_url: str | None) -> None:
     }
     if router_url is None:
         sys.stderr.write(_NO_ROUTER)
-        one_van = json.loads(
-            (Path(__file__).parent / "helsinki-deliveries.json").read_text(encoding="utf-8")
-        )
+        one_van = json.loads((FOLDER / "helsinki-deliveries.json").read_text(encoding="utf-8"))
     else:
         one_van, lines = helsinki(router_url)
         places = np.array([stop["location"] for stop in one_van["stops"]])
@@ -68,7 +67,7 @@ def _rows(value: Any) -> str:
 def main() -> None:
     """Run the command."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("directory", nargs="?", type=Path, default=Path(__file__).parent)
+    parser.add_argument("directory", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--router", metavar="URL", help="a Valhalla that knows Helsinki")
     arguments = parser.parse_args()
     write(arguments.directory, arguments.router)
