@@ -1,6 +1,6 @@
 """A front of tours as JSON: of stops or cities, or of the places of a map."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -15,9 +15,7 @@ from service.front import Front
 from service.kinds.front_document import (
     FrontDocument,
     encode_path,
-    encode_tours,
     joined,
-    split,
     with_member,
 )
 from service.objectives import OBJECTIVES
@@ -42,14 +40,11 @@ def encode_front(
         labels: The names of stops and objectives.
         arrivals: All lengths of each tour up to each of its stops, shape (k, stops, m).
     """
-    tours, ends = encode_tours(_rows(front, arrivals))
-    if labels is not None:
-        tours, ends = joined(_with_stops(split(tours, ends), front.tours, labels))
+    encoded: Iterable[bytes] = map(to_json, _rows(front, arrivals, labels))
     if paths is not None:
-        tours, ends = joined(
-            with_member(tour, b"path", encode_path(path))
-            for tour, path in zip(split(tours, ends), paths, strict=True)
-        )
+        with_paths = zip(encoded, paths, strict=True)
+        encoded = (with_member(tour, b"path", encode_path(path)) for tour, path in with_paths)
+    tours, ends = joined(encoded)
     return FrontDocument.of(
         front,
         kind="front" if surveyed is None else "coverage",
@@ -78,8 +73,10 @@ def on_map(surveyed: Survey | None) -> dict[str, Any]:
     return members
 
 
-def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:
-    """Return the members of each tour, all of them numbers, ready for JSON."""
+def _rows(
+    front: Front, arrivals: NDArray[np.float64] | None, labels: Labels | None
+) -> Iterator[dict[str, Any]]:
+    """Yield the members of each tour, ready for JSON."""
     flat = front.points.shape[1] == OBJECTIVES
     columns = {
         "angle": front.angles if flat else None,
@@ -93,13 +90,10 @@ def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, 
         "times": front.times,
     }
     given = {name: values.tolist() for name, values in columns.items() if values is not None}
-    return [dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True)]
-
-
-def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:
-    """Return the JSON of each tour with the ids of its stops; each id is encoded only once."""
-    ids = np.array([to_json(stop.id) for stop in labels.stops], object)
-    return [
-        with_member(tour, b"stops", b"[%b]" % b",".join(stops))
-        for tour, stops in zip(encoded, ids[tours].tolist(), strict=True)
-    ]
+    rows = (dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True))
+    if labels is None:
+        return rows
+    ids = np.array([stop.id for stop in labels.stops], object)
+    return (
+        {**row, "stops": ids[tour].tolist()} for row, tour in zip(rows, front.tours, strict=True)
+    )

@@ -54,7 +54,7 @@ class StoredFront(Generic[Item]):
         status: The status of its job: queued, running, done, cancelled or failed.
         lengths: The lengths of each tour or plan, shape (k, m).
         points: The number of nondominated ones found; the front is a subset of these.
-        hypervolume: The share of the box at the reference point that the front dominates.
+        hypervolume: The share of the box at the reference point that these k dominate.
         reference_point: The reference point of the hypervolume, shape (m,); None while it is not
             known.
         terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or a word of a
