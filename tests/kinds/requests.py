@@ -21,6 +21,7 @@ class Asked:
         body: Its members, without options.
         kind: The kind of its answer.
         column: The last column of its CSV.
+        objectives: How many it has.
     """
 
     command: tuple[str, ...]
@@ -28,6 +29,7 @@ class Asked:
     body: Mapping[str, Any]
     kind: str
     column: str
+    objectives: int = 2
 
 
 def stops() -> dict[str, Any]:
@@ -51,6 +53,14 @@ def on_map() -> dict[str, Any]:
     return {"grid": [[0] * _SIDE] * _SIDE, "cell_size": 0.5, "places": places}
 
 
+def over_the_day() -> dict[str, Any]:
+    """Return the members of a request of stops whose first costs are dearer from 9 to 10."""
+    times = np.random.default_rng(5).integers(60, 900, (CITIES, CITIES)).tolist()
+    rush = [[0, 1.0], [9 * 3600, 1.5], [10 * 3600, 1.0]]
+    time, risk = {"name": "time", "unit": "s", "matrix": times, "over_the_day": rush}, stops()
+    return {**risk, "objectives": [time, risk["objectives"][0]], "departure": 8 * 3600}
+
+
 def requests() -> Iterator[tuple[str, Asked]]:
     """Yield a request of each kind, by its name in the tables of tests."""
     plane = np.random.default_rng(3).random((CITIES, 2)).tolist()
@@ -67,14 +77,25 @@ def requests() -> Iterator[tuple[str, Asked]]:
     shared = {**on_map(), "robots": robots}
     yield "robots", Asked(("coverage",), "/coverage", shared, "robots", "places")
     yield "fleet", Asked(("fleet",), "/fleet", {**fleet, "vehicles": vehicles}, "fleet", "stops")
+    several = np.random.default_rng(6).random((CITIES, 6)).round(3).tolist()
+    yield "three", Asked(("front",), "/front", {"coordinates": several}, "front", "tour", 3)
+    yield "day", Asked(("front",), "/front", over_the_day(), "front", "tour")
+    layer = np.random.default_rng(7).integers(1, 9, (_SIDE, _SIDE)).tolist()
+    costly = {**on_map(), "cost_layer": layer, "detours": True}
+    yield "detours", Asked(("coverage",), "/coverage", costly, "coverage", "tour")
 
 
-def rest_of(kind: str, front: str) -> Asked:
+def rest_of(kind: str, front: Mapping[str, Any]) -> Asked:
     """Return the request to replan a front of a kind, after its first stop or place."""
-    path = f"/front/{front}/replan"
+    command, path = ("replan", front["id"]), f"/front/{front['id']}/replan"
     if kind == "coverage":
-        return Asked(("replan", front), path, {"done": [0], "paths": True}, kind, "tour")
-    return Asked(("replan", front), path, {"done": ["stop-0"]}, "front", "tour")
+        return Asked(command, path, {"done": [0], "paths": True}, kind, "tour")
+    if kind == "fleet":
+        done = front["front"][0]["routes"][0]["stops"][1:2]
+        return Asked(
+            command, path, {"plan": 0, "routes": [{"route": 0, "done": done}]}, kind, "stops"
+        )
+    return Asked(command, path, {"done": ["stop-0"]}, "front", "tour")
 
 
 def as_input(asked: Asked, **options: Any) -> bytes:

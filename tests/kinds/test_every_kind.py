@@ -18,6 +18,12 @@ from typer.testing import CliRunner
 from service.cli import backends, progress
 from service.cli.commands import app as command_line
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from service.kinds.table import KINDS as SERVICE
+from service.requests.coverage import CoverageRequest
+from service.requests.fleet import FleetRequest
+from service.requests.front import FrontRequest
+from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.fleet_fields import ReplanFleetRequest
 from tests.helpers.serving import LIMITS, app_of, events_of, problem, serving
 from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
 
@@ -25,29 +31,59 @@ Ask = Callable[[httpx.Client, Asked], httpx.Response]
 LIMIT = 0.7  # seconds of search, in which it reports its progress
 LONG = 60.0  # seconds of search: no test waits until they are over
 LATER = {"Prefer": "respond-async"}
-KINDS = ("cities", "stops", "coverage", "robots", "fleet", "replanned stops", "replanned coverage")
+KINDS = (
+    *("cities", "stops", "coverage", "robots", "fleet", "three", "day", "detours"),
+    *("replanned stops", "replanned coverage", "replanned fleet"),
+)
+# The service alone has the earlier front.
+HERE_NOT = ("replanned stops", "replanned coverage", "replanned fleet")
+ON_MAP = {"coverage", "robots", "detours", "replanned coverage"}
+OF_PLANS = {"robots", "fleet", "replanned fleet"}
+# The command plans these as others of their kinds do: over HTTP they are searched, too.
+ALIKE = ("three", "day", "detours", "replanned fleet")
+# What requests are about. All other members are options, and have a row in the table.
+SUBJECT = {
+    *("coordinates", "matrices", "stops", "objectives", "closed", "start", "end"),
+    *("departure", "clock", "vehicles", "shipments"),
+    *("grid", "occupancy_grid", "cell_size", "origin", "mode", "negate", "occupied_thresh"),
+    *("free_thresh", "obstacle_from", "unknown", "robot_radius", "places", "spacing"),
+    *("start_pose", "end_pose", "second_matrix", "cost_layer", "cost_layers"),
+    *("second_coordinates", "robots", "over"),
+    *("done", "position", "add", "remove", "costs", "now", "tour", "pose", "blocked", "freed"),
+    *("plan", "routes"),
+}
 NO_STOPS, NO_EARTH = "cities in planes lie nowhere", "a robot's map is not on the earth"
 PLANS = "a plan has a tour for each vehicle: GET /front/{id} has them all"
 SINGLE = "the option is about single tours, or the network that builds them"
 EARLIER = "the search starts from the tours of the earlier front"
 # What does not work: the option and the kind, the status and the code of the refusal, and why.
 REFUSED: Mapping[tuple[str, str], tuple[int, str, str]] = {
-    ("geojson", "cities"): (406, "no-locations", NO_STOPS),
-    ("geojson", "coverage"): (406, "no-locations", NO_EARTH),
-    ("geojson", "robots"): (406, "no-locations", NO_EARTH),
-    ("geojson", "replanned coverage"): (406, "no-locations", NO_EARTH),
-    ("tour", "robots"): (404, "no-tours", PLANS),
-    ("tour", "fleet"): (404, "no-tours", PLANS),
-    ("replan", "robots"): (409, "not-replannable", "only tours are replanned"),
-    ("initial_tours", "replanned stops"): (422, "invalid-request", EARLIER),
-    ("initial_tours", "replanned coverage"): (422, "invalid-request", EARLIER),
+    **{("geojson", kind): (406, "no-locations", NO_STOPS) for kind in ("cities", "three")},
+    **{("geojson", kind): (406, "no-locations", NO_EARTH) for kind in ON_MAP},
+    **{("tour", kind): (404, "no-tours", PLANS) for kind in OF_PLANS},
+    ("replan", "robots"): (409, "not-replannable", "only tours and fleets are replanned"),
     **{
-        (option, kind): (422, "invalid-request", SINGLE)
-        for option in ("preferences", "bound", "repairs", "arrivals", "initial_tours")
-        for kind in ("robots", "fleet")
+        (option, kind): (422, "invalid-request", why)
+        for option, kinds, why in (
+            ("preferences", OF_PLANS, SINGLE),
+            (
+                "bound",
+                {*OF_PLANS, "day", "detours"},
+                f"{SINGLE}; a bound is of fixed, shortest legs",
+            ),
+            ("repairs", OF_PLANS, SINGLE),
+            ("arrivals", OF_PLANS, SINGLE),
+            ("actor", OF_PLANS, SINGLE),
+            ("initial_tours", {*OF_PLANS, *HERE_NOT}, f"{SINGLE}; {EARLIER}"),
+            ("augment", {*KINDS} - {"cities", "stops", "three", "day"}, "only POST /front has it"),
+            ("geometry", ON_MAP, NO_EARTH),
+            ("detours", {*KINDS} - {"detours"}, "they are between the costs of a layer and metres"),
+            ("paths", {*KINDS} - ON_MAP, "a path is over a map"),
+            ("min_kept", {*KINDS} - {"replanned stops", "replanned coverage"}, "no tour is driven"),
+        )
+        for kind in kinds
     },
 }
-HERE_NOT = ("replanned stops", "replanned coverage")  # the service alone has the earlier front
 
 
 @pytest.fixture(scope="module")
@@ -69,8 +105,8 @@ def client(url: str) -> Iterator[httpx.Client]:
 def asked(client: httpx.Client) -> dict[str, Asked]:
     """The request of each kind; those to replan are of fronts that the service has."""
     found = dict(requests())
-    for kind in ("stops", "coverage"):
-        front = post(client, found[kind]).raise_for_status().json()["id"]
+    for kind in ("stops", "coverage", "fleet"):
+        front = post(client, found[kind]).raise_for_status().json()
         found[f"replanned {kind}"] = rest_of(kind, front)
     assert tuple(found) == KINDS
     return found
@@ -149,8 +185,9 @@ def default_reference_point(client: httpx.Client, asked: Asked) -> httpx.Respons
 
 
 def own_reference_point(client: httpx.Client, asked: Asked) -> httpx.Response:
-    answer = post(client, asked, reference_point=[1e6, 1e7])
-    assert answer.json()["reference_point"] == [1e6, 1e7]
+    point = [1e6, 1e7, 1e8][: asked.objectives]
+    answer = post(client, asked, reference_point=point)
+    assert answer.json()["reference_point"] == point
     assert answer.json()["hypervolume"] > 0
     return answer
 
@@ -180,9 +217,9 @@ def cancel(client: httpx.Client, asked: Asked) -> httpx.Response:
 
 def tour(client: httpx.Client, asked: Asked) -> httpx.Response:
     front = post(client, asked).json()
-    answer = client.get("/tour", params={"front": front["id"], "balance": 0})
+    answer = client.get("/tour", params={"front": front["id"], "knee": True})
     if answer.is_success:
-        assert answer.json() == {"front": front["id"], **front["front"][0]}
+        assert answer.json() in [{"front": front["id"], **each} for each in front["front"]]
     return answer
 
 
@@ -190,7 +227,9 @@ def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
     front = post(client, asked).json()
     first = front["front"][0]
     done = first.get("stops", first.get("tour", [0]))[:1]
-    changes = {"done": done}
+    changes: dict[str, Any] = {"done": done}
+    if "departure" in asked.body:
+        changes["now"] = asked.body["departure"]
     if asked.kind == "fleet":
         changes = {"plan": 0, "routes": [{"route": 0, "done": first["routes"][0]["stops"][1:2]}]}
     answer = client.post(f"/front/{front['id']}/replan", json={**changes, "time_limit": 0})
@@ -212,8 +251,8 @@ HTTP: Mapping[str, Ask] = {
     "repeated key": repeated_key,
     "geojson": geojson,
     "default reference point": default_reference_point,
-    "own reference point": own_reference_point,
-    "time limit": time_limit,
+    "reference_point": own_reference_point,
+    "time_limit": time_limit,
     "size": size,
     "cancel": cancel,
     "tour": tour,
@@ -224,10 +263,21 @@ HTTP: Mapping[str, Ask] = {
     "arrivals": partial(member, "arrivals", True),
     "initial_tours": partial(member, "initial_tours", [list(range(CITIES))]),
     "seed": partial(member, "seed", 7),
+    "actor": partial(member, "actor", "pa-one-matrix"),
+    "augment": partial(member, "augment", 8),
+    "geometry": partial(member, "geometry", "straight"),
+    "detours": partial(member, "detours", True),
+    "paths": partial(member, "paths", True),
+    "min_kept": partial(member, "min_kept", 0.5),
 }
 
 
-def test_the_table_names_options_and_kinds() -> None:
+def test_the_tables_have_every_option_and_every_kind() -> None:
+    forms = (FrontRequest, CoverageRequest, FleetRequest, ReplanRequest, ReplanFleetRequest)
+    members = {name for form in forms for name in form.model_fields}
+    assert members - SUBJECT <= HTTP.keys()
+    assert members >= SUBJECT
+    assert {asked.kind for _, asked in requests()} == SERVICE.keys()
     assert all(option in HTTP and kind in KINDS for option, kind in REFUSED)
 
 
@@ -271,7 +321,7 @@ def refused_here(kind: str, place: str | None, result: Result) -> bool:
     return True
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ALIKE])
 def test_the_command_prints_json(kind: str, place: str | None, asked: dict[str, Asked]) -> None:
     result = planned(asked[kind], place, "--json", limit=LIMIT)
     if refused_here(kind, place, result):
@@ -313,7 +363,7 @@ def test_the_command_chooses_a_tour_or_names_the_command_that_plans(
         assert result.stderr.strip().endswith(f"`paretour {command}` plans that")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ALIKE])
 def test_the_command_prints_tables_and_draws(
     kind: str, place: str | None, asked: dict[str, Asked], tmp_path: Any
 ) -> None:
@@ -325,7 +375,7 @@ def test_the_command_prints_tables_and_draws(
     assert "<svg" in (tmp_path / "front.svg").read_text()
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ALIKE])
 def test_ctrl_c_gives_the_best_so_far(
     kind: str, place: str | None, asked: dict[str, Asked], monkeypatch: pytest.MonkeyPatch
 ) -> None:
