@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.errors import PROBLEMS, InvalidCoverage, Refusal, TooManyPlaces, WorkerLost
+from service.errors import PROBLEMS, Fault, InvalidCoverage, Refusal, TooManyPlaces, WorkerLost
 
 SERVICE = Path(__file__).parents[1] / "service"
 
@@ -51,7 +51,10 @@ def test_no_code_is_raised_that_is_not_written_out() -> None:
         Refusal("over-limit", name="size", pointer="/size", limit=9, actual=10),
         WorkerLost(),
         TooManyPlaces(limit=50, actual=60),
-        InvalidCoverage(("places/0", "must be free"), ("places/1", "must be free")),
+        InvalidCoverage(
+            Fault.of("places/0", "obstacle", given="[0, 1]"),
+            Fault.of("places/1", "unreachable", other="/places/0"),
+        ),
     ],
 )
 def test_a_refusal_travels_between_processes(refusal: Refusal) -> None:

@@ -9,7 +9,8 @@ from starlette.responses import Response
 
 from service.api.responses import problem_response, root_path_of
 from service.errors import Refusal
-from service.requests.validation import refusal_of, shorten
+from service.errors.shown import shorten
+from service.requests.validation import refusal_of
 
 HANDLED = (Refusal, HTTPException, RequestValidationError)
 

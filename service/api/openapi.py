@@ -14,7 +14,7 @@ from typing import Any
 
 from service.api.response_headers import HEADERS, add_headers
 from service.api.responses import PROBLEM_JSON, Problem
-from service.errors import PROBLEMS, Refusal
+from service.errors import PROBLEMS, Fault, Refusal
 
 _EXAMPLES = Path(__file__).parents[1] / "reference" / "examples.json"
 _DESCRIPTION = """\
@@ -53,7 +53,10 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
 def example_refusal(code: str, operation: str = "") -> Refusal:
     """Return the example of a refusal, for an operation such as "POST /front" or for all."""
     refusals = _examples()["refusals"]
-    return Refusal(code, **refusals.get(f"{code} of {operation}", refusals.get(code, {})))
+    fields = refusals.get(f"{code} of {operation}", refusals.get(code, {}))
+    return Refusal(
+        code, **{**fields, "errors": [Fault(**each) for each in fields.get("errors", ())]}
+    )
 
 
 @cache

@@ -5,7 +5,7 @@ from typing import Any
 
 from starlette.requests import Request
 
-from service.errors import Fault, Refusal
+from service.errors import invalid_header
 from service.webhooks.targets import MOST_LETTERS, Targets
 
 GEOJSON = "application/geo+json"
@@ -59,12 +59,8 @@ def idempotency_key(request: Request) -> str | None:
     """
     key = request.headers.get("idempotency-key")
     if key is not None and re.fullmatch(_KEY, key) is None:
-        such = "" if key.isascii() and key.isprintable() else ", including other characters"
-        sentence = (
-            f"Idempotency-Key must have 1 to {_LONGEST_KEY} characters of printable ASCII, "
-            f"got {len(key)}{such}"
-        )
-        raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)])
+        code = "key-length" if key.isascii() and key.isprintable() else "key-characters"
+        raise invalid_header("Idempotency-Key", code, limit=_LONGEST_KEY, came=len(key))
     return key
 
 
@@ -78,8 +74,7 @@ def webhook_url(request: Request, targets: Targets) -> str | None:
     if url is None:
         return None
     if not prefers_async(request):
-        sentence = "Webhook-Url must come with Prefer: respond-async, and does not"
-        raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)])
+        raise invalid_header("Webhook-Url", "not-async")
     targets.check(url)
     return url
 

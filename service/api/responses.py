@@ -44,6 +44,15 @@ class FaultItem(BaseModel):
     detail: str
     pointer: str | None = Field(default=None, description="JSON pointer into the body (RFC 6901)")
     parameter: str | None = Field(default=None, description="name of the query parameter")
+    code: str | None = Field(default=None, description="what is wrong with it; stable")
+    demand: str | None = Field(
+        default=None, description="`detail` without the name of the field at its beginning"
+    )
+    values: dict[str, float | str] | None = Field(
+        default=None,
+        description="the values in the sentence by name; `came` is what came, `near` what was"
+        " probably meant, and `other` the pointer to another field",
+    )
 
 
 class Problem(BaseModel):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.frame import Array, Cells, MapFrame, Mask
-from service.errors import CityNames, InvalidCoverage
+from service.errors import CityNames, uncoverable
 from service.instance import CLOSED, RouteEnds
 from service.objectives import Objective
 
@@ -99,22 +99,20 @@ class Coverage:
 
     def __post_init__(self) -> None:
         if not 0 < self.cell_size < np.inf:
-            raise InvalidCoverage(("cell_size", f"must be positive, got {self.cell_size:g}"))
+            raise uncoverable("cell_size", "not-positive", came=self.cell_size)
         if not 0 <= self.robot_radius < np.inf:
-            demand = f"must not be negative, got {self.robot_radius:g}"
-            raise InvalidCoverage(("robot_radius", demand))
+            raise uncoverable("robot_radius", "negative", came=self.robot_radius)
         if (self.places is None) == (self.spacing is None):
-            raise InvalidCoverage(("places", "or spacing is required, and not both"))
+            raise uncoverable("places", "not-places-or-spacing")
         if self.spacing is not None and not 0 < self.spacing < np.inf:
-            raise InvalidCoverage(("spacing", f"must be positive, got {self.spacing:g}"))
+            raise uncoverable("spacing", "not-positive", came=self.spacing)
         second = (self.second_matrix, self.cost_layers, self.second_coordinates)
         given = sum(source is not None for source in second)
         if given > 1 or (given == 0 and not self.robots):
-            demand = "or cost_layer or second_coordinates is required, and only one of them"
-            raise InvalidCoverage(("second_matrix", demand))
+            raise uncoverable("second_matrix", "not-one-second")
         if self.frame is None:
             for name in self.poses:
-                raise InvalidCoverage((name, "must be in the frame of a map with an origin"))
+                raise uncoverable(name, "no-origin")
         self._check_layers()
 
     @property
@@ -172,8 +170,7 @@ class Coverage:
         layers = self.cost_layers
         if layers is None:
             if self.detours:
-                demand = "must be left out without a cost_layer: other costs are not of paths"
-                raise InvalidCoverage(("detours", demand))
+                raise uncoverable("detours", "detours-of-no-layer")
             return
         for index, layer in enumerate(layers):
             part = f"cost_layers/{index}/layer" if self.layers else "cost_layer"
@@ -183,13 +180,12 @@ class Coverage:
 def check_layer(layer: Array, part: str, grid: NDArray[np.generic]) -> None:
     """Raise InvalidCoverage where a layer of this part of a request does not fit the grid."""
     if layer.shape != grid.shape:
-        demand = f"must be as large as grid, {size_of(grid)}, got {size_of(layer)}"
-        raise InvalidCoverage((part, demand))
+        sizes = {"size": size_of(grid), "given": size_of(layer)}
+        raise uncoverable(part, "other-size", like="grid", **sizes)
     costs = (layer >= 0) & (layer < np.inf)
     if not costs.all():
         row, column = np.unravel_index(costs.argmin(), costs.shape)
-        demand = f"must be finite and not negative, got {layer[row, column]:g}"
-        raise InvalidCoverage((f"{part}/{row}/{column}", demand))
+        raise uncoverable(f"{part}/{row}/{column}", "not-finite", came=float(layer[row, column]))
 
 
 def size_of(cells: NDArray[np.generic]) -> str:

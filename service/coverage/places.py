@@ -8,7 +8,7 @@ import numpy as np
 from service.coverage.coverage import Coverage
 from service.coverage.frame import Cells, Mask
 from service.coverage.grid import covering_places, largest_region, region_of, regions
-from service.errors import InvalidCoverage, TooManyPlaces
+from service.errors import Fault, InvalidCoverage, TooManyPlaces, uncoverable
 from service.instance import RouteEnds
 
 
@@ -55,8 +55,7 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
         found[name] = int(there[0]) if len(there) else len(cells)
         if not len(there):
             if coverage.has_costs_of_places_alone:
-                costs = "only a cost layer has costs of other cells"
-                raise InvalidCoverage((name, f"must be in the cell of a place, as {costs}"))
+                raise uncoverable(name, "no-costs-there")
             cells, names = np.vstack((cells, cell)), [*names, name]
     if coverage.spacing is not None and len(cells) > max_places:
         raise TooManyPlaces(max_places, len(cells))
@@ -80,12 +79,8 @@ def _with_ends(coverage: Coverage, cells: Cells, to_visit: int, poses: Mapping[s
 
 def _given_or_laid_out(coverage: Coverage, free: Mask, poses: Mapping[str, Cells]) -> Cells:
     if coverage.places is not None:
-        faults = (
-            (f"places/{i}", demand)
-            for i, cell in enumerate(coverage.places.tolist())
-            if (demand := _misplaced(coverage, cell, free)) is not None
-        )
-        _raise_any(faults)
+        cells = enumerate(coverage.places.tolist())
+        _raise_any(f for i, cell in cells for f in _misplaced(coverage, f"places/{i}", cell, free))
         return coverage.places
     assert coverage.spacing is not None
     pose = next(iter(poses.values()), None)
@@ -99,27 +94,24 @@ def _pose_cells(coverage: Coverage, free: Mask) -> dict[str, Cells]:
     for name, (x, y, *_) in coverage.poses.items():
         assert coverage.frame is not None
         cell = coverage.frame.cell(x, y)
-        demand = _misplaced(coverage, cell, free)
-        if demand is not None:
-            raise InvalidCoverage((name, demand))
+        _raise_any(_misplaced(coverage, name, cell, free))
         cells[name] = np.array(cell, dtype=np.int64)
     return cells
 
 
-def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | None:
-    """Return the demand on places that a cell does not meet; None if it meets all."""
+def _misplaced(coverage: Coverage, part: str, cell: Sequence[int], free: Mask) -> Iterator[Fault]:
+    """Yield the demand on places that a cell does not meet, if there is one."""
     row, column = cell
     shown = f"[{row:.6g}, {column:.6g}]"
     if not (0 <= row < free.shape[0] and 0 <= column < free.shape[1]):
-        return f"must be a cell of the grid of {coverage.size}, got {shown}"
-    if coverage.blocked[row, column]:
-        return f"must be a free cell, and {shown} is an obstacle"
-    if not free[row, column]:
-        return f"must be a cell {coverage.far_enough}, and {shown} is not"
-    return None
+        yield Fault.of(part, "outside-grid", size=coverage.size, given=shown)
+    elif coverage.blocked[row, column]:
+        yield Fault.of(part, "obstacle", given=shown)
+    elif not free[row, column]:
+        yield Fault.of(part, "too-close", far_enough=coverage.far_enough, given=shown)
 
 
-def _misfits(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
+def _misfits(coverage: Coverage, places: Places) -> Iterator[Fault]:
     """Yield the ends of tours that are not places, and sources of costs with wrong sizes."""
     n = len(places.cells)
     ends, most = {"start": places.start, "end": places.ends.end}, n
@@ -129,24 +121,24 @@ def _misfits(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
             ends |= {f"{part}/start": robot.start, f"{part}/end": robot.end}
     for name, place in ends.items():
         if place is not None and place >= most:
-            yield name, f"must be a place, 0 to {most - 1}, got {place}"
+            yield Fault.of(name, "not-an-index", noun="a place", last=most - 1, came=place)
     _, start, end = places.ends
     if n > 1 and start == end is not None:
         name = "end" if coverage.end_pose is None else "end_pose"
-        yield name, f"must not be the start, or tours are closed, got place {end}"
+        yield Fault.of(name, "end-place-is-start", came=end)
     for name in ("second_matrix", "second_coordinates"):
         rows = getattr(coverage, name)
         if rows is not None and len(rows) != n:
-            yield name, f"must have a row for each of {n} places, got {len(rows)}"
+            yield Fault.of(name, "row-each-place", places=n, came=len(rows))
 
 
-def _unreachable(places: Places, names: list[str], free: Mask) -> Iterator[tuple[str, str]]:
+def _unreachable(places: Places, names: list[str], free: Mask) -> Iterator[Fault]:
     region = regions(free)[tuple(places.cells.T)]
     origin = names[places.start]
     for i in np.flatnonzero(region != region[places.start]):
-        yield names[i], f"must be reachable from {origin}, and no path leads there"
+        yield Fault.of(names[i], "unreachable", other=f"/{origin}")
 
 
-def _raise_any(faults: Iterable[tuple[str, str]]) -> None:
+def _raise_any(faults: Iterable[Fault]) -> None:
     if faults := tuple(faults):
         raise InvalidCoverage(*faults)

@@ -27,7 +27,7 @@ from service.coverage.shortest_paths import (
     make_grid,
     pairwise_paths,
 )
-from service.errors import Cancelled, InvalidCoverage, Refusal
+from service.errors import Cancelled, Refusal, uncoverable
 from service.instance import Instance, RouteEnds
 from service.objectives import Objective
 
@@ -169,9 +169,7 @@ def survey(
     free = free_cells(coverage.blocked, coverage.cell_size, coverage.robot_radius)
     _check(stop)
     if not free.any():
-        raise InvalidCoverage(
-            ("grid", f"must have a free cell {coverage.far_enough}, and there is none")
-        )
+        raise uncoverable("grid", "no-free-cell", far_enough=coverage.far_enough)
     places = find_places(coverage, free, max_places)
     cells = places.cells
     layers = [] if coverage.cost_layers is None else list(coverage.cost_layers)

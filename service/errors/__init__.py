@@ -4,7 +4,6 @@ from service.errors.exceptions import MOST_FAULTS as MOST_FAULTS
 from service.errors.exceptions import Cancelled as Cancelled
 from service.errors.exceptions import DeadlineExceeded as DeadlineExceeded
 from service.errors.exceptions import Expired as Expired
-from service.errors.exceptions import Fault as Fault
 from service.errors.exceptions import IdempotencyMismatch as IdempotencyMismatch
 from service.errors.exceptions import InvalidCoverage as InvalidCoverage
 from service.errors.exceptions import InvalidInstance as InvalidInstance
@@ -25,6 +24,9 @@ from service.errors.exceptions import TooManyPlaces as TooManyPlaces
 from service.errors.exceptions import WarmingUp as WarmingUp
 from service.errors.exceptions import WorkerLost as WorkerLost
 from service.errors.exceptions import invalid as invalid
+from service.errors.exceptions import invalid_header as invalid_header
+from service.errors.exceptions import uncoverable as uncoverable
+from service.errors.faults import Fault as Fault
 from service.errors.problems import PROBLEMS as PROBLEMS
 from service.errors.tours import CityNames as CityNames
 from service.errors.tours import NoTour as NoTour

@@ -28,24 +28,15 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from http import HTTPStatus
 from typing import Any
 
+from service.errors.faults import Fault, said
 from service.errors.problems import PROBLEMS
+from service.errors.shown import quoted
 
 MOST_FAULTS = 20  # the most that one problem document lists
 _GUIDE = "/guide/errors"  # the page that has a row for each code
-_LONGEST_NAME = 100  # characters of a caller's name for a stop, where it is quoted
-
-
-@dataclass(frozen=True)
-class Fault:
-    """One thing wrong with a request, and at which JSON pointer (RFC 6901) or parameter."""
-
-    detail: str
-    pointer: str | None = None
-    parameter: str | None = None
 
 
 class Refusal(Exception):
@@ -54,8 +45,8 @@ class Refusal(Exception):
     Args:
         code: One of PROBLEMS; by default that of the class.
         pointer: The one field at fault, as a JSON pointer into the body.
-        errors: The fields at fault, where there are several or they have sentences of their own.
-            The sentence has them in its field `detail`, unless that is given.
+        errors: The faults of fields, which have codes and sentences of their own. The sentence has
+            the first in its field `detail`, unless that is given.
         limit: The most that is allowed.
         actual: The number that came, where it is known.
         headers: Further headers of the response.
@@ -79,9 +70,11 @@ class Refusal(Exception):
         self.status, sentence, _ = PROBLEMS[self.code]
         if errors:
             fields = {"detail": summary(errors[0], len(errors)), **fields}
-        self.detail = sentence.format(limit=limit, actual=actual, **fields)
+        fields = {"limit": limit, "actual": actual, **fields}
+        self.detail = said(sentence, fields)
         shown = tuple(errors[:MOST_FAULTS])
-        self.errors = shown if pointer is None else (Fault(self.detail, pointer),)
+        own = Fault(self.code, pointer=pointer, values=fields, said=self.detail)
+        self.errors = shown if pointer is None else (own,)
         self.limit = limit
         self.actual = actual
         self.headers = dict(headers or {})
@@ -99,7 +92,7 @@ class Refusal(Exception):
             "status": self.status,
             "code": self.code,
             "detail": self.detail,
-            "errors": [_without_none(asdict(fault)) for fault in self.errors] or None,
+            "errors": [fault.document for fault in self.errors] or None,
             "limit": self.limit,
             "actual": self.actual,
             "request_id": request_id,
@@ -107,9 +100,14 @@ class Refusal(Exception):
         return _without_none(members)
 
 
-def invalid(part: str, demand: str) -> Refusal:
+def invalid(part: str, code: str, **values: object) -> Refusal:
     """Return the refusal of a part of a request, as matrices/0/2, that misses a demand."""
-    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
+    return Refusal("invalid-request", errors=[Fault.of(part, code, **values)])
+
+
+def invalid_header(name: str, code: str, **values: float | str) -> Refusal:
+    """Return the refusal of a header of a request."""
+    return Refusal("invalid-request", errors=[Fault(code, name, values=values)])
 
 
 class InvalidInstance(Refusal, ValueError):
@@ -120,20 +118,22 @@ class InvalidInstance(Refusal, ValueError):
 
 
 class InvalidCoverage(InvalidInstance):
-    """The map, or its places, cannot be covered. A fault is a part (places/3) and a demand."""
+    """The map, or its places, cannot be covered."""
 
     code = "invalid-request"
 
-    def __init__(
-        self, *faults: tuple[str, str], limit: int | None = None, actual: int | None = None
-    ) -> None:
+    def __init__(self, *faults: Fault, limit: int | None = None, actual: int | None = None) -> None:
         self.faults = faults
-        errors = [Fault(f"{part} {demand}", f"/{part}") for part, demand in faults]
-        Refusal.__init__(self, errors=errors, limit=limit, actual=actual)
+        Refusal.__init__(self, errors=faults, limit=limit, actual=actual)
 
     def __str__(self) -> str:
         """Return all faults as one sentence."""
-        return "; ".join(f"{part} {demand}" for part, demand in self.faults)
+        return "; ".join(fault.detail for fault in self.faults)
+
+
+def uncoverable(part: str, code: str, **values: object) -> InvalidCoverage:
+    """Return the refusal of a part of a map, or of its places."""
+    return InvalidCoverage(Fault.of(part, code, **values))
 
 
 class TooManyPlaces(InvalidCoverage):
@@ -142,8 +142,8 @@ class TooManyPlaces(InvalidCoverage):
     code = "too-many-cities"
 
     def __init__(self, limit: int, actual: int) -> None:
-        demand = f"must lay out at most {limit} places, got {actual}"
-        super().__init__(("spacing", demand), limit=limit, actual=actual)
+        fault = Fault.of("spacing", "too-many-places", limit=limit, actual=actual)
+        super().__init__(fault, limit=limit, actual=actual)
 
 
 class NoWorker(Refusal):
@@ -218,9 +218,12 @@ class OffRoad(Refusal):
     """Stops, given by index and id, lie too many metres from every road."""
 
     def __init__(self, stops: Sequence[tuple[int, str]], snap: float) -> None:
-        demand = f"must lie within {snap:g} m of a road, and does not"
         faults = [
-            Fault(f"stop {quoted(name)} {demand}", f"/stops/{index}/location")
+            Fault(
+                "off-road",
+                pointer=f"/stops/{index}/location",
+                values={"stop": quoted(name), "limit": snap},
+            )
             for index, name in stops
         ]
         super().__init__("off-road", errors=faults)
@@ -235,9 +238,9 @@ class NoRoad(Refusal):
     def __init__(self, ways: Sequence[tuple[int, str, str]]) -> None:
         faults = [
             Fault(
-                f"there must be a way by road from stop {quoted(origin)} to stop"
-                f" {quoted(destination)}, and the routing engine knows none",
-                f"/stops/{index}",
+                "no-way-by-road",
+                pointer=f"/stops/{index}",
+                values={"origin": quoted(origin), "destination": quoted(destination)},
             )
             for index, origin, destination in ways
         ]
@@ -282,11 +285,6 @@ class Expired(LookupError):
 def summary(first: Fault, count: int) -> str:
     """Return the first of `count` faults, and how many more there are, as one sentence."""
     return first.detail + (f" (and {count - 1} more)" if count > 1 else "")
-
-
-def quoted(name: str) -> str:
-    """Return a caller's name for a stop as it is quoted in a sentence."""
-    return repr(name[:_LONGEST_NAME])
 
 
 def _without_none(members: Mapping[str, Any]) -> dict[str, Any]:

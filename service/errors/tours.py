@@ -3,7 +3,9 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from service.errors.exceptions import Fault, Refusal, quoted, summary
+from service.errors.exceptions import Refusal, summary
+from service.errors.faults import Fault
+from service.errors.shown import quoted
 
 _MOST_NAMED = 5  # cities of one kind in one sentence
 _PLURALS = {"city": "cities", "stop": "stops", "place": "places"}
@@ -61,7 +63,7 @@ class Obstacle:
             others=names.of(self.others) if self.others else "",
             noun=names.noun,
         )
-        return Fault(detail, names.pointer(self.cities[0]))
+        return Fault("no-plan", pointer=names.pointer(self.cities[0]), said=detail)
 
 
 class NoTour(Refusal):

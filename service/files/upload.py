@@ -50,7 +50,8 @@ class _Unreadable(Refusal):
     code = "unreadable-file"
 
     def __init__(self, error: UnreadableFile) -> None:
-        super().__init__(detail=str(error), errors=[Fault(each) for each in error.cells])
+        cells = [Fault("wrong-cell", said=each) for each in error.cells]
+        super().__init__(detail=str(error), errors=cells)
         columns = [asdict(column) for column in error.columns]
         self.members: dict[str, Any] = (
             {"columns": columns, "choices": error.choices} if columns else {}

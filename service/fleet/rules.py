@@ -28,8 +28,6 @@ Rule = Literal[
     "longest",
     "break",
 ]
-_UNSUMMED = "is added to the first objective, so that must be over sum, got max"
-_UNTIMED = "needs the name of the objective that is time, in clock"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,30 +186,29 @@ class Rules:
 
 def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
     if len(vehicle.capacity) != rules.dimensions:
-        demand = f"must have {rules.dimensions} numbers, as that of vehicles/0"
-        raise invalid(f"{part}/capacity", f"{demand}, got {len(vehicle.capacity)}")
+        values = {"numbers": rules.dimensions, "other": "/vehicles/0"}
+        raise invalid(f"{part}/capacity", "not-as-first", **values, came=len(vehicle.capacity))
     _check_span(rules, vehicle.shift, f"{part}/shift")
     if vehicle.max_overtime and vehicle.shift[1] == inf:
-        raise invalid(f"{part}/max_overtime", "needs a shift that ends")
+        raise invalid(f"{part}/max_overtime", "endless-shift")
     _check_initial_load(rules, vehicle, part)
     _check_trips(rules, vehicle, part)
     _check_breaks(rules, vehicle, part)
     if vehicle.fixed and rules.over[0] == "max":
-        raise invalid(f"{part}/fixed", _UNSUMMED)
+        raise invalid(f"{part}/fixed", "unsummed")
     if rules.limited is None and vehicle.longest != inf:
-        demand = "needs the name of the objective that is time in clock, or an objective over max"
-        raise invalid(f"{part}/longest", demand)
+        raise invalid(f"{part}/longest", "unlimited")
 
 
 def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
     load = vehicle.initial_load
     if load and len(load) != rules.dimensions:
-        demand = f"must have {rules.dimensions} numbers, as capacity, got {len(load)}"
-        raise invalid(f"{part}/initial_load", demand)
+        numbers, came = rules.dimensions, len(load)
+        raise invalid(f"{part}/initial_load", "not-as-capacity", numbers=numbers, came=came)
     for dimension, (loaded, most) in enumerate(zip(load, vehicle.capacity, strict=False)):
         if loaded > most:
-            demand = f"must be at most the capacity, {most}, got {loaded}"
-            raise invalid(f"{part}/initial_load/{dimension}", demand)
+            where = f"{part}/initial_load/{dimension}"
+            raise invalid(where, "over-capacity", limit=most, came=loaded)
 
 
 def _check_breaks(rules: Rules, vehicle: VehicleType, part: str) -> None:
@@ -219,57 +216,56 @@ def _check_breaks(rules: Rules, vehicle: VehicleType, part: str) -> None:
     for index, (opens, closes, length) in enumerate(vehicle.breaks):
         where = f"{part}/breaks/{index}/window"
         if rules.clock is None:
-            raise invalid(where, _UNTIMED)
+            raise invalid(where, "untimed")
         if closes < opens or is_over(free, opens):
-            demand = "must begin after the break before it has ended, and not end before it begins"
-            raise invalid(where, f"{demand}, got {opens:g} to {closes:g}")
+            raise invalid(where, "break-not-after", begin=opens, end=closes)
         free = closes + length
 
 
 def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
     if vehicle.max_trips is not None and not vehicle.reload:
-        raise invalid(f"{part}/max_trips", "needs stops for loading again, in reload")
+        raise invalid(f"{part}/max_trips", "no-reload")
     if vehicle.reload and vehicle.max_stops is not None:
-        raise invalid(f"{part}/max_stops", "must not be given beside reload")
+        raise invalid(f"{part}/max_stops", "also-given", member="reload")
     if rules.shipments:
         for name, given in (("reload", vehicle.reload), ("max_stops", vehicle.max_stops)):
             if given:
-                raise invalid(f"{part}/{name}", "must not be given beside shipments")
+                raise invalid(f"{part}/{name}", "also-given", member="shipments")
 
 
 def _check_objectives(rules: Rules) -> None:
     """Raise a refusal unless the objectives fit each other, and the data what they measure."""
     first, *others = rules.over
     if first not in ("sum", "max"):
-        raise invalid("objectives/0/measure", "must not be given for the first objective")
+        raise invalid("objectives/0/measure", "first-measure")
     for index, over in enumerate(others, start=1):
         part = f"objectives/{index}"
         if over == "max" and "max" in rules.over[:index]:
-            before = f"objectives/{rules.over.index('max')}"
-            raise invalid(f"{part}/over", f"must be sum, as that of {before} is max, got max")
+            before = f"/objectives/{rules.over.index('max')}"
+            raise invalid(f"{part}/over", "second-max", other=before)
         if over == "sum" or over == "max":
             continue
         if over in rules.over[:index]:
-            before = f"objectives/{rules.over.index(over)}"
-            raise invalid(f"{part}/measure", f"must be another than that of {before}, got {over}")
+            before = f"/objectives/{rules.over.index(over)}"
+            raise invalid(f"{part}/measure", "same-measure", other=before, given=over)
         if first == "max":
-            raise invalid(f"{part}/measure", "needs a first objective over sum, got max")
+            raise invalid(f"{part}/measure", "needs-sum")
         _check_measured(rules, over, f"{part}/measure")
     if first == "max" and len(others) > 1:
-        raise invalid("objectives/0/over", "must be sum beside two other objectives, got max")
+        raise invalid("objectives/0/over", "max-of-three")
 
 
 def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
     """Raise a refusal unless the data have what a measure is of."""
     match measure:
         case "unassigned" if all(visit.prize is None for visit in rules.visits):
-            raise invalid(part, "unassigned needs stops with a prize, which may be left out")
+            raise invalid(part, "no-prizes")
         case "overtime" if not any(vehicle.max_overtime for vehicle in rules.vehicles):
-            raise invalid(part, "overtime needs vehicles with max_overtime")
+            raise invalid(part, "no-overtime")
         case "lateness" if all(visit.due == inf for visit in rules.visits):
-            raise invalid(part, "lateness needs stops with due")
+            raise invalid(part, "no-due")
         case "load_distance" if not rules.dimensions:
-            raise invalid(part, "load_distance needs vehicles with a capacity, and demands")
+            raise invalid(part, "no-loads")
 
 
 def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
@@ -282,15 +278,15 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
         ("release", visit.release),
     ):
         if timed and rules.clock is None:
-            raise invalid(f"{part}/{name}", _UNTIMED)
+            raise invalid(f"{part}/{name}", "untimed")
     for number, window in enumerate(visit.windows):
         alone = len(visit.windows) == 1
         _check_span(rules, window, f"{part}/window" if alone else f"{part}/windows/{number}")
     if visit.demand and len(visit.demand) != rules.dimensions:
-        demand = f"must have {rules.dimensions} numbers, as each capacity has"
-        raise invalid(f"{part}/demand", f"{demand}, got {len(visit.demand)}")
+        numbers, came = rules.dimensions, len(visit.demand)
+        raise invalid(f"{part}/demand", "not-as-capacities", numbers=numbers, came=came)
     if visit.prize is not None and rules.over[0] == "max":
-        raise invalid(f"{part}/prize", _UNSUMMED)
+        raise invalid(f"{part}/prize", "unsummed")
 
 
 def _check_depot(visit: Visit, part: str) -> None:
@@ -308,19 +304,18 @@ def _check_depot(visit: Visit, part: str) -> None:
     if not given:
         return
     first, *others = given
-    nor = f", nor {' or '.join(others)}," if others else ""
-    instead = "an order there needs a stop of its own"
     if first == "window":
-        instead = f"say in their shift when they may be on the way; {instead}"
-    depot = "for a stop at which vehicles start, end or load again"
-    raise invalid(f"{part}/{first}", f"must not be given{nor} {depot}: {instead}")
+        code = "window-and-more-of-depot" if others else "window-of-depot"
+    else:
+        code = "several-of-depot" if others else "of-depot"
+    raise invalid(f"{part}/{first}", code, members=" or ".join(others) or None)
 
 
 def _check_span(rules: Rules, span: Span, part: str) -> None:
     if span[0] > span[1]:
-        raise invalid(part, f"must not end before it begins, got {span[0]:g} to {span[1]:g}")
+        raise invalid(part, "ends-early", begin=span[0], end=span[1])
     if rules.clock is None and span != ALWAYS:
-        raise invalid(part, _UNTIMED)
+        raise invalid(part, "untimed")
 
 
 def _check_shipments(rules: Rules) -> None:
@@ -329,20 +324,18 @@ def _check_shipments(rules: Rules) -> None:
         for name, stop in (("pickup", shipment.pickup), ("delivery", shipment.delivery)):
             part = f"shipments/{index}/{name}"
             if stop in rules.depots:
-                raise invalid(part, "must not be a stop at which vehicles start, end or load again")
+                raise invalid(part, "shipped-to-depot")
             if parts.setdefault(stop, part) != part:
-                raise invalid(part, f"must be in one shipment, and is {parts[stop]}, too")
+                raise invalid(part, "in-two-shipments", other=f"/{parts[stop]}")
             _check_shipped(rules.visits[stop], stop)
         delivery = rules.visits[shipment.delivery]
         if any(delivery.demand) or delivery.prize is not None:
-            demand = "must have no demand and no prize: those of the pick-up hold for both"
-            raise invalid(f"shipments/{index}/delivery", demand)
+            raise invalid(f"shipments/{index}/delivery", "delivery-asks")
 
 
 def _check_shipped(visit: Visit, stop: int) -> None:
     """Raise a refusal where a stop of a shipment asks for what only other stops can."""
     if len(visit.windows) > 1:
-        raise invalid(f"stops/{stop}/windows", "must be one for a stop of a shipment")
+        raise invalid(f"stops/{stop}/windows", "windows-of-shipment")
     if visit.release:
-        demand = "must not be given for a stop of a shipment: it is not loaded at a start"
-        raise invalid(f"stops/{stop}/release", demand)
+        raise invalid(f"stops/{stop}/release", "release-of-shipment")

@@ -13,7 +13,7 @@ from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.errors import invalid
 from service.requests.fields import LARGEST
-from service.requests.validation import show, too_many_cells
+from service.requests.validation import too_many_cells
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
@@ -42,8 +42,8 @@ def stack_matrices(matrices: list[CostRows], name: str = "matrices") -> Array:
     n = len(arrays[0])
     for m, array in enumerate(arrays):
         if len(array) != n:
-            demand = f"must have {n} rows, as many as {name}/0, got {len(array)}"
-            raise invalid(f"{name}/{m}", demand)
+            other = f"/{name}/0"
+            raise invalid(f"{name}/{m}", "other-height", rows=n, other=other, came=len(array))
     return np.stack(arrays)
 
 
@@ -58,7 +58,7 @@ def cost_matrix(rows: CostRows, name: str) -> Array:
     matrix = rectangular_array(rows, name)
     n, width = matrix.shape
     if n != width:
-        raise invalid(name, f"must be square, got {n} rows of {width} numbers")
+        raise invalid(name, "not-square", rows=n, columns=width)
     np.fill_diagonal(matrix, 0.0)
     if np.isfinite(matrix).all():
         return matrix
@@ -66,8 +66,7 @@ def cost_matrix(rows: CostRows, name: str) -> Array:
     np.fill_diagonal(null, False)
     matrix[null] = 0.0
     for i, j in np.argwhere(~np.isfinite(matrix))[:1]:
-        demand = "must be a finite number, or null where there is no way"
-        raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(float(matrix[i, j]))}")
+        raise invalid(f"{name}/{i}/{j}", "not-a-cost", came=float(matrix[i, j]))
     matrix[null] = np.inf
     return matrix
 
@@ -86,11 +85,11 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
         Refusal: It has no numbers, or the rows differ in length.
     """
     if not rows or not rows[0]:
-        raise invalid(name, "must have a row of numbers or more, got none")
+        raise invalid(name, "no-rows")
     width = len(rows[0])
     for i, row in enumerate(rows):
         if len(row) != width:
-            raise invalid(f"{name}/{i}", f"must have {width} numbers, as the first, got {len(row)}")
+            raise invalid(f"{name}/{i}", "other-width", numbers=width, came=len(row))
     return np.array(rows, dtype=np.float64)
 
 
@@ -99,7 +98,7 @@ def check_grid(grid: Array) -> None:
     binary = (grid == 0) | (grid == 1)
     if not binary.all():
         row, column = np.unravel_index(binary.argmin(), binary.shape)
-        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")
+        raise invalid(f"grid/{row}/{column}", "not-0-or-1", came=float(grid[row, column]))
 
 
 def check_size(columns: int, rows: int, most: int) -> None:
@@ -107,7 +106,7 @@ def check_size(columns: int, rows: int, most: int) -> None:
     if columns * rows > most:
         raise too_many_cells(most, columns * rows, f"{rows} x {columns}")
     if columns * rows == 0:
-        raise invalid("grid", f"must have a cell or more, got {rows} x {columns}")
+        raise invalid("grid", "no-cells", rows=rows, columns=columns)
 
 
 def check_costs(matrix: Array, name: str) -> None:
@@ -126,8 +125,7 @@ def check_costs(matrix: Array, name: str) -> None:
         return
     i, j = np.unravel_index(is_cost.argmin(), is_cost.shape)
     entry = float(matrix[i, j])
-    if np.isnan(entry):
-        demand = "must be a number, or infinity where there is no way"
-    else:
-        demand = "must not be negative" if entry < 0 else f"must be at most {LARGEST:g}"
-    raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(entry)}")
+    where = f"{name}/{i}/{j}"
+    if entry > LARGEST:
+        raise invalid(where, "cost-too-large", most=LARGEST, came=entry)
+    raise invalid(where, "negative-cost" if entry < 0 else "not-a-number", came=entry)

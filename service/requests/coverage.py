@@ -223,7 +223,7 @@ def parse_coverage_as(
     request = parse_json(model, body).with_map(picture, limits.cells)
     check_unique([item.name for item in request.cost_layers], "cost_layers", "name")
     if request.cost_layer.size and request.cost_layers:
-        raise invalid("cost_layers", "or cost_layer must be left out")
+        raise invalid("cost_layers", "or-left-out", member="cost_layer")
     most = limits.most_places(shared=bool(request.robots))
     if len(request.places) > most:
         raise too_many_cities("places", most, len(request.places))
@@ -231,7 +231,7 @@ def parse_coverage_as(
     if request.robots:
         _check_robots(request)
     elif "over" in request.model_fields_set:
-        raise invalid("over", "is for several robots, and none are given")
+        raise invalid("over", "of-robots")
     check_costs(request.second_matrix, "second_matrix")
     # With a spacing, the number of places is not known before the survey.
     n = len(request.places) or most
@@ -242,19 +242,19 @@ def parse_coverage_as(
 def _check_poses(request: CoverageRequest) -> None:
     given = request.model_fields_set
     if request.initial_tours and not request.places:
-        raise invalid("initial_tours", "must be of places, and none are given")
+        raise invalid("initial_tours", "tours-of-no-places")
     _check_ends(request)
     if request.initial_tours and {"start_pose", "end_pose"} & given:
-        raise invalid("initial_tours", "must be left out where a pose may become a place")
+        raise invalid("initial_tours", "tours-with-poses")
     if request.closed and request.end_pose:
-        raise invalid("end_pose", "is for open routes, with closed false")
+        raise invalid("end_pose", "of-open-routes")
 
 
 def _check_ends(item: CoverageRequest | RobotItem, part: str = "") -> None:
     """Raise a refusal where a start or an end is given as a place and as a pose."""
     for place, pose in ENDS:
         if {place, pose} <= item.model_fields_set:
-            raise invalid(f"{part}{pose}", f"or {place} must be left out")
+            raise invalid(f"{part}{pose}", "or-left-out", member=place)
 
 
 def _check_robots(request: CoverageRequest) -> None:
@@ -262,12 +262,12 @@ def _check_robots(request: CoverageRequest) -> None:
     given = request.model_fields_set
     for name in OF_ONE_ROBOT:
         if name in given:
-            raise invalid(name, "must be left out with robots, whose routes are planned together")
+            raise invalid(name, "with-robots")
     if request.over == ["max", "max"]:
-        raise invalid("over/1", "must be sum, as over/0 is max, got max")
+        raise invalid("over/1", "two-max")
     check_unique([robot.id for robot in request.robots], "robots")
     for index, robot in enumerate(request.robots):
         _check_ends(robot, f"robots/{index}/")
         for name in ("end", "end_pose"):
             if request.closed and name in robot.model_fields_set:
-                raise invalid(f"robots/{index}/{name}", "is for open routes, with closed false")
+                raise invalid(f"robots/{index}/{name}", "of-open-routes")

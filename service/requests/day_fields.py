@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
+from service.errors.shown import show
 from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional
@@ -22,7 +23,6 @@ from service.requests.stops import (
     Stop,
     Traffic,
 )
-from service.requests.validation import show
 
 _YEARS = (1970, 2999)  # that Valhalla reads
 _MOST_TIMES = 2**23  # of travel, in all slices of one objective
@@ -31,7 +31,6 @@ _MOST_SLICES = 100  # every quarter of an hour, and a few more
 _LEAST_FACTOR, _MOST_FACTOR = 0.01, 100.0
 TimeOfDay = Annotated[float, Field(ge=0, le=_LATEST, allow_inf_nan=False)]
 Factor = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-_NEEDED = "is required where costs change over the day, or stops have service"
 
 
 class SliceItem(StrictModel):
@@ -66,21 +65,21 @@ class TrafficItem(StrictModel):
         _check_times(f"{part}/at", [f"{k}" for k in range(len(self.begins))], self.begins)
         for k, seconds in enumerate(self.begins):
             if seconds % 60:
-                raise invalid(f"{part}/at/{k}", f"must be a whole minute, got {seconds:g}")
+                raise invalid(f"{part}/at/{k}", "not-a-minute", came=seconds)
         most = max(1, _MOST_TIMES // n**2)
         if len(self.begins) > most:
-            demand = f"must have at most {most} times for {n} stops"
-            raise invalid(f"{part}/at", f"{demand}, got {len(self.begins)}")
+            came = len(self.begins)
+            raise invalid(f"{part}/at", "too-many-times", limit=most, stops=n, came=came)
         return Traffic(self._date(f"{part}/date"), tuple(self.begins))
 
     def _date(self, part: str) -> str:
         try:
             found = date.fromisoformat(self.day)
         except ValueError:
-            demand = f"must be a date, as 2026-11-27, got {show(self.day)}"
-            raise invalid(part, demand) from None
-        if not _YEARS[0] <= found.year <= _YEARS[1]:
-            raise invalid(part, f"must be of the years {_YEARS[0]} to {_YEARS[1]}, got {found}")
+            raise invalid(part, "not-a-date", came=self.day) from None
+        first, last = _YEARS
+        if not first <= found.year <= last:
+            raise invalid(part, "not-these-years", first=first, last=last, given=str(found))
         return found.isoformat()
 
 
@@ -150,37 +149,36 @@ class DayObjectiveItem(ObjectiveItem):
         if self.traffic is None or not isinstance(base, Measured):
             return self.over(part, base)
         if base.measure != "road_time":
-            raise invalid(f"{part}/traffic", f"needs from road_time, got {base.measure}")
+            raise invalid(f"{part}/traffic", "needs-from", measure="road_time", given=base.measure)
         if self.over_the_day:
-            raise invalid(f"{part}/traffic", "must not be given together with over_the_day")
+            raise invalid(f"{part}/traffic", "not-beside", member="over_the_day")
         return self.traffic.source(f"{part}/traffic", len(stops))
 
     def over(self, part: str, base: FixedSource) -> Source:
         """Return a source with the factors of the day, if there are any."""
         if self.traffic is not None:
-            raise invalid(f"{part}/traffic", "needs from road_time")
+            raise invalid(f"{part}/traffic", "needs-road-time")
         if not self.over_the_day:
             return base
         begins, factors = zip(*self.over_the_day, strict=True)
         _check_times(f"{part}/over_the_day", [f"{k}/0" for k in range(len(begins))], begins)
         for k, factor in enumerate(factors):
             if not _LEAST_FACTOR <= factor <= _MOST_FACTOR:
-                demand = f"must be from {_LEAST_FACTOR:g} to {_MOST_FACTOR:g}"
-                raise invalid(f"{part}/over_the_day/{k}/1", f"{demand}, got {factor:g}")
+                bounds = {"least": _LEAST_FACTOR, "most": _MOST_FACTOR}
+                raise invalid(f"{part}/over_the_day/{k}/1", "not-between", **bounds, came=factor)
         return OverTheDay(base, np.array(begins, np.float64), np.array(factors, np.float64))
 
     def _slices(self, part: str, n: int) -> Slices:
         for name in ("over_the_day", "traffic"):
             if getattr(self, name):
-                raise invalid(f"{part}/{name}", "must not be given together with slices")
+                raise invalid(f"{part}/{name}", "not-beside", member="slices")
         begins = [item.begins for item in self.slices]
         _check_times(f"{part}/slices", [f"{k}/from" for k in range(len(begins))], begins)
         matrices = []
         for k, item in enumerate(self.slices):
             where = f"{part}/slices/{k}/matrix"
             if len(item.matrix) != n:
-                demand = f"must have {n} rows, one for each stop"
-                raise invalid(where, f"{demand}, got {len(item.matrix)}")
+                raise invalid(where, "row-each", stops=n, came=len(item.matrix))
             matrix = cost_matrix(item.matrix, where)
             check_costs(matrix, where)
             matrices.append(matrix)
@@ -218,7 +216,7 @@ def read_hours(
     if isinstance(request.departure, DepartureRange):
         earliest, latest = request.departure.earliest, request.departure.latest
         if latest < earliest:
-            raise invalid("departure/latest", f"must be from {earliest:g} on, got {latest:g}")
+            raise invalid("departure/latest", "too-early", earliest=earliest, came=latest)
     assert isinstance(earliest, float)
     assert isinstance(latest, float)
     service = np.array([stop.service for stop in stops], np.float64)
@@ -231,7 +229,7 @@ def _check_no_day(
     """Raise a refusal where a request has no departure, but needs one."""
     changing = any(item.changes for item in items)
     if changing or request.clock is not None or any(stop.service for stop in stops):
-        raise invalid("departure", _NEEDED)
+        raise invalid("departure", "no-departure")
 
 
 def _clock(
@@ -240,19 +238,18 @@ def _clock(
     names = [objective.name for objective in objectives]
     if request.clock is not None:
         if request.clock not in names:
-            demand = f"must be {' or '.join(map(show, names))}, the name of an objective"
-            raise invalid("clock", f"{demand}, got {show(request.clock)}")
+            known = " or ".join(map(show, names))
+            raise invalid("clock", "not-an-objective", names=known, came=request.clock)
         clock = names.index(request.clock)
     else:
         changing: list[Any] = [m for m, item in enumerate(items) if item.changes]
         in_seconds = [m for m, objective in enumerate(objectives) if objective.unit == "s"]
         if not changing and not in_seconds:
-            raise invalid("clock", "is required, as no objective changes over the day or is in s")
+            raise invalid("clock", "no-time")
         clock = [*changing, *in_seconds][0]
     unit = objectives[clock].unit
     if unit not in (None, "s"):
-        demand = "must be s, as its costs are seconds of travel between times of the day"
-        raise invalid(f"objectives/{clock}/unit", f"{demand}, got {show(unit)}")
+        raise invalid(f"objectives/{clock}/unit", "not-in-seconds", came=unit)
     return clock
 
 
@@ -260,7 +257,6 @@ def _check_times(part: str, places: Sequence[str], times: Sequence[float]) -> No
     """Raise a refusal unless times are ascending, and none is too late."""
     for k, place in enumerate(places):
         if times[k] > _LATEST:
-            raise invalid(f"{part}/{place}", f"must be at most {_LATEST}, got {times[k]:g}")
+            raise invalid(f"{part}/{place}", "too-late", latest=_LATEST, came=times[k])
         if k and times[k] <= times[k - 1]:
-            demand = f"must be later than {times[k - 1]:g}, when the one before begins"
-            raise invalid(f"{part}/{place}", f"{demand}, got {times[k]:g}")
+            raise invalid(f"{part}/{place}", "not-later", before=times[k - 1], came=times[k])

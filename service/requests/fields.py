@@ -157,8 +157,8 @@ class SearchFields(StrictModel):
         """
         point = self.reference_point
         if point and len(point) != objectives:
-            demand = f"must have {objectives} numbers, one for each objective"
-            raise invalid("reference_point", f"{demand}, got {len(point)}")
+            came = len(point)
+            raise invalid("reference_point", "number-each", objectives=objectives, came=came)
         return PlanOptions(
             directions=np.empty((0, objectives)),
             size=self.size,
@@ -227,13 +227,12 @@ class PlanFields(SearchFields):
         rows = [each for each in given if isinstance(each, list)]
         if not rows:
             if m > OBJECTIVES:
-                demand = f"must be a list of {m} numbers, one for each objective"
-                raise invalid("preferences/0", f"{demand}, got the angle {given[0]:g}")
+                raise invalid("preferences/0", "angle-of-several", objectives=m, came=given[0])
             return from_angles(np.array(given))
         for index, row in enumerate(rows):
             if len(row) != m or not any(row):
-                demand = f"must have {m} numbers, one for each objective, that are not all 0"
-                raise invalid(f"preferences/{index}", f"{demand}, got {row}")
+                part = f"preferences/{index}"
+                raise invalid(part, "no-direction", objectives=m, given=str(row))
         directions = np.array(rows)
         unit: NDArray[np.float64] = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         return unit

@@ -7,6 +7,7 @@ from pydantic import Field
 from pydantic_core import to_json
 
 from service.errors import invalid
+from service.errors.shown import show
 from service.fleet.fleet import LAYERS
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType
@@ -34,7 +35,7 @@ from service.requests.stop_fields import (
 )
 from service.requests.stops import Labels, Source, Stop, Stops, locations_of
 from service.requests.task import UnmeasuredFleet, VehicleName, types_by_id
-from service.requests.validation import parse_json, show, too_many_cities
+from service.requests.validation import parse_json, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
 
@@ -114,8 +115,8 @@ class FleetRequest(SearchFields):
             for number, vehicle in enumerate(item.vehicle_types(f"vehicles/{i}", ids))
         ]
         if len(shifts) > _MOST_VEHICLE_TYPES:
-            demand = f"must have at most {_MOST_VEHICLE_TYPES} shifts in all, got {len(shifts)}"
-            raise invalid("vehicles", demand)
+            most, came = _MOST_VEHICLE_TYPES, len(shifts)
+            raise invalid("vehicles", "too-many-shifts", limit=most, came=came)
         shifts.sort(key=lambda each: each[0])
         return tuple(each[2] for each in shifts), tuple(each[1] for each in shifts)
 
@@ -135,7 +136,7 @@ class FleetRequest(SearchFields):
             part = f"objectives/{index}"
             if item.of_plan is not None:
                 if {*item.sources, "over"} & item.model_fields_set:
-                    raise invalid(part, "must have either a measure, or costs and over")
+                    raise invalid(part, "measure-and-costs")
                 layers.append(0)
                 continue
             same = (number for number, each in enumerate(costs) if self._same_costs(each, index))
@@ -143,8 +144,7 @@ class FleetRequest(SearchFields):
             if layers[-1] == len(costs):
                 costs.append(index)
             if len(costs) > LAYERS:
-                demand = "must have the costs of one of the others: a fleet has two kinds at most"
-                raise invalid(part, demand)
+                raise invalid(part, "third-costs")
         return costs, tuple(layers)
 
     def _same_costs(self, first: int, second: int) -> bool:
@@ -170,14 +170,13 @@ class FleetRequest(SearchFields):
             return None
         if isinstance(self.clock, ClockItem):
             if len(costs) == LAYERS:
-                demand = "must be the name of an objective where objectives have two kinds of costs"
-                raise invalid("clock", demand)
+                raise invalid("clock", "clock-with-costs")
             return 1
         items = zip(self.objectives, layers, strict=True)
         names = {item.name: layer for item, layer in items if item.of_plan is None}
         if self.clock not in names:
-            demand = f"must be {' or '.join(map(show, names))}, the name of an objective with costs"
-            raise invalid("clock", f"{demand}, got {show(self.clock)}")
+            known = " or ".join(map(show, names))
+            raise invalid("clock", "no-clock", names=known, came=self.clock)
         return names[self.clock]
 
 

@@ -25,7 +25,7 @@ from service.requests.stop_fields import (
     StopReference,
     find_index,
 )
-from service.requests.validation import nearest, show
+from service.requests.validation import nearest
 
 _MOST_LOAD = 10**9
 _MOST_DIMENSIONS = 8
@@ -82,10 +82,8 @@ class FleetStopItem(NamedStop):
             Refusal: There is no vehicle of that id, or windows are not in order.
         """
         if self.vehicle is not None and self.vehicle not in types:
-            meant = nearest(self.vehicle, types)
-            hint = f"; did you mean {show(meant)}?" if meant else ""
-            demand = f"must be the id of a type of vehicles, got {show(self.vehicle)}{hint}"
-            raise invalid(f"{part}/vehicle", demand)
+            near = nearest(self.vehicle, types)
+            raise invalid(f"{part}/vehicle", "not-a-vehicle", came=self.vehicle, near=near)
         return Visit(
             demand=tuple(self.demand),
             service=self.service,
@@ -245,12 +243,11 @@ def _spans(one: list[float] | None, several: list[list[float]], part: str) -> li
         Refusal: Both were given, or they overlap or are not in order.
     """
     if one is not None and several:
-        raise invalid(part, f"must not be given beside {part.rpartition('/')[2]}s")
+        raise invalid(part, "also-given", member=f"{part.rpartition('/')[2]}s")
     last = -inf
     for index, (begin, end) in enumerate(several):
         if end < begin or begin <= last:
-            demand = "must begin after the one before has ended, and not end before it begins"
-            raise invalid(f"{part}s/{index}", f"{demand}, got {begin:g} to {end:g}")
+            raise invalid(f"{part}s/{index}", "not-after", begin=begin, end=end)
         last = end
     spans = several or ([] if one is None else [one])
     return [(begin, end) for begin, end in spans] or [ALWAYS]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from service.errors import Refusal, invalid
+from service.errors import Fault, Refusal, invalid
 from service.instance import PLANE, Kind
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.arrays import array_field, check_costs, stack_matrices
@@ -140,8 +140,8 @@ class FrontRequest(DayFields, PlanRequest):
             return tuple(Plane(cities[:, m : m + PLANE]) for m in starts)
         for m, item in enumerate(self.objectives):
             if item.sources:
-                demand = "must have no source where the part matrices holds them, got"
-                raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
+                given = " and ".join(item.sources)
+                raise invalid(f"objectives/{m}", "source-beside-matrices", given=given)
         matrices = [Matrix(matrix) for matrix in self.matrices]
         if not self.objectives:
             return tuple(matrices)
@@ -154,11 +154,11 @@ class FrontRequest(DayFields, PlanRequest):
         """The times at which tours may begin, if costs change over the day."""
         for name in ("departure", "clock"):
             if name in self.model_fields_set and not self.stops:
-                raise invalid(name, "needs stops with objectives")
+                raise invalid(name, "needs-stops")
         objectives = () if self.labels is None else self.labels.objectives
         hours = read_hours(self, self.stops, self.objectives, objectives)
         if hours is not None and self.bound:
-            raise invalid("bound", "must be false with a departure, for which there is no bound")
+            raise invalid("bound", "bound-of-the-day")
         return hours
 
     @property
@@ -203,17 +203,18 @@ def _check_form(request: FrontRequest, with_file: bool) -> None:
     """Raise a refusal unless the cities come in one form; stops may have matrices in a file."""
     given = request.model_fields_set
     if with_file and "matrices" in given:
-        raise invalid("matrices", "must come once, got them as a part as well")
+        raise invalid("matrices", "matrices-twice")
     forms = [form for form in FORMS if form in given]
     if with_file and "stops" not in forms:
         forms.append("matrices")
     if len(forms) != 1:
-        came = " and ".join(forms) or "none"
-        sentence = f"one of {', '.join(FORMS[:-1])} and {FORMS[-1]} is required, got {came}"
-        raise Refusal("invalid-request", detail=sentence, pointer=f"/{(forms or FORMS)[0]}")
+        known = f"{', '.join(FORMS[:-1])} and {FORMS[-1]}"
+        values = {"forms": known, "given": " and ".join(forms) or "none"}
+        fault = Fault("one-form", pointer=f"/{(forms or FORMS)[0]}", values=values)
+        raise Refusal("invalid-request", errors=[fault])
     if ("stops" in given) != ("objectives" in given):
         missing, there = ("objectives", "stops") if "stops" in given else ("stops", "objectives")
-        raise invalid(missing, f"is required with {there}")
+        raise invalid(missing, "with-the-other", member=there)
 
 
 def _check_cities(request: FrontRequest, limits: Limits) -> None:
@@ -223,8 +224,8 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
         raise too_many_cities(form, limits.cities, request.n)
     most = limits.most_cities("matrices")
     if request.n > most and request.kind == "matrices":
-        condition = " unless all objectives have coordinates" if request.stops else ""
-        raise too_many_cities(form, most, request.n, condition)
+        code = "too-many-unless-planes" if request.stops else "too-many-rows"
+        raise too_many_cities(form, most, request.n, code)
     if request.matrices.size:
         _check_matrices(request)
     if request.stops:
@@ -234,7 +235,7 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
 def _check_matrices(request: FrontRequest) -> None:
     rows = request.matrices.shape[1]
     if request.stops and rows != request.n:
-        raise invalid("matrices", f"must have {request.n} rows, one for each stop, got {rows}")
+        raise invalid("matrices", "row-each", stops=request.n, came=rows)
     for m, matrix in enumerate(request.matrices):
         check_costs(matrix, f"matrices/{m}")
 
@@ -244,14 +245,13 @@ def _check_objectives(request: FrontRequest) -> None:
     m = request.objective_count
     for index, row in enumerate(request.coordinates):
         if len(row) != PLANE * m or len(row) % PLANE:
-            columns = f"{PLANE * m} numbers, as coordinates/0"
+            part, came = f"coordinates/{index}", len(row)
             if index == 0:
-                columns = "4, 6 or 8 numbers, x and y in the plane of each objective"
-            demand = f"must have {columns}"
-            raise invalid(f"coordinates/{index}", f"{demand}, got {len(row)}")
+                raise invalid(part, "plane-each", came=came)
+            first = "/coordinates/0"
+            raise invalid(part, "other-planes", numbers=PLANE * m, other=first, came=came)
     if request.stops and request.matrices.size and len(request.matrices) != m:
-        demand = f"must be {m}, one for each objective, got {len(request.matrices)}"
-        raise invalid("matrices", demand)
+        raise invalid("matrices", "matrix-each", objectives=m, came=len(request.matrices))
 
 
 def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:

@@ -121,8 +121,9 @@ def check_amounts(request: SearchFields, n: int, limits: Limits, id_bytes: int =
             check_limit(name, limit, len(amount) if isinstance(amount, list) else amount)
     most = limits.most_tours(n, id_bytes)
     if "size" in request.model_fields_set and request.size > most:
-        ids = " and ids so long" if most < limits.most_tours(n) else ""
-        raise invalid("size", f"must be at most {most} with {n} cities{ids}, got {request.size}")
+        by_ids = most < limits.most_tours(n)
+        code = "size-too-large-for-ids" if by_ids else "size-too-large"
+        raise invalid("size", code, limit=most, cities=n, came=request.size)
 
 
 def check_limits(request: PlanRequest, n: int, limits: Limits, id_bytes: int = 0) -> None:
@@ -137,25 +138,24 @@ def check_limits(request: PlanRequest, n: int, limits: Limits, id_bytes: int = 0
     ends = request.ends
     for index, tour in enumerate(request.initial_tours):
         if len(tour) != n or sorted(tour) != list(range(n)):
-            demand = f"must visit each city, 0 to {n - 1}, once"
-            raise invalid(f"initial_tours/{index}", demand)
+            raise invalid(f"initial_tours/{index}", "not-all-cities", last=n - 1)
         for name, place, city in (("start", 0, ends.start), ("end", -1, ends.end)):
             if city is not None and tour[place] != city:
-                demand = f"must {name} at city {city}, got {tour[place]}"
-                raise invalid(f"initial_tours/{index}", demand)
+                values = {"end": name, "city": city, "came": tour[place]}
+                raise invalid(f"initial_tours/{index}", "not-at-the-end", **values)
 
 
 def _check_ends(request: PlanRequest, n: int) -> None:
     """Raise a refusal where the ends of open routes do not fit n cities, or tours are closed."""
     for name, city in (("start", request.start), ("end", request.end)):
         if city is not None and city >= n:
-            raise invalid(name, f"must be a city, 0 to {n - 1}, got {city}")
+            raise invalid(name, "not-an-index", noun="a city", last=n - 1, came=city)
     if request.closed and request.end is not None:
-        raise invalid("end", f"is for open routes, with closed false, got {request.end}")
+        raise invalid("end", "end-of-closed", came=request.end)
     if request.closed and request.start is None:
-        raise invalid("start", "must be a city where tours are closed, got null")
+        raise invalid("start", "no-start")
     if not request.closed and n > 1 and request.ends.start == request.end is not None:
-        raise invalid("end", f"must not be the start, or tours are closed, got {request.end}")
+        raise invalid("end", "end-is-start", came=request.end)
 
 
 def check_reference_point(
@@ -178,8 +178,8 @@ def check_reference_point(
     lengths = zip(options.reference_point, least(), strict=True)
     for m, (length, shortest) in enumerate(lengths):
         if length <= shortest:
-            demand = f"must be more than {shortest:.6g}, which every {noun} has at least"
-            raise invalid(f"reference_point/{m}", f"{demand}, got {length:.6g}")
+            values = {"least": float(shortest), "noun": noun, "came": float(length)}
+            raise invalid(f"reference_point/{m}", "not-below", **values)
 
 
 def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
+from service.errors.shown import shorten
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
-from service.requests.validation import shorten, too_many_cities
+from service.requests.validation import too_many_cities
 
 _MAGIC = b"\x93NUMPY"
 _LENGTH_BYTES = {b"\1\0": 2, b"\2\0": 4}  # of the header's length, by the file's version
@@ -50,7 +51,7 @@ def read_npy(content: bytes, most_cities: int) -> NDArray[np.float64]:
     dtype = np.dtype(header.descr)
     demanded, came = prod(header.shape) * dtype.itemsize, len(content) - offset
     if came != demanded:
-        raise invalid("matrices", f"must have {demanded} bytes after its header, got {came}")
+        raise invalid("matrices", "npy-bytes", bytes=demanded, came=came)
     numbers = np.frombuffer(content, dtype, offset=offset)
     with np.errstate(all="ignore"):  # a signalling NaN is refused with all that is not finite
         return numbers.reshape(header.shape, order="F" if header.by_columns else "C").astype(
@@ -63,11 +64,10 @@ def _header_text(content: bytes) -> tuple[str, int]:
     start = len(_MAGIC) + 2
     size = _LENGTH_BYTES.get(content[len(_MAGIC) : start])
     if not content.startswith(_MAGIC) or size is None:
-        raise invalid("matrices", "must be a .npy file of version 1 or 2")
+        raise invalid("matrices", "npy-version")
     offset = start + size + int.from_bytes(content[start : start + size], "little")
     if offset > min(len(content), start + size + _LONGEST_HEADER):
-        demand = f"at most {_LONGEST_HEADER} bytes, all of them there"
-        raise invalid("matrices", f"must be a .npy file with a header of {demand}")
+        raise invalid("matrices", "npy-header-length", limit=_LONGEST_HEADER)
     return content[start + size : offset].decode("latin-1"), offset
 
 
@@ -79,22 +79,18 @@ def _parse_header(text: str) -> _Header:
         if value is not None
     }
     if len(found) < len(_Header._fields):
-        demand = "must be a .npy file whose header has descr, fortran_order and shape, once each"
-        raise invalid("matrices", f"{demand}, got {shorten(repr(text.strip()))}")
+        raise invalid("matrices", "npy-header", given=shorten(repr(text.strip())))
     shape = tuple(map(int, re.findall(r"[0-9]+", found["shape"])))
     return _Header(found["descr"], found["order"] == "True", shape)
 
 
 def _check_header(header: _Header, most_cities: int) -> None:
     if not _REAL_NUMBERS.fullmatch(header.descr):
-        demand = "must be of real numbers of at most 8 bytes"
-        raise invalid("matrices", f"{demand}, got {header.descr!r}")
+        raise invalid("matrices", "npy-numbers", given=repr(header.descr))
     shape = header.shape
     enough = len(shape) == 3 and OBJECTIVES <= shape[0] <= MOST_OBJECTIVES
     if not enough or shape[1] != shape[2] or shape[1] < 1:
-        demand = (
-            f"must have shape (m, n, n) with m from {OBJECTIVES} to {MOST_OBJECTIVES}, n at least 1"
-        )
-        raise invalid("matrices", f"{demand}, got {shorten(str(shape))}")
+        values = {"least": OBJECTIVES, "most": MOST_OBJECTIVES, "given": shorten(str(shape))}
+        raise invalid("matrices", "npy-shape", **values)
     if shape[1] > most_cities:
         raise too_many_cities("matrices", most_cities, shape[1])

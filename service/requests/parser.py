@@ -126,7 +126,7 @@ def coverage_task(
     """
     m = coverage.objectives
     if coverage.detours and request.bound:
-        raise invalid("bound", "must be left out with detours: it would be of the shortest paths")
+        raise invalid("bound", "bound-of-detours")
     name = choose_actor(actors, "matrices", request.requested_actor, m)
     return Task(
         subject=coverage,

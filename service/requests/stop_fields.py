@@ -29,7 +29,7 @@ from service.requests.stops import (
     Source,
     Stop,
 )
-from service.requests.validation import nearest, show
+from service.requests.validation import nearest
 
 StopReference = Annotated[
     Annotated[NonNegativeInteger, Tag("[index]")] | Annotated[Text, Tag("[id]")],
@@ -95,8 +95,7 @@ class ObjectiveItem(StrictModel):
         unit = "s" if at_a_speed else UNITS[self.measure]
         if self.unit not in (None, unit):
             measure = f"{self.measure} at a speed" if at_a_speed else self.measure
-            demand = f"must be {unit}, the unit of {measure}, got {show(self.unit)}"
-            raise invalid(f"{part}/unit", demand)
+            raise invalid(f"{part}/unit", "other-unit", unit=unit, measure=measure, came=self.unit)
         return Objective(self.name, unit)
 
     def _check_speed(self, part: str) -> None:
@@ -105,7 +104,7 @@ class ObjectiveItem(StrictModel):
         if self.speed is None or ("from" in sources and self.measure == "great_circle"):
             return
         came = f"from {self.measure}" if "from" in sources else " and ".join(sources) or "no source"
-        raise invalid(f"{part}/speed", f"needs from great_circle, got {came}")
+        raise invalid(f"{part}/speed", "needs-from", measure="great_circle", given=came)
 
     def source(self, part: str, stops: Sequence[Stop]) -> Source:
         """Return the source of the costs between these stops.
@@ -128,7 +127,7 @@ class ObjectiveItem(StrictModel):
                 return Measured(self.measure, self.speed)
             case sources:
                 came = " and ".join(sources) or "none"
-                raise invalid(part, f"must have one of {self.choices}, got {came}")
+                raise invalid(part, "not-one-source", sources=self.choices, given=came)
 
     def _matrix(self, part: str, n: int) -> Matrix:
         _check_rows(part, n, len(self.matrix))
@@ -171,8 +170,8 @@ def check_unique(names: Iterable[str], items: str, member: str = "id") -> None:
     first: dict[str, int] = {}
     for index, name in enumerate(names):
         if (other := first.setdefault(name, index)) != index:
-            demand = f"must not be that of {items}/{other}, got {show(name)} twice"
-            raise invalid(f"{items}/{index}/{member}", demand)
+            part = f"{items}/{index}/{member}"
+            raise invalid(part, "not-unique", other=f"/{items}/{other}", came=name)
 
 
 def find_index(
@@ -196,25 +195,23 @@ def find_index(
     """
     if isinstance(reference, int):
         if n is not None and reference >= n:
-            raise invalid(part, f"must be {noun}, 0 to {n - 1}, got {reference}")
+            raise invalid(part, "not-an-index", noun=noun, last=n - 1, came=reference)
         return reference
     if reference in ids:
         return ids[reference]
     if not ids:
-        demand = "must be the index of a city, as there are no stops with ids"
-        raise invalid(part, f"{demand}, got {show(reference)}")
-    near = nearest(reference, ids)
-    hint = f"; did you mean {show(near)}?" if near else ""
-    raise invalid(part, f"must be the id of a stop, got {show(reference)}{hint}")
+        raise invalid(part, "no-ids", came=reference)
+    raise invalid(part, "not-an-id", came=reference, near=nearest(reference, ids))
 
 
 def _check_rows(part: str, n: int, rows: int) -> None:
     if rows != n:
-        raise invalid(part, f"must have {n} rows, one for each stop, got {rows}")
+        raise invalid(part, "row-each", stops=n, came=rows)
 
 
 def _check_located(part: str, measure: Measure, stops: Sequence[Stop]) -> None:
     """Raise a refusal where a measure needs the location of a stop that has none."""
     for index, stop in enumerate(stops):
         if stop.location is None:
-            raise invalid(f"stops/{index}/location", f"is required by {part} {measure}")
+            values = {"other": f"/{part}", "measure": measure}
+            raise invalid(f"stops/{index}/location", "no-location", **values)

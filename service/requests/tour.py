@@ -125,5 +125,5 @@ def _split(texts: Iterable[str], known: Container[str]) -> Iterable[str]:
 
 
 def _refusal(error: WrongChoice) -> Refusal:
-    fault = error.parameter and Fault(str(error), parameter=error.parameter)
+    fault = error.parameter and Fault("wrong-choice", parameter=error.parameter, said=str(error))
     return Refusal("invalid-request", detail=str(error), errors=[fault] if fault else [])

@@ -1,6 +1,5 @@
-"""Validate JSON against a pydantic model, and word each error as a refusal of this service."""
+"""Validate JSON against a pydantic model, and return its errors as a refusal of this service."""
 
-import re
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from difflib import SequenceMatcher, get_close_matches
 from functools import cache
@@ -10,29 +9,18 @@ from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails, from_json, to_json
+from pydantic_core import ErrorDetails, from_json
 
 from service.errors import MOST_FAULTS, Fault, Refusal
 from service.errors.exceptions import summary
+from service.errors.faults import SENTENCES
+from service.errors.shown import shorten, show
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}
 _LONGEST_WORD = 100  # characters that are compared with other words
 _MOST_COMPARED = 10
 _DEEPEST = 100  # levels, half of what pydantic parses
-# What pydantic says less well than these: its name of an error, and the end of our sentence.
-_DEMANDS = {
-    "missing": "is required",
-    "extra_forbidden": "is not a field that this request has",
-    "exact_length": "must have {length} items, got {count}",
-    "too_short": "must have {min_length} {items} or more, got {count}",
-    "too_long": "must have {max_length} items or fewer, got {count}",
-    "string_too_short": "must have {min_length} character or more, got {count}",
-    "string_too_long": "must have {max_length} characters or fewer, got {count}",
-    "string_pattern_mismatch": "must be printable, in one line, got {value}",
-    "greater_than_equal": "must be at least {ge:.16g}, got {value}",
-    "less_than_equal": "must be at most {le:.16g}, got {value}",
-}
 _building = Lock()  # as pydantic does not build one model in two threads (pydantic#13419)
 _NO_BRACKETS = bytes(set(range(256)).difference(b"[]{}"))
 
@@ -85,38 +73,15 @@ def refusal_of(
     return Refusal("invalid-request", errors=faults, detail=summary(faults[0], len(errors)))
 
 
-def too_many_cities(part: str, limit: int, actual: int, condition: str = "") -> Refusal:
-    """Return the refusal of more rows, each a city, than are allowed, under a condition if any."""
-    detail = f"{part} must have at most {limit} rows{condition}, got {actual}"
-    return too_many_stops(part, detail, limit, actual)
-
-
-def too_many_stops(part: str, detail: str, limit: int, actual: int) -> Refusal:
-    """Return the refusal of more cities than are allowed, in these words."""
-    return Refusal("too-many-cities", detail=detail, pointer=f"/{part}", limit=limit, actual=actual)
+def too_many_cities(part: str, limit: int, actual: int, code: str = "too-many-rows") -> Refusal:
+    """Return the refusal of more cities than are allowed in a part of a request, or left by it."""
+    fault = Fault.of(part, code, limit=limit, actual=actual)
+    return Refusal("too-many-cities", errors=[fault], limit=limit, actual=actual)
 
 
 def too_many_cells(limit: int, actual: int, came: object) -> Refusal:
     """Return the refusal of a map of more cells than are allowed; `came` is shown for `actual`."""
     return Refusal("too-many-cells", came=came, pointer="/grid", limit=limit, actual=actual)
-
-
-def shorten(text: str) -> str:
-    """Return at most 80 characters of what came, to be shown in a sentence."""
-    return text if len(text) <= 80 else f"{text[:79]}…"
-
-
-def show(value: object) -> str:
-    """Return what came as a short text, to be shown in a sentence."""
-    match value:
-        case list():
-            return f"a list of {len(value)}"
-        case dict():
-            return "an object"
-        case int() if abs(value) >= 10**40:
-            return "an integer of more than 40 digits"
-        case _:
-            return shorten(to_json(value, inf_nan_mode="constants").decode())
 
 
 def nearest(word: str, words: Iterable[str]) -> str | None:
@@ -146,23 +111,41 @@ def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
 def _fault(error: ErrorDetails, parameters: bool, schema: Mapping[str, Any]) -> Fault:
     # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
     parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
+    code, values = _code(error, schema)
+    said = "" if code in SENTENCES else _said(error)
     if parameters:
         name = shorten(".".join(parts[1:]))
-        return Fault(detail=f"{name} {_demand(error, schema)}", parameter=name)
+        return Fault(code, name, parameter=name, values=values, said=said)
     pointer = shorten("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
-    name = pointer.lstrip("/") or "the body"
-    sentence = f"{name} {_demand(error, schema)}{_hint(error, schema)}"
-    return Fault(detail=sentence, pointer=pointer)
+    return Fault(code, pointer.lstrip("/") or "the body", pointer, values=values, said=said)
 
 
-def _hint(error: ErrorDetails, schema: Mapping[str, Any]) -> str:
-    """Return the field that the caller may have meant, as the end of a sentence."""
-    if error["type"] != "extra_forbidden":
-        return ""
-    *parents, unknown = error["loc"]
-    fields = _schema_at(parents, schema).get("properties", ())
-    near = nearest(str(unknown), fields)
-    return f"; did you mean {near}?" if near else ""
+def _said(error: ErrorDetails) -> str:
+    """Return an error in pydantic's words, with the verb of our sentences."""
+    return f"{error['msg'].replace('Input should be', 'must be', 1)}, got {show(error['input'])}"
+
+
+def _code(error: ErrorDetails, schema: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return what is wrong as the code of a sentence, with its values."""
+    kind, came, bounds = error["type"], error["input"], error.get("ctx", {})
+    code = kind.replace("_", "-")
+    match kind:
+        case "missing":
+            return code, {}
+        case "extra_forbidden":
+            *parents, unknown = error["loc"]
+            fields = _schema_at(parents, schema).get("properties", ())
+            return code, {"near": nearest(str(unknown), fields)}
+        case "too_short" | "too_long" | "string_too_short" | "string_too_long":
+            values = {**bounds, "count": len(came) if isinstance(came, Sized) else 1}
+            lengths = _schema_at(error["loc"], schema)
+            if "minItems" in lengths and lengths["minItems"] == lengths.get("maxItems"):
+                return "exact-length", {**values, "length": lengths["minItems"]}
+            return "too-few" if kind == "too_short" and bounds["min_length"] == 1 else code, values
+    return code, {
+        "came": came,
+        **{k: v for k, v in bounds.items() if isinstance(v, int | float | str)},
+    }
 
 
 def _schema_at(loc: Iterable[int | str], schema: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -175,17 +158,3 @@ def _schema_at(loc: Iterable[int | str], schema: Mapping[str, Any]) -> Mapping[s
         if "$ref" in at:
             at = schema["$defs"][at["$ref"].removeprefix("#/$defs/")]
     return at
-
-
-def _demand(error: ErrorDetails, schema: Mapping[str, Any]) -> str:
-    """Return what the part at fault must be, and what came, as the end of a sentence."""
-    kind, came, bounds = error["type"], error["input"], error.get("ctx", {})
-    if kind in ("too_short", "too_long"):
-        lengths = _schema_at(error["loc"], schema)
-        if "minItems" in lengths and lengths["minItems"] == lengths.get("maxItems"):
-            kind, bounds = "exact_length", {"length": lengths["minItems"]}
-    if kind not in _DEMANDS:
-        return f"{re.sub(r'^Input should be', 'must be', error['msg'])}, got {show(came)}"
-    items = "item" if bounds.get("min_length") == 1 else "items"
-    count = len(came) if isinstance(came, Sized) else 1
-    return _DEMANDS[kind].format(**bounds, items=items, count=count, value=show(came))

@@ -18,7 +18,7 @@ from ipaddress import (
 )
 from typing import TYPE_CHECKING, Self
 
-from service.errors import Fault, Refusal
+from service.errors import Refusal, invalid_header
 
 if TYPE_CHECKING:
     import httpx  # imported late below: a process without webhooks needs no client of HTTP
@@ -119,11 +119,8 @@ class Targets:
         try:
             found = self.find(text)
         except ValueError:
-            sentence = (
-                "Webhook-Url must be an address such as https://hooks.example.com/done, of at most"
-                f" {MOST_LETTERS} characters, got another text of {len(text)}"
-            )
-            raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)]) from None
+            values = {"limit": MOST_LETTERS, "came": len(text)}
+            raise invalid_header("Webhook-Url", "not-an-address", **values) from None
         if found is None:
             raise Refusal("webhook-not-allowed", came=_origin_of(_parsed(text)))
 

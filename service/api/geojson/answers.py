@@ -142,11 +142,11 @@ class FrontAnswers:
 
     def _check_roads(self, request: Request) -> None:
         if not accepts_geojson(request):
-            sentence = f"geometry roads needs an answer in GeoJSON: send Accept: {GEOJSON}"
-            raise Refusal("invalid-request", detail=sentence, errors=[_fault(request, sentence)])
+            fault = _fault(request, "roads-need-geojson", accept=GEOJSON)
+            raise Refusal("invalid-request", errors=[fault])
         if self._streets is None:
             refusal = Refusal("no-router", name="geometry", measure="roads")
-            refusal.errors = (_fault(request, refusal.detail),)
+            refusal.errors = (_fault(request, "no-router", said=refusal.detail),)
             raise refusal
 
     async def _drawn(
@@ -164,25 +164,29 @@ class FrontAnswers:
         return await compressed(request, response)
 
 
-def _fault(request: Request, sentence: str) -> Fault:
+def _fault(request: Request, code: str, said: str = "", **values: str) -> Fault:
     """Return what is wrong with the geometry, which is in the body or in the query."""
     if request.method == "POST":
-        return Fault(sentence, pointer="/geometry")
-    return Fault(sentence, parameter="geometry")
+        return Fault(code, pointer="/geometry", values=values, said=said)
+    return Fault(code, parameter="geometry", values=values, said=said)
 
 
 def _check_plan(request: Request, record: Record, plan: int) -> None:
     """Raise a refusal unless the front has a plan of this number, if one is asked for."""
     plans = len(record.front.split())
     if not accepts_geojson(request):
-        sentence = f"plan needs an answer in GeoJSON: send Accept: {GEOJSON}"
+        fault = _of_plan("needs-geojson", accept=GEOJSON)
     elif not KINDS[record.front.kind].mover:
-        sentence = f"plan is for fronts of fleets, and front {record.id} has tours: ask GET /tour"
+        fault = _of_plan("plan-of-tours", front=record.id)
     elif plan >= plans:
-        sentence = f"plan must be less than {plans}, the number of plans, got {plan}"
+        fault = _of_plan("no-such-plan", plans=plans, came=plan)
     else:
         return
-    raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence, parameter="plan")])
+    raise Refusal("invalid-request", errors=[fault])
+
+
+def _of_plan(code: str, **values: float | str) -> Fault:
+    return Fault(code, "plan", parameter="plan", values=values)
 
 
 def _check_located(stops: Stops | None) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from service.coverage.coverage import size_of
 from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES, Objective
 from service.requests.arrays import Array, array_field, check_grid, rectangular_array
@@ -82,11 +83,9 @@ def stacked(items: Sequence[LayerItem]) -> Array | None:
     """
     layers = [item.array(index) for index, item in enumerate(items)]
     for index, layer in enumerate(layers):
-        rows, columns = layers[0].shape
-        if layer.shape != (rows, columns):
-            came = " x ".join(map(str, layer.shape))
-            demand = f"must be as large as the first, {rows} x {columns} cells, got {came}"
-            raise invalid(f"cost_layers/{index}/layer", demand)
+        if layer.shape != layers[0].shape:
+            sizes = {"size": size_of(layers[0]), "given": " x ".join(map(str, layer.shape))}
+            raise invalid(f"cost_layers/{index}/layer", "other-size", like="the first", **sizes)
     return np.stack(layers) if layers else None
 
 
@@ -188,14 +187,14 @@ class MapRequest(PlanRequest):
         if picture is not None:
             forms.append("the part map")
         if not forms:
-            raise invalid("grid", "is required, as rows, as occupancy_grid or as the part map")
+            raise invalid("grid", "no-grid")
         if len(forms) > 1:
-            raise invalid("grid", f"must come once, got it as {' and as '.join(forms)}")
+            raise invalid("grid", "grid-twice", given=" and as ".join(forms))
         for name in USELESS.get(forms[0], ()):
             if name in given:
-                raise invalid(name, f"must be left out where the map comes as {forms[0]}")
+                raise invalid(name, "useless-with-form", form=forms[0])
         if forms != ["occupancy_grid"] and "cell_size" not in given:
-            raise invalid("cell_size", "is required")
+            raise invalid("cell_size", "missing")
 
     def _interpretation(self) -> Interpretation:
         given = self.model_fields_set
@@ -212,10 +211,10 @@ class MapRequest(PlanRequest):
     def _check_thresholds(self) -> None:
         for name in ("occupied_thresh", "free_thresh"):
             if name not in self.model_fields_set:
-                raise invalid(name, f"is required in mode {self.mode}")
+                raise invalid(name, "needed-by-mode", mode=self.mode)
         if self.free_thresh >= self.occupied_thresh:
-            demand = f"must be less than occupied_thresh, which is {self.occupied_thresh:g}"
-            raise invalid("free_thresh", f"{demand}, got {self.free_thresh:g}")
+            most, came = self.occupied_thresh, self.free_thresh
+            raise invalid("free_thresh", "thresholds-crossed", limit=most, came=came)
 
     def _blocked(self, values: Occupancy) -> Array:
         blocked = values >= self.obstacle_from

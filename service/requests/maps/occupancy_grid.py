@@ -72,7 +72,7 @@ class OccupancyGrid(_Message):
         at, turn = self.info.origin.position, self.info.origin.orientation
         length = math.hypot(turn.z, turn.w)
         if abs(length - 1) > _TILT or math.hypot(turn.x, turn.y) > _TILT:
-            raise invalid(f"{_INFO}/origin/orientation", "must be a unit quaternion about z")
+            raise invalid(f"{_INFO}/origin/orientation", "not-upright")
         return at.x, at.y, 2 * math.atan2(turn.z, turn.w)
 
     def occupancy(self, most_cells: int) -> Occupancy:
@@ -84,8 +84,8 @@ class OccupancyGrid(_Message):
         width, height = self.info.width, self.info.height
         check_size(width, height, most_cells)
         if len(self.data) != width * height:
-            demand = f"must have {width} x {height} numbers, got {len(self.data)}"
-            raise invalid("occupancy_grid/data", demand)
+            size = {"width": width, "height": height}
+            raise invalid("occupancy_grid/data", "not-width-by-height", **size, came=len(self.data))
         values = np.array(self.data)
         _check(values)
         return np.flipud(values.reshape(height, width)).astype(np.int8)
@@ -96,5 +96,5 @@ def _check(values: NDArray[np.float64]) -> None:
         occupancies = (values >= UNKNOWN) & (values <= _OCCUPIED) & (values == np.rint(values))
     if not occupancies.all():
         at = int(occupancies.argmin())
-        demand = f"must be a whole number, {UNKNOWN} to {_OCCUPIED}, got {values[at]:g}"
-        raise invalid(f"occupancy_grid/data/{at}", demand)
+        bounds, came = {"least": UNKNOWN, "most": _OCCUPIED}, float(values[at])
+        raise invalid(f"occupancy_grid/data/{at}", "not-an-occupancy", **bounds, came=came)

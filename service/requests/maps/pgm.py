@@ -5,7 +5,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import Refusal, invalid
+from service.errors import invalid
 from service.requests.arrays import check_size
 
 SIGNATURES = (b"P5", b"P2")
@@ -30,11 +30,11 @@ def read_pgm(content: bytes, most_cells: int) -> Shades:
     """
     header = _HEADER.match(content[:_LONGEST_HEADER])
     if header is None:
-        raise _malformed(f"a header of width, height and white within {_LONGEST_HEADER} bytes")
+        raise invalid("grid", "pgm-header", limit=_LONGEST_HEADER)
     columns, rows, white = map(int, header.groups())
     check_size(columns, rows, most_cells)
     if not 0 < white <= _MOST_SHADE:
-        raise _malformed(f"white as 1 to {_MOST_SHADE}, got {white}")
+        raise invalid("grid", "pgm-white", limit=_MOST_SHADE, came=white)
     raster = content[header.end() :]
     depth = np.uint8 if white <= _BYTE else np.uint16
     cells = rows * columns
@@ -42,7 +42,7 @@ def read_pgm(content: bytes, most_cells: int) -> Shades:
     read = _read_binary(raster, cells, depth) if binary else _read_plain(raster, cells)
     shades = read.reshape(rows, columns)
     if shades.max() > white:
-        raise _malformed(f"no shade over white, which is {white}, got {shades.max()}")
+        raise invalid("grid", "pgm-shade", limit=white, came=int(shades.max()))
     most = np.iinfo(depth).max
     scaled = shades if white == most else np.rint(shades / white * most)
     return scaled.astype(np.uint8) if depth is np.uint8 else scaled.astype(np.uint16)
@@ -51,22 +51,18 @@ def read_pgm(content: bytes, most_cells: int) -> Shades:
 def _read_binary(raster: bytes, cells: int, depth: type[np.uint8] | type[np.uint16]) -> Shades:
     size = np.dtype(depth).itemsize
     if len(raster) != size * cells:
-        raise _malformed(f"{size * cells} bytes after its header, got {len(raster)}")
+        raise invalid("grid", "pgm-bytes", bytes=size * cells, came=len(raster))
     return np.frombuffer(raster, np.dtype(depth).newbyteorder(">"))
 
 
 def _read_plain(raster: bytes, cells: int) -> NDArray[np.int64]:
     most = _LONGEST_HEADER + _MOST_BYTES * cells
     if len(raster) > most:
-        raise _malformed(f"at most {most} bytes after its header, got {len(raster)}")
+        raise invalid("grid", "pgm-too-long", bytes=most, came=len(raster))
     numbers = raster.split(None, cells)  # no more of them than needed: each takes 40 bytes
     if len(numbers) != cells:
         came = "more" if len(numbers) > cells else len(numbers)
-        raise _malformed(f"{cells} numbers after its header, got {came}")
+        raise invalid("grid", "pgm-numbers", numbers=cells, came=came)
     if not all(len(number) <= _MOST_DIGITS and number.isdigit() for number in numbers):
-        raise _malformed(f"numbers of at most {_MOST_DIGITS} digits after its header")
+        raise invalid("grid", "pgm-digits", limit=_MOST_DIGITS)
     return np.array([int(number) for number in numbers], np.int64)
-
-
-def _malformed(demand: str) -> Refusal:
-    return invalid("grid", f"must be a PGM file with {demand}")

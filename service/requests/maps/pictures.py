@@ -89,7 +89,7 @@ def _read(content: bytes, most_cells: int) -> Channels | NDArray[np.uint16]:
         return read_png(content, most_cells)
     if content.startswith(PGM_SIGNATURES):
         return read_pgm(content, most_cells)[:, :, np.newaxis]
-    raise invalid("grid", "must be a PNG or PGM file")
+    raise invalid("grid", "not-a-picture")
 
 
 def occupancy(channels: Channels, how: Interpretation) -> Occupancy:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal, invalid
+from service.errors.shown import shorten
 from service.requests.arrays import check_size
-from service.requests.validation import shorten
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _LENGTH = struct.Struct(">I")
@@ -50,7 +50,7 @@ def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.
     # The decoder is not ours, and raises a dozen kinds of exceptions over broken files.
     except Exception as error:
         reason = shorten(str(error) or type(error).__name__)
-        raise invalid("grid", f"must be a PNG file that can be read: {reason}") from None
+        raise invalid("grid", "png-unreadable", given=reason) from None
 
 
 def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.uint16]:
@@ -59,11 +59,11 @@ def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.u
     with Image.open(BytesIO(picture), formats=["PNG"]) as image:
         check_size(*image.size, most_cells)  # what the decoder is going to unpack
         if image.mode not in (*_MODES, _DEEP_GREY):
-            raise invalid("grid", f"must be grey or in colours (RGB), got mode {image.mode}")
+            raise invalid("grid", "png-colours", given=image.mode)
         size = image.size
         image.load()
         if image.size != size:
-            raise invalid("grid", f"must have one size, got {size} and {image.size}")
+            raise invalid("grid", "png-sizes", given=f"{size} and {image.size}")
         if image.mode == _DEEP_GREY:
             return np.asarray(image, np.uint16)[:, :, np.newaxis]
         channels = np.asarray(image.convert(_MODES[image.mode]))
@@ -73,10 +73,9 @@ def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.u
 def _check_header(headers: list[bytes], chunks: list[tuple[bytes, bytes]], most: int) -> None:
     """Raise a refusal unless the file begins with its only header, and it has few enough cells."""
     if len(headers) != 1 or chunks[0][1] is not headers[0]:
-        demand = "must be a PNG file with one header, at its beginning"
-        raise invalid("grid", f"{demand}, got {len(headers)}")
+        raise invalid("grid", "png-headers", came=len(headers))
     if len(headers[0]) != _HEADER_LENGTH + _BESIDE_CONTENT:
-        raise invalid("grid", f"must be a PNG file with a header of {_HEADER_LENGTH} bytes")
+        raise invalid("grid", "png-header-length", bytes=_HEADER_LENGTH)
     width, height = _SIZE.unpack_from(headers[0], 8)
     check_size(width, height, most)
 
@@ -93,4 +92,4 @@ def _chunks(content: bytes) -> Iterator[tuple[bytes, bytes]]:
         if kind == b"IEND":
             return
         at = end
-    raise invalid("grid", f"must be a PNG file of at most {_MOST_CHUNKS} chunks, got more")
+    raise invalid("grid", "png-chunks", limit=_MOST_CHUNKS)

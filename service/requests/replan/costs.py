@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
+from service.errors.shown import show
 from service.requests.arrays import costs_array
 from service.requests.replan.fields import CostEntry, NewStop
 from service.requests.stop_fields import find_index
@@ -23,7 +24,6 @@ from service.requests.stops import (
     changed_costs,
     with_base,
 )
-from service.requests.validation import show
 
 Array = NDArray[np.float64]
 
@@ -53,12 +53,9 @@ def all_stops(known: Sequence[Stop], items: Mapping[str, NewStop | list[int]]) -
     seen = {stop.id for stop in known}
     for part, item in items.items():
         if isinstance(item, list):
-            demand = "must be a stop with an id: row and column are of a place on a map"
-            raise invalid(part, demand)
+            raise invalid(part, "cell-for-a-stop")
         if item.id in seen:
-            raise invalid(
-                f"{part}/id", f"must differ from the ids of all other stops, got {show(item.id)}"
-            )
+            raise invalid(f"{part}/id", "known-id", came=item.id)
         seen.add(item.id)
         new[part] = item
     stops = (*known, *(Stop(item.id, item.location) for item in new.values()))
@@ -102,8 +99,8 @@ def _check_counts(stops: AllStops, objectives: int) -> None:
     for part, item in stops.new.items():
         for name, given in (("coordinates", item.coordinates), ("costs", item.costs)):
             if given and len(given) != objectives:
-                demand = f"must have {objectives} entries, one for each objective"
-                raise invalid(f"{part}/{name}", f"{demand}, got {len(given)}")
+                values = {"objectives": objectives, "came": len(given)}
+                raise invalid(f"{part}/{name}", "entry-each", **values)
 
 
 def between(source: Source, chosen: NDArray[np.int64]) -> Source:
@@ -136,8 +133,7 @@ def _extended_over_the_day(source: Source, m: int, name: str, stops: AllStops) -
             _check_given(Measured("road_time"), part, item, m, name)
         return source
     if isinstance(source, Slices) and stops.new:
-        demand = "needs objectives, as the costs of {} are a matrix for each slice of the day"
-        raise invalid(next(iter(stops.new)), demand.format(show(name)))
+        raise invalid(next(iter(stops.new)), "slices-need-objectives", objective=name)
     return with_base(source, lambda base: _extended(base, m, name, stops))
 
 
@@ -167,12 +163,12 @@ def _check_given(source: FixedSource, part: str, item: NewStop, m: int, name: st
     needed = {Matrix: "costs", Plane: "coordinates"}.get(type(base))
     for member, there in given.items():
         if member == needed and not there:
-            raise invalid(f"{part}/{member}", f"is required, with an entry for {show(name)}")
+            raise invalid(f"{part}/{member}", "entry-needed", objective=name)
         if there and member != needed:
-            kind = "measured" if needed is None else f"given by {needed}"
-            raise invalid(f"{part}/{member}/{m}", f"must be null: {show(name)} is {kind}")
+            code = "entry-of-measured" if needed is None else "entry-of-given"
+            raise invalid(f"{part}/{member}/{m}", code, objective=name, member=needed)
     if needed is None and item.location is None:
-        raise invalid(f"{part}/location", f"is required, as {show(name)} is measured")
+        raise invalid(f"{part}/location", "location-needed", objective=name)
 
 
 def _extended_matrix(costs: Array, m: int, stops: AllStops) -> Array:
@@ -192,7 +188,7 @@ def _extended_matrix(costs: Array, m: int, stops: AllStops) -> Array:
 def _row(costs: Sequence[float | None], part: str, own: int, size: int) -> Array:
     """Return a row of costs; that of the stop to itself is 0."""
     if len(costs) != size:
-        raise invalid(part, f"must have {size} costs, one for each stop, got {len(costs)}")
+        raise invalid(part, "cost-each", stops=size, came=len(costs))
     row = costs_array(costs)
     row[own] = 0.0
     return row
@@ -217,7 +213,7 @@ def _changes(
             for name, reference in (("from", entry.origin), ("to", entry.destination))
         )
         if origin == destination:
-            raise invalid(f"{part}/to", "must not be the stop that the step leads from")
+            raise invalid(f"{part}/to", "step-to-itself")
         cost = np.inf if entry.cost is None else entry.cost
         changed[_objective(entry.objective, names, part)][origin, destination] = cost
     return changed
@@ -232,8 +228,7 @@ def _changed_over_the_day(
         Refusal: The costs are those of traffic.
     """
     if isinstance(source, Traffic):
-        demand = "must be left out, as the costs of {} are the traffic that a routing engine knows"
-        raise invalid("costs", demand.format(show(name)))
+        raise invalid("costs", "costs-of-traffic", objective=name)
     if isinstance(source, Slices):
         steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))
         matrices = [changed_costs(matrix, steps, costs) for matrix in source.costs]
@@ -256,6 +251,6 @@ def _objective(objective: int | str, names: Sequence[str], part: str) -> int:
         return objective
     if isinstance(objective, int) or objective not in names:
         indexes = ", ".join(map(str, range(len(names))))
-        demand = f"must be {indexes} or {' or '.join(map(show, names))}"
-        raise invalid(f"{part}/objective", f"{demand}, got {show(objective)}")
+        values = {"indexes": indexes, "names": " or ".join(map(show, names)), "came": objective}
+        raise invalid(f"{part}/objective", "no-such-objective", **values)
     return names.index(objective)

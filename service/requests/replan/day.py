@@ -14,9 +14,6 @@ from service.requests.replan.fleet_fields import ReplanFleetRequest, RouteOnTheW
 from service.requests.replan.way import StoredFront, not_replannable
 from service.requests.stop_fields import find_index
 from service.requests.task import UnmeasuredFleet, VehicleName
-from service.requests.validation import show
-
-_OF_PLAN = "a stop of this route"
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +81,9 @@ def day_of(
     for index, item in enumerate(request.routes):
         part = f"routes/{index}"
         if item.route >= len(routes):
-            demand = f"must be less than {len(routes)}, the number of routes of the plan"
-            raise invalid(f"{part}/route", f"{demand}, got {item.route}")
+            raise invalid(f"{part}/route", "no-such-route", routes=len(routes), came=item.route)
         if item.route in numbers:
-            raise invalid(f"{part}/route", f"must not be given twice, got {item.route}")
+            raise invalid(f"{part}/route", "given-twice", came=item.route)
         numbers.append(item.route)
         route, departure = routes[item.route], departures[item.route]
         ways.append(_way(item, part, fleet.rules, route, departure, ids))
@@ -104,8 +100,7 @@ def _driven(
         raise not_replannable(stored.id, "it has no plan")
     number = knee(stored.found.lengths) if request.plan is None else request.plan
     if number >= len(plans):
-        demand = f"must be less than {len(plans)}, the number of plans, got {number}"
-        raise invalid("plan", demand)
+        raise invalid("plan", "no-such-plan", plans=len(plans), came=number)
     types = {name: index for index, name in enumerate(fleet.vehicles)}
     routes: list[Route] = []
     departures: list[float | None] = []
@@ -153,9 +148,9 @@ def _done(
         where = f"{part}/done/{index}"
         stop = find_index(reference, ids, where, len(ids))
         if stop not in route.stops:
-            raise invalid(where, f"must be {_OF_PLAN}, got {show(reference)}")
+            raise invalid(where, "not-of-route", came=reference)
         if stop in done:
-            raise invalid(where, f"must not be given twice, got {show(reference)}")
+            raise invalid(where, "given-twice", came=reference)
         if stop not in rules.depots:
             done.append(stop)
     return tuple(done)
@@ -176,10 +171,9 @@ def _position(
     if item.position is None:
         position = done[-1] if done else rules.vehicles[route.vehicle].start
         if position is None:
-            raise invalid(where, "is needed, as the route has no start and nothing is done")
+            raise invalid(where, "no-position")
         return position
     position = find_index(item.position, ids, where, len(ids))
     if position not in done and position not in rules.depots:
-        demand = "must be a stop that is done, a depot or a new place"
-        raise invalid(where, f"{demand}, got {show(item.position)}")
+        raise invalid(where, "not-a-position", came=item.position)
     return position

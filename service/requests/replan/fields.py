@@ -198,4 +198,4 @@ def check_fields(request: ReplanRequest, *, on_map: bool) -> None:
     kind = "stops or cities, by POST /front" if on_map else "a map, by POST /coverage"
     for name in _OF_STOPS if on_map else _OF_MAPS:
         if name in request.model_fields_set:
-            raise invalid(name, f"must be left out: it is for fronts of {kind}")
+            raise invalid(name, "of-other-fronts", kind=kind)

@@ -10,6 +10,7 @@ import numpy as np
 
 from service.actor_info import ActorInfo
 from service.errors import Refusal, invalid
+from service.errors.shown import show
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
@@ -29,7 +30,7 @@ from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.stop_fields import find_index
 from service.requests.stops import Labels, Source, Stops, locations_of
 from service.requests.task import Task, UnmeasuredFleet, VehicleName, types_by_id
-from service.requests.validation import parse_json, show, too_many_cities
+from service.requests.validation import parse_json, too_many_cities
 
 _LATER = 1e-6  # of the greatest time: what cannot be loaded now is released this much later
 
@@ -79,9 +80,8 @@ class _Rest:
     ) -> None:
         self._request, self._fleet, self._rules, self._known = request, fleet, fleet.rules, labels
         if (request.now is None) != (fleet.rules.clock is None):
-            needed = fleet.rules.clock is not None
-            demand = "is needed, as the fleet has a clock" if needed else "needs a clock"
-            raise invalid("now", demand)
+            timed = fleet.rules.clock is not None
+            raise invalid("now", "fleet-has-clock" if timed else "fleet-has-no-clock")
         ids = {stop.id: index for index, stop in enumerate(labels.stops)}
         self._day = day_of(request, stored, fleet, ids)
         self._all = _all_stops(request, labels)
@@ -332,12 +332,11 @@ def _removed(
         part = f"remove/{index}"
         stop = find_index(reference, ids, part, len(ids))
         if stop in rules.depots or stop in day.done:
-            what = "a depot" if stop in rules.depots else "done"
-            raise invalid(part, f"must not be {what}, got {show(reference)}")
+            code = "removed-depot" if stop in rules.depots else "removed-done"
+            raise invalid(part, code, came=reference)
         removed.append(stop)
     for each in rules.shipments:
         halves = [stop for stop in (each.pickup, each.delivery) if stop in removed]
         if len(halves) == 1 and each.pickup not in day.done:
-            demand = "must name both stops of a shipment that is not on board"
-            raise invalid(f"remove/{removed.index(halves[0])}", demand)
+            raise invalid(f"remove/{removed.index(halves[0])}", "half-a-shipment")
     return frozenset(removed)

@@ -1,6 +1,5 @@
 """The rest of a way over a map: from the task of an earlier front and what has changed."""
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NoReturn
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, check_layer, size_of
-from service.errors import InvalidCoverage, invalid
+from service.errors import Fault, InvalidCoverage, invalid
 from service.requests.arrays import Array, check_grid
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
@@ -23,7 +22,7 @@ from service.requests.replan.way import (
     rest_of_way,
 )
 from service.requests.task import SharedCoverage, Task
-from service.requests.validation import parse_json, show, too_many_cities
+from service.requests.validation import parse_json, too_many_cities
 
 Cells = NDArray[np.int64]
 
@@ -103,16 +102,16 @@ def _layers(coverage: Coverage, request: ReplanRequest) -> Array:
     names = [layer.name for layer in coverage.layers]
     if request.cost_layer.size:
         if names:
-            raise invalid("cost_layer", "must be one of cost_layers, as these have names")
+            raise invalid("cost_layer", "layers-have-names")
         return request.cost_layer[np.newaxis]
     if coverage.cost_layers is None or not names:
-        raise invalid("cost_layers", "must be left out: the front has no layers with names")
+        raise invalid("cost_layers", "no-layer-names")
     layers = coverage.cost_layers.copy()
     for index, item in enumerate(request.cost_layers):
         part = f"cost_layers/{index}"
         if item.name not in names:
             known = ", ".join(names)
-            raise invalid(f"{part}/name", f"must be one of {known}, got {show(item.name)}")
+            raise invalid(f"{part}/name", "not-a-layer", names=known, came=item.name)
         layer = item.array(index)
         check_layer(layer, f"{part}/layer", coverage.blocked)
         layers[names.index(item.name)] = layer
@@ -124,16 +123,15 @@ def _blocked(coverage: Coverage, request: ReplanRequest) -> NDArray[np.bool_]:
     blocked = coverage.blocked.copy()
     if request.grid.size:
         if request.grid.shape != blocked.shape:
-            came = size_of(request.grid)
-            demand = f"must be as large as that of the front, {coverage.size}, got {came}"
-            raise invalid("grid", demand)
+            sizes = {"size": coverage.size, "given": size_of(request.grid)}
+            raise invalid("grid", "other-size", like="that of the front", **sizes)
         check_grid(request.grid)
         blocked = request.grid > 0
     for name, cells, now in (("blocked", request.blocked, True), ("freed", request.freed, False)):
         for index, (row, column) in enumerate(cells):
             if row >= blocked.shape[0] or column >= blocked.shape[1]:
-                demand = f"must be a cell of the grid of {coverage.size}, got [{row}, {column}]"
-                raise invalid(f"{name}/{index}", demand)
+                values = {"size": coverage.size, "given": f"[{row}, {column}]"}
+                raise invalid(f"{name}/{index}", "outside-grid", **values)
             blocked[row, column] = now
     return blocked
 
@@ -157,7 +155,7 @@ def _all_places(
     new = []
     for index, item in enumerate(request.add):
         if not isinstance(item, list):
-            raise invalid(f"add/{index}", "must be row and column of a place on the map")
+            raise invalid(f"add/{index}", "stop-for-a-cell")
         _check_costs(anywhere, f"add/{index}")
         new.append(item)
     name, cell = _position_cell(coverage, request)
@@ -184,22 +182,21 @@ def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, lis
             return "position", request.position
         if request.position is None or isinstance(request.position, int | str):
             return "position", None
-        raise invalid("position", "must be a place of the front, or row and column of one")
+        raise invalid("position", "not-a-place")
     if request.position is not None:
-        raise invalid("pose", "or position must be left out")
+        raise invalid("pose", "or-left-out", member="position")
     if coverage.frame is None:
-        raise invalid("pose", "must be in the frame of a map with an origin")
+        raise invalid("pose", "no-origin")
     row, column = coverage.frame.cell(*request.pose[:2])
     rows, columns = coverage.blocked.shape
     if not (0 <= row < rows and 0 <= column < columns):
-        raise invalid("pose", f"must be in a cell of the grid of {coverage.size}")
+        raise invalid("pose", "pose-outside-grid", size=coverage.size)
     return "pose", [row, column]
 
 
 def _check_costs(anywhere: bool, part: str) -> None:
     if not anywhere:
-        demand = "must be in the cell of a place, as only a cost layer has costs of other cells"
-        raise invalid(part, demand)
+        raise invalid(part, "no-costs-there")
 
 
 def _parts(request: ReplanRequest, rest: RestOfWay, n: int) -> Iterator[str]:
@@ -218,17 +215,17 @@ def about_request(refusal: InvalidCoverage, parts: Sequence[str]) -> InvalidCove
         refusal: The refusal, about the places in the order of the rest.
         parts: The part for each place; places/2 is a place of the front, not in the request.
     """
-    faults = []
-    for part, demand in refusal.faults:
-        name, _, index = part.partition("/")
-        if name != "places":
-            faults.append((part, demand))
-            continue
-        named = parts[int(index)]
-        # The request does not name places of the rest.
-        demand = re.sub(r"from places/\d+", "from where the way goes on", demand)
-        if named.startswith("places/"):
-            demand = f"must have place {named.removeprefix('places/')}, as it {demand}"
-            named = "remove"
-        faults.append((named, demand))
-    return InvalidCoverage(*faults)
+    return InvalidCoverage(*(_about_part(fault, parts) for fault in refusal.faults))
+
+
+def _about_part(fault: Fault, parts: Sequence[str]) -> Fault:
+    if fault.part is None or not fault.part.startswith("places/"):
+        return fault
+    # The request does not name places of the rest.
+    code = "unreachable-from-here" if fault.code == "unreachable" else fault.code
+    values = {name: value for name, value in fault.values.items() if name != "other"}
+    part = parts[int(fault.part.removeprefix("places/"))]
+    if not part.startswith("places/"):
+        return Fault.of(part, code, **values)
+    place = int(part.removeprefix("places/"))
+    return Fault.of("remove", "place-lost", place=place, because=code, **values)

@@ -36,7 +36,7 @@ from service.requests.stops import (
     locations_of,
 )
 from service.requests.task import Task
-from service.requests.validation import parse_json, too_many_stops
+from service.requests.validation import parse_json, too_many_cities
 
 Array = NDArray[np.float64]
 
@@ -104,12 +104,12 @@ def _hours_of_rest(
         given = {"now": request.now, **{f"{part}/service": s for part, s in service.items()}}
         for part, seconds in given.items():
             if seconds is not None:
-                raise invalid(part, "must be left out, as costs do not change over the day")
+                raise invalid(part, "day-unchanging")
         if any(item.changes for item in request.objectives):
-            raise invalid("objectives", "must be the same all day, as those of the front are")
+            raise invalid("objectives", "objectives-change")
         return None
     if request.now is None:
-        raise invalid("now", "is required, as costs change over the day")
+        raise invalid("now", "no-now")
     seconds_of_all = np.append(front.hours.service, [s or 0.0 for s in service.values()])
     if rest.start is not None:
         seconds_of_all[rest.start] = 0.0  # the visit has ended
@@ -121,9 +121,8 @@ def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits:
     kind = kind_of(sources)
     most = limits.most_cities(kind)
     if len(rest.stops) > most:
-        unless = " unless all costs are distances in planes" if kind == "matrices" else ""
-        detail = f"{part} must leave at most {most} stops{unless}, got {len(rest.stops)}"
-        raise too_many_stops(part, detail, most, len(rest.stops))
+        code = "too-many-left-unless-planes" if kind == "matrices" else "too-many-left"
+        raise too_many_cities(part, most, len(rest.stops), code)
 
 
 def _all_costs(
@@ -141,7 +140,7 @@ def _all_costs(
         objectives = read_objectives(request.objectives)
         for part, item in stops.new.items():
             for name in {"coordinates", "costs"} & item.model_fields_set:
-                raise invalid(f"{part}/{name}", "must not be given together with objectives")
+                raise invalid(f"{part}/{name}", "not-beside", member="objectives")
         sources = read_sources(request.objectives, stops.stops)
     else:
         objectives = front.labels.objectives[: len(front.sources)]

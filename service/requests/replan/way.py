@@ -18,7 +18,6 @@ from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
 from service.requests.stops import Hours, Labels, Source, Stop, Stops
 from service.requests.task import Task, TaskSource
-from service.requests.validation import show
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
@@ -239,26 +238,21 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest) -> RestOfWay:
     start = _start(front, request, done[-1] if done else begin)
     for index, stop in enumerate(removed):
         if stop in done:
-            raise invalid(
-                f"remove/{index}",
-                f"must be a stop that is not done, got {show(_name(front, stop))}",
-            )
+            raise invalid(f"remove/{index}", "visited", came=_name(front, stop))
         if stop in (start, end):
-            where = "goes on" if stop == start else "ends"
-            demand = f"must not be where the way {where}, got {show(_name(front, stop))}"
-            raise invalid(f"remove/{index}", demand)
+            code = "where-the-way-goes-on" if stop == start else "where-the-way-ends"
+            raise invalid(f"remove/{index}", code, came=_name(front, stop))
     visited = {*done, *removed} if begin is None or start == begin else {*done, *removed, begin}
     left = frozenset(range(front.n)) - visited - {start, end}
     added = range(front.n, front.n + len(request.add))
     if not front.ends.closed and end is not None and (end == start or end in done):
         if left or added:
             part = f"done/{done.index(end)}" if end in done else "position"
-            demand = "must not be where the way ends while stops are left"
-            raise invalid(part, f"{demand}, got {show(_name(front, end))}")
+            raise invalid(part, "ends-too-soon", came=_name(front, end))
         end = None
     chosen = {*left, *added} | {stop for stop in (start, end) if stop is not None}
     if not chosen:
-        raise invalid("remove", "must leave a stop to visit, and leaves none")
+        raise invalid("remove", "nothing-left")
     back = front.ends.closed and start == front.start
     ends = CLOSED if back else RouteEnds(False, start, end if end != start else None)
     stops = sorted(chosen)
@@ -326,7 +320,7 @@ def _driven_tour(front: EarlierFront, request: ReplanRequest) -> Indices:
         return front.knee
     stops = _indexes(request.tour, front.ids, "tour")
     if len(stops) != front.n:
-        raise invalid("tour", f"must have all {front.n} stops of the front, got {len(stops)}")
+        raise invalid("tour", "not-all-stops", stops=front.n, came=len(stops))
     tour = np.array(stops, np.int64)
     return _from_stop(front.start, tour[np.newaxis])[0] if front.ends.closed else tour
 
@@ -348,8 +342,8 @@ def _indexes(references: Sequence[int | str], ids: Mapping[str, int], part: str)
     for index, reference in enumerate(references):
         stop = find_index(reference, ids, f"{part}/{index}", len(ids), _OF_FRONT)
         if (other := found.setdefault(stop, index)) != index:
-            demand = f"must not be {part}/{other} again, got {show(reference)}"
-            raise invalid(f"{part}/{index}", demand)
+            values = {"other": f"/{part}/{other}", "came": reference}
+            raise invalid(f"{part}/{index}", "named-twice", **values)
     return tuple(found)
 
 
