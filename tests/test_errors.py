@@ -4,12 +4,22 @@ import ast
 import pickle
 from collections.abc import Iterator
 from pathlib import Path
+from string import Formatter
+from typing import Any
 
 import pytest
 
 from service.errors import PROBLEMS, Fault, InvalidCoverage, Refusal, TooManyPlaces, WorkerLost
+from service.errors.faults import SENTENCES
 
 SERVICE = Path(__file__).parents[1] / "service"
+MAKERS = {
+    *("invalid", "invalid_header", "uncoverable", "_refused", "_of_plan", "_fault", "Fault", "of"),
+}
+OF_PYDANTIC = {
+    *("extra-forbidden", "greater-than-equal", "less-than-equal", "string-pattern-mismatch"),
+    *("too-short", "too-long", "string-too-short", "string-too-long"),
+}
 
 
 def codes_in(tree: ast.AST) -> Iterator[str]:
@@ -62,3 +72,105 @@ def test_a_refusal_travels_between_processes(refusal: Refusal) -> None:
     assert type(copy) is type(refusal)
     assert str(copy) == str(refusal)
     assert copy.document("id") == refusal.document("id")
+
+
+def faults_in(tree: ast.AST) -> Iterator[tuple[str, set[str] | None]]:
+    """The literal codes of faults, with the names of their values; None where these come by **."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+        if name not in MAKERS:
+            continue
+        for argument in node.args:
+            for each in ast.walk(argument):
+                if isinstance(each, ast.Constant) and each.value in SENTENCES:
+                    named = {keyword.arg for keyword in node.keywords}
+                    yield each.value, None if None in named else {str(each) for each in named}
+
+
+def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
+    """Codes that are chosen before are looked for as texts; pydantic's are not in the code."""
+    sources = [p.read_text() for p in SERVICE.rglob("*.py") if "client" not in p.parts]
+    used = {
+        str(node.value)
+        for source in sources
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Constant)
+    }
+    assert {code for code in SENTENCES if code not in used} == OF_PYDANTIC
+    for source in sources:
+        for code, given in faults_in(ast.parse(source)):
+            fields = {name for _, name, _, _ in Formatter().parse(SENTENCES[code]) if name}
+            optional = {"near", "values", "part", "pointer", "parameter"}
+            assert given is None or "values" in given or fields <= given <= fields | optional, code
+
+
+@pytest.mark.parametrize(
+    ("fault", "document"),
+    [
+        (
+            Fault.of("end", "not-an-index", noun="a city", last=4, came=9),
+            {
+                "detail": "end must be a city, 0 to 4, got 9",
+                "pointer": "/end",
+                "code": "not-an-index",
+                "demand": "must be a city, 0 to 4, got 9",
+                "values": {"noun": "a city", "last": 4, "came": 9},
+            },
+        ),
+        (
+            Fault.of("start", "not-an-id", came="depo", near="depot"),
+            {
+                "detail": 'start must be the id of a stop, got "depo"; did you mean "depot"?',
+                "pointer": "/start",
+                "code": "not-an-id",
+                "demand": 'must be the id of a stop, got "depo"; did you mean "depot"?',
+                "values": {"came": '"depo"', "near": "depot"},
+            },
+        ),
+        (
+            Fault.of("departure", "no-departure"),
+            {
+                "detail": "departure is required where costs change over the day,"
+                " or stops have service",
+                "pointer": "/departure",
+                "code": "no-departure",
+                "demand": "is required where costs change over the day, or stops have service",
+            },
+        ),
+        (
+            Fault("off-road", pointer="/stops/1/location", values={"stop": "'a'", "limit": 250}),
+            {
+                "detail": "stop 'a' must lie within 250 m of a road, and does not",
+                "pointer": "/stops/1/location",
+                "code": "off-road",
+                "values": {"stop": "'a'", "limit": 250},
+            },
+        ),
+        (
+            Fault.of("speed", "not-positive", came=float("nan")),
+            {
+                "detail": "speed must be positive, got nan",
+                "pointer": "/speed",
+                "code": "not-positive",
+                "demand": "must be positive, got nan",
+                "values": {"came": "NaN"},
+            },
+        ),
+    ],
+    ids=lambda each: getattr(each, "code", ""),
+)
+def test_a_fault_says_its_code_and_its_values(fault: Fault, document: dict[str, Any]) -> None:
+    assert fault.document == document
+
+
+def test_the_fault_of_a_refusal_has_its_code_and_values() -> None:
+    [fault] = Refusal("over-limit", name="size", pointer="/size", limit=9, actual=10).errors
+    assert fault.document == {
+        "detail": "size must be at most 9, got 10",
+        "pointer": "/size",
+        "code": "over-limit",
+        "demand": "must be at most 9, got 10",
+        "values": {"limit": 9, "actual": 10, "name": "size"},
+    }

@@ -9,7 +9,7 @@ from starlette.responses import Response
 
 from service.api.responses import problem_response, root_path_of
 from service.errors import Refusal
-from service.errors.shown import shorten
+from service.errors.faults import shorten
 from service.requests.validation import refusal_of
 
 HANDLED = (Refusal, HTTPException, RequestValidationError)

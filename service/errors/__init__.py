@@ -1,4 +1,4 @@
-"""All error codes with their sentences, in one table, and the exceptions of the service."""
+"""All codes of errors and of faults with their sentences, in two tables, and the exceptions."""
 
 from service.errors.exceptions import MOST_FAULTS as MOST_FAULTS
 from service.errors.exceptions import Cancelled as Cancelled

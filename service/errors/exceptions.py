@@ -31,9 +31,8 @@ from collections.abc import Callable, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
-from service.errors.faults import Fault, said
+from service.errors.faults import Fault, quoted, said
 from service.errors.problems import PROBLEMS
-from service.errors.shown import quoted
 
 MOST_FAULTS = 20  # the most that one problem document lists
 _GUIDE = "/guide/errors"  # the page that has a row for each code
@@ -73,8 +72,7 @@ class Refusal(Exception):
         fields = {"limit": limit, "actual": actual, **fields}
         self.detail = said(sentence, fields)
         shown = tuple(errors[:MOST_FAULTS])
-        own = Fault(self.code, pointer=pointer, values=fields, said=self.detail)
-        self.errors = shown if pointer is None else (own,)
+        self.errors = shown if pointer is None else (_own_fault(self.code, pointer, fields),)
         self.limit = limit
         self.actual = actual
         self.headers = dict(headers or {})
@@ -285,6 +283,14 @@ class Expired(LookupError):
 def summary(first: Fault, count: int) -> str:
     """Return the first of `count` faults, and how many more there are, as one sentence."""
     return first.detail + (f" (and {count - 1} more)" if count > 1 else "")
+
+
+def _own_fault(code: str, pointer: str, fields: Mapping[str, object]) -> Fault:
+    """Return the one fault of a refusal, whose sentence is that of the refusal."""
+    part, sentence = pointer[1:], PROBLEMS[code].sentence
+    demand = sentence.removeprefix("{name} ").removeprefix(f"{part} ")
+    named = None if demand == sentence else part
+    return Fault(code, named, pointer, values=fields, said=said(demand, fields))
 
 
 def _without_none(members: Mapping[str, Any]) -> dict[str, Any]:

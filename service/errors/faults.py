@@ -1,4 +1,4 @@
-"""What can be wrong with a part of a request: a code, and the values of its sentence.
+"""The faults of the parts of a request: a code each, and the values of its sentence.
 
 The sentences are in `sentences.toml`. A part is named as the caller wrote it, as stops/3/window.
 """
@@ -11,8 +11,9 @@ from pathlib import Path
 from string import Formatter
 from typing import Any
 
-from service.errors.shown import shorten, show
+from pydantic_core import to_json
 
+_LONGEST_NAME = 100  # characters of a caller's name, where it is quoted
 Value = float | str
 SENTENCES: Mapping[str, str] = tomllib.loads(
     Path(__file__).with_name("sentences.toml").read_text(encoding="utf-8")
@@ -69,7 +70,7 @@ class Fault:
             "parameter": self.parameter,
             "code": self.code,
             "demand": None if self.part is None else self.demand,
-            "values": {k: _plain(v) for k, v in self.values.items() if v is not None} or None,
+            "values": {k: _plain(k, v) for k, v in self.values.items() if v is not None} or None,
         }
         return {name: value for name, value in members.items() if value is not None}
 
@@ -102,10 +103,33 @@ class _Sentence(Formatter):
         return super().format_field(value, format_spec)
 
 
-def _plain(value: Any) -> Value:
-    """Return a value as a number or a string, in which other JSON is described."""
-    if isinstance(value, str):
+def _plain(name: str, value: Any) -> Value:
+    """Return a value as a number or a text: what came in JSON, other texts as they are."""
+    if isinstance(value, str) and name != "came":
         return shorten(value)
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 10**40:
         return value
     return value if isinstance(value, float) and math.isfinite(value) else show(value)
+
+
+def shorten(text: str) -> str:
+    """Return at most 80 characters of what came, to be shown in a sentence."""
+    return text if len(text) <= 80 else f"{text[:79]}…"
+
+
+def show(value: object) -> str:
+    """Return what came as a short text, to be shown in a sentence."""
+    match value:
+        case list():
+            return f"a list of {len(value)}"
+        case dict():
+            return "an object"
+        case int() if abs(value) >= 10**40:
+            return "an integer of more than 40 digits"
+        case _:
+            return shorten(to_json(value, inf_nan_mode="constants").decode())
+
+
+def quoted(name: str) -> str:
+    """Return a caller's name for a stop as it is quoted in a sentence."""
+    return repr(name[:_LONGEST_NAME])

@@ -4,8 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from service.errors.exceptions import Refusal, summary
-from service.errors.faults import Fault
-from service.errors.shown import quoted
+from service.errors.faults import Fault, quoted
 
 _MOST_NAMED = 5  # cities of one kind in one sentence
 _PLURALS = {"city": "cities", "stop": "stops", "place": "places"}

@@ -259,13 +259,13 @@ def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
     """Raise a refusal unless the data have what a measure is of."""
     match measure:
         case "unassigned" if all(visit.prize is None for visit in rules.visits):
-            raise invalid(part, "no-prizes")
+            raise invalid(part, "no-prizes", measure=measure)
         case "overtime" if not any(vehicle.max_overtime for vehicle in rules.vehicles):
-            raise invalid(part, "no-overtime")
+            raise invalid(part, "no-overtime", measure=measure)
         case "lateness" if all(visit.due == inf for visit in rules.visits):
-            raise invalid(part, "no-due")
+            raise invalid(part, "no-due", measure=measure)
         case "load_distance" if not rules.dimensions:
-            raise invalid(part, "no-loads")
+            raise invalid(part, "no-loads", measure=measure)
 
 
 def _check_visit(rules: Rules, visit: Visit, index: int) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
-from service.errors.shown import show
+from service.errors.faults import show
 from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional

@@ -7,7 +7,7 @@ from pydantic import Field
 from pydantic_core import to_json
 
 from service.errors import invalid
-from service.errors.shown import show
+from service.errors.faults import show
 from service.fleet.fleet import LAYERS
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from python_multipart.multipart import parse_options_header
 
 from service.errors import Refusal
-from service.errors.shown import shorten
+from service.errors.faults import shorten
 
 _LONGEST_BOUNDARY = 70  # bytes (RFC 2046)
 _LONGEST_HEADERS = 4096  # bytes of all headers of one part

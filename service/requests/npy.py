@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
-from service.errors.shown import shorten
+from service.errors.faults import shorten
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.requests.validation import too_many_cities
 

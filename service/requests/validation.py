@@ -13,8 +13,7 @@ from pydantic_core import ErrorDetails, from_json
 
 from service.errors import MOST_FAULTS, Fault, Refusal
 from service.errors.exceptions import summary
-from service.errors.faults import SENTENCES
-from service.errors.shown import shorten, show
+from service.errors.faults import SENTENCES, shorten, show
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}

@@ -1,5 +1,8 @@
-"""The table of refusals in `errors.md`, made of `service.errors.problems.PROBLEMS`."""
+"""The tables of refusals and of faults in `errors.md`, made of those of `service.errors`."""
 
+import re
+
+from service.errors.faults import SENTENCES
 from service.errors.problems import PROBLEMS, Problem
 from tests.guide.pages import GUIDE
 
@@ -15,6 +18,15 @@ def codes() -> str:
     ]
     head = ["| status | code | sentence | answered by |", "|---|---|---|---|"]
     return "\n".join([*head, *rows]) + "\n"
+
+
+def faults() -> str:
+    """Return the table of what can be wrong with a field as Markdown, by code."""
+    rows = [
+        f"| `{code}` | {re.sub(r'(?:![a-z])?(?::[^}]*)?}', '}', sentence)} |"
+        for code, sentence in sorted(SENTENCES.items())
+    ]
+    return "\n".join(["| code | sentence |", "|---|---|", *rows]) + "\n"
 
 
 def _anchored(code: str) -> str:

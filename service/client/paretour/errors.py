@@ -25,7 +25,8 @@ class Refused(Exception):
             proxy that is not a problem document has the code `unknown`.
         detail: The error in a sentence.
         request_id: The id of the request in the service's log.
-        errors: The wrong fields, each with its `detail` and a JSON `pointer` or `parameter`.
+        errors: The wrong fields, each with its `detail` and a JSON `pointer` or `parameter`; with
+            the `code` of what is wrong, and by name the `values` of the sentence, if it has any.
         limit: The most that is allowed, if a limit was exceeded.
         actual: The number that was over the limit.
         document: The problem document.
@@ -40,7 +41,7 @@ class Refused(Exception):
         self.code: str = problem.read("code", text)
         self.request_id: str | None = problem.maybe("request_id", text)
         faults = problem.maybe("errors", each(members)) or ()
-        self.errors: tuple[Mapping[str, str], ...] = tuple(fault.document for fault in faults)
+        self.errors: tuple[Mapping[str, Any], ...] = tuple(fault.document for fault in faults)
         self.limit: float | None = problem.maybe("limit", number)
         self.actual: float | None = problem.maybe("actual", number)
 

@@ -1,6 +1,7 @@
 /** Let the service read typed rows of cities, as it reads files, once the typing pauses. */
 
 import { inRows } from "./instance.js";
+import { nameOf } from "../planning/faults.js";
 import { Problem } from "../planning/service.js";
 
 const PAUSE = 250; // ms without a key
@@ -84,7 +85,7 @@ function aboutRow({ message }) {
   const detail = message.replace(/^rows: /, "").replace(/^must say where each stop is.*/s, FOUR).replace(/(?<=must have \d+ )field/, "item");
   const [place, row, column] = /^row (\d+)(?:, column '([1-4])')?/.exec(detail) ?? [];
   if (!place) return refusal(detail);
-  return refusal(detail.replace(place, `coordinates/${row - 1}${column ? `/${column - 1}` : ""}`), row - 1);
+  return refusal(detail.replace(place, nameOf(["coordinates", row - 1, ...(column ? [column - 1] : [])])), row - 1);
 }
 
 function refusal(detail, row = "") {

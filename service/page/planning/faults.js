@@ -8,19 +8,20 @@ const REPLANNED = { tour: "at", done: "at", remove: "removed", add: "replan", po
 for (const member of Object.keys(REPLANNED)) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
+const fieldOf = (member) => FIELD_OF[member] ?? member ?? "request";
 
 /** Shows the faults of a problem at their fields, and all others below the buttons. */
 export function showFaults(problem) {
   clearFaults();
   const faults = faultsOf(problem);
   let first = null;
-  for (const { pointer = "", detail } of faults) {
-    const parts = pointer.split("/").slice(1);
+  for (const fault of faults) {
+    const parts = partsOf(fault.pointer);
     const [member, row, part] = parts;
-    const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
+    const field = FIELD_OF_CODE[problem.code] ?? fieldOf(member);
     const cell = cellOf(parts);
     const said = seen(document.getElementById(`${cell?.closest(".stops")?.id ?? field}-fault`)) ?? document.getElementById("request-fault");
-    said.textContent ||= sentence(cell && member !== "coordinates" ? ofCell(detail, cell) : inWords(detail, field));
+    said.textContent ||= sentence(inWords(fault, parts, member === "coordinates" ? null : cell?.getAttribute("aria-label")));
     if (cell) cell.setAttribute("aria-invalid", "true");
     first ??= cell ?? (member === "cities" ? markText(row) : mark(REPLANNED[member] ?? field, member === "matrices" ? undefined : row, part));
   }
@@ -30,10 +31,10 @@ export function showFaults(problem) {
 /** Requests for plans do not have all fields of the form. */
 const seen = (said) => (said?.closest("[hidden]") ? null : said);
 
-/** If there is only one fault, the problem itself says the most. */
-function faultsOf({ message, errors = [] }) {
-  return errors.length > 1 ? errors : [{ ...errors[0], detail: message }];
-}
+/** A problem without faults is one. */
+const faultsOf = ({ message, errors = [] }) => (errors.length ? errors : [{}]).map((fault) => ({ detail: message, ...fault }));
+
+const partsOf = (pointer = "") => pointer.split("/").slice(1);
 
 export function clearFaults() {
   for (const said of document.querySelectorAll(".fault")) said.textContent = "";
@@ -110,29 +111,43 @@ function cellOf([member, row, part, ...rest]) {
 
 const cellOfPlane = (axis, row, part) => document.querySelector(`#stops .grouped [data-row="${row}"][data-column="${2 * axis + Number(part)}"]`);
 
-/** The sentence of a fault with the cell by name, such as "Window of order-17". */
-function ofCell(detail, cell) {
-  return IN_CELLS.reduce((said, [pattern, instead]) => said.replace(pattern, instead), detail)
-    .replace(/^\w+\/\d+\/\w+(\/\d+)*/, cell.getAttribute("aria-label"))
-    .replace(PATH, itemNamed);
-}
-
-// What the page calls an item of a request, where a sentence of the service says its place, as "stops/3/window/0".
+// What the page calls an item of a request, where the service says its place, as "stops/3/window/0".
 const ITEMS = {
   stops: "stop", coordinates: "stop", vehicles: "vehicle", shipments: "shipment", robots: "robot",
   places: "place", relations: "relation", initial_tours: "tour to begin with", cost_layers: "further cost",
   remove: "a stop to drop", done: "a visited stop", add: "a new stop", tour: "a stop of the tour",
 };
 const UNCOUNTED = ["remove", "done", "add", "tour"]; // named one by one in one field, where their places say nothing
-const PATH = new RegExp(`\\b(${Object.keys(ITEMS).join("|")})/(\\d+)((?:/\\w+)*)`, "g");
 
-/** An item as people name it: by its name on the page, or counted from 1; and the member of it that a sentence is about. */
-function itemNamed(_, list, at, rest) {
-  const members = rest.split("/").filter((part) => part && !/^\d+$/.test(part)).map((part) => part.replaceAll("_", " "));
+/** What people call a part of a request: an item by its name on the page, or counted from 1; a field by its label. */
+export function nameOf([list, at, ...members], field = "") {
+  if (at !== undefined && list === "objectives") return ofObjective(at, members);
+  if (at !== undefined && list === "matrices" && members.length) return costsOf(at, ...members);
+  if (list === "coordinates" && members[0] in COLUMNS) return `${COLUMNS[members[0]]} of stop ${counted(at)}`;
+  if (at !== undefined && list in ITEMS) return itemNamed(list, at, members);
+  const name = withoutPose(list);
+  const label = name === field && document.querySelector(`label[for="${field}"]`)?.textContent;
+  return [label || name, ...(at === undefined ? [] : [at, ...members])].join("/");
+}
+
+/** An item, and the member of it that is meant, as "window of order-17". */
+function itemNamed(list, at, rest) {
+  const members = rest.filter((part) => !/^\d+$/.test(part)).map((part) => withoutPose(part).replaceAll("_", " "));
   const name = document.querySelector(`#${list} [data-row="${at}"][data-column="name"]`)?.value;
   const item = UNCOUNTED.includes(list) ? ITEMS[list] : `${ITEMS[list]} ${name || counted(at)}`;
   return members.length ? `${members.join(" ")} of ${item}` : item;
 }
+
+function ofObjective(axis, [member, at, to]) {
+  const objective = `the ${NTH[axis]} objective`;
+  if (!member || member === "measure") return objective;
+  if (member === "matrix" && at) return costsOf(axis, at, to);
+  if (member === "coordinates" && at) return `the place of stop ${counted(at)} under ${objective}`;
+  if (member === "over_the_day" && to) return `number ${counted(at)} of the rush hours`;
+  return `${member === "speed" ? "the " : ""}${member.replaceAll("_", " ")} of ${objective}`;
+}
+
+const withoutPose = (member = "") => member.replace("_pose", ""); // the page has one field for both
 
 function mark(name, row, part) {
   const of = ["name", "speed"].includes(part) ? part : "source";
@@ -165,55 +180,60 @@ function selectLine(area, row) {
 const NTH = ["first", "second", "third", "fourth"];
 const counted = (index) => Number(index) + 1; // as people count
 
-// Sentences of the service about requests, and those that the page shows instead.
-const SAID = [
-  [/^(start|end) must be a city, 0 to (\d+), got (-?\d+)/, (_, name, last, got) => `${name} must be a stop, 1 to ${counted(last)}, got ${counted(got)}`],
-  [/^(start|end) must be the index of a city, as there are no stops with ids/, (_, name) => `${name} must be the number of a stop, as the stops have no names`],
-  [/^objectives\/1\/measure (\w+) needs/, (_, measure) => `the second objective, ${measure}, needs`],
-  [/\bneeds stops with due\b/, () => "needs stops that are due: write times into their column Due"],
-  [/\bneeds vehicles with max_overtime\b/, () => "needs vehicles that may be late: fill their column Most overtime"],
-  [/^((?:remove|done|tour)\/\d+ .*), got (\d+)$/, (_, said, got) => `${said}, got ${counted(got)}`],
-  [/^remove\/\d+ must be a stop that is not done/, () => "a stop to drop must not be visited yet"],
-  [/^(remove|done|tour)\/\d+ must not be \1\/\d+ again/, (_, list) => `${list}/0 must not be given twice`],
-  [/^departure is required.*/, () => "say when tours leave: travel changes over the day, or visits take time"],
-  [/^clock is required.*/, () => "one objective must be a time: measure it by road, or in straight lines at a speed"],
-  [/^objectives\/([0-3])\/unit must be s\b.*?, got/, (_, axis) => `the ${NTH[axis]} objective must be in s, as tours leave at a time of day; its unit is`],
-  [/^objectives\/[0-3]\/over_the_day\/(\d+)\/[01]/, (_, at) => `number ${counted(at)} of the rush hours`],
-  [/^clock must be the name of an objective.*/, () => "times must be those of one of the objectives"],
-  [/\b(start|end)_pose\b/g, (_, role) => role],
-  [/^end must not be the start.*/, () => "end must not be the start; leave it empty for a tour that returns"],
-  [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or add it on the map"],
-];
+// Sentences of the service that the page says otherwise, by the code of the fault.
+const SAID = {
+  "too-few": (_, parts) => ["coordinates", "stops"].includes(parts.join()) && "There must be a stop: open a file, add one, or add it on the map",
+  "no-departure": () => "say when tours leave: travel changes over the day, or visits take time",
+  "no-time": () => "one objective must be a time: measure it by road, or in straight lines at a speed",
+  "clock-with-costs": () => "times must be those of one of the objectives",
+  "not-in-seconds": ({ came }, [, axis]) => `the ${NTH[axis]} objective must be in s, as tours leave at a time of day; its unit is ${came}`,
+  "other-unit": (values, parts) => values.unit === "s" && parts[0] === "objectives" && SAID["not-in-seconds"](values, parts),
+};
 
-// The same within sentences.
-const WITHIN = [
-  [/\bobjectives\/([0-3])\/from \w+$/, (_, axis) => `the ${NTH[axis]} objective, which is measured between places`],
-  [/needs the name of the objective that is time, in clock/, "needs times: choose below what windows, shifts and service are"],
-  [/must be the id of a type of vehicles/, "must be the name of a vehicle"],
-  [/must be the id of a stop/, "must be the name of a stop"],
-];
+// What the service demands of a part, where the page says it otherwise.
+const DEMANDS = {
+  "not-an-index": ({ last, came }, [member]) => ["start", "end"].includes(member) && `must be a stop, 1 to ${counted(last)}, got ${counted(came)}`,
+  "no-ids": ({ came }, [member]) => ["start", "end"].includes(member) && `must be the number of a stop, as the stops have no names, got ${came}`,
+  "not-an-id": (values) => `must be the name of a stop, got ${cameOf(values)}`,
+  "not-a-vehicle": (values) => `must be the name of a vehicle, got ${cameOf(values)}`,
+  "no-due": () => "needs stops that are due: write times into their column Due",
+  "no-overtime": () => "needs vehicles that may be late: fill their column Most overtime",
+  "end-is-start": () => "must not be the start; leave it empty for a tour that returns",
+  "end-place-is-start": () => "must not be the start; leave it empty for a tour that returns",
+  "no-location": ({ other }) => {
+    const [member, axis] = partsOf(other);
+    return member === "objectives" && `is required by ${nameOf([member, axis])}, which is measured between places`;
+  },
+  untimed: () => "needs times: choose below what windows, shifts and service are",
+  visited: ({ came }) => `must not be visited yet, got ${came}`,
+  "named-twice": ({ came }) => `must not be given twice, got ${came}`,
+};
+const KINDS = { "int-type": "a whole number", "int-parsing": "a whole number", "int-from-float": "a whole number", "float-type": "a number", "list-type": "a list" };
+const COUNTED = ["remove", "done", "tour"]; // lists of stops, which the service counts from 0
 
-// The same of sentences about the cells of tables.
-const IN_CELLS = [
-  ...WITHIN,
-  [/must be a valid (integer|number|array)\b/, (_, type) => `must be ${{ integer: "a whole number", number: "a number", array: "a list" }[type]}`],
-];
-
-/** Replaces names of members in the sentence of a fault by their labels on the page. */
-function inWords(fault, field) {
-  const label = document.querySelector(`label[for="${field}"]`)?.textContent;
-  const detail = [...SAID, ...WITHIN].reduce((said, [pattern, instead]) => said.replace(pattern, instead), fault);
-  return detail
-    .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
-    .replace(/^objectives\/([0-3])\/speed\b/, (_, axis) => `the speed of the ${NTH[axis]} objective`)
-    .replace(/^objectives\/([0-3])\/measure\b/, (_, axis) => `the ${NTH[axis]} objective`)
-    .replace(/\bmatrices\/(\d)\/(\d+)(?:\/(\d+))?/g, (_, axis, from, to) => costsOf(axis, from, to))
-    .replace(/\bobjectives\/([0-3])\/(?:matrix|coordinates)\/(\d+)(?:\/(\d+))?/g, (said, axis, from, to) => (said.includes("matrix") ? costsOf(axis, from, to) : `the place of stop ${counted(from)} under the ${NTH[axis]} objective`))
-    .replace(/\bobjectives\/([0-3])\/([a-z_]+)(?:\/\w+)*/g, (_, axis, member) => `${member.replaceAll("_", " ")} of the ${NTH[axis]} objective`)
-    .replace(/\bobjectives\/([0-3])/g, (_, axis) => `the ${NTH[axis]} objective`)
-    .replace(PATH, itemNamed)
-    .replace(new RegExp(`^${field}\\b`), label ?? field);
+/** The sentence of a fault in the words of the page. */
+function inWords({ code, detail, demand, values = {} }, parts, cell) {
+  const said = SAID[code]?.(values, parts);
+  if (said || !demand || !parts.length) return said || detail;
+  const name = cell ?? nameOf(parts, fieldOf(parts[0]));
+  if (cell && code in KINDS) return `${name} must be ${KINDS[code]}, got ${values.came}`;
+  const { measure, came } = values;
+  if (COUNTED.includes(parts[0]) && parts.length === 2 && Number.isInteger(came)) return `${name} ${ofStops(demand, code, values)}`;
+  const own = DEMANDS[code]?.(values, parts);
+  if (parts[2] !== "measure" || !measure) return `${name} ${own || withNames(demand, values)}`;
+  return `${name}, ${measure}, ${own || demand.slice(measure.length + 1)}`;
 }
+
+/** A demand on a stop by its number, which the page counts from 1. */
+function ofStops(demand, code, { came }) {
+  const number = counted(came);
+  return DEMANDS[code]?.({ came: number }, []) || `${demand.slice(0, -`${came}`.length)}${number}`;
+}
+
+const cameOf = ({ came, near }) => `${came}${near ? `; did you mean ${JSON.stringify(near)}?` : ""}`;
+
+/** A demand with what the page calls the other part of the request in it. */
+const withNames = (demand, { other }) => (other ? demand.replace(other.slice(1), nameOf(partsOf(other))) : demand);
 
 const costsOf = (axis, from, to) =>
   `the costs of the ${NTH[axis]} objective from stop ${counted(from)}${to === undefined ? "" : ` to stop ${counted(to)}`}`;

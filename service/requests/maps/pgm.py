@@ -62,7 +62,7 @@ def _read_plain(raster: bytes, cells: int) -> NDArray[np.int64]:
     numbers = raster.split(None, cells)  # no more of them than needed: each takes 40 bytes
     if len(numbers) != cells:
         came = "more" if len(numbers) > cells else len(numbers)
-        raise invalid("grid", "pgm-numbers", numbers=cells, came=came)
+        raise invalid("grid", "pgm-numbers", numbers=cells, given=came)
     if not all(len(number) <= _MOST_DIGITS and number.isdigit() for number in numbers):
         raise invalid("grid", "pgm-digits", limit=_MOST_DIGITS)
     return np.array([int(number) for number in numbers], np.int64)

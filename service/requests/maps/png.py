@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal, invalid
-from service.errors.shown import shorten
+from service.errors.faults import shorten
 from service.requests.arrays import check_size
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"

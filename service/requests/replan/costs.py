@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
-from service.errors.shown import show
+from service.errors.faults import show
 from service.requests.arrays import costs_array
 from service.requests.replan.fields import CostEntry, NewStop
 from service.requests.stop_fields import find_index

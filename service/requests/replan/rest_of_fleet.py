@@ -10,7 +10,7 @@ import numpy as np
 
 from service.actor_info import ActorInfo
 from service.errors import Refusal, invalid
-from service.errors.shown import show
+from service.errors.faults import show
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
