@@ -89,6 +89,19 @@ def faults_in(tree: ast.AST) -> Iterator[tuple[str, set[str] | None]]:
                     yield each.value, None if None in named else {str(each) for each in named}
 
 
+def unknown_in(tree: ast.AST) -> Iterator[str]:
+    """The texts that are given for the code of a fault, and are none."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(
+                func=ast.Name("invalid" | "uncoverable" | "invalid_header"), args=[_, code]
+            ) if not isinstance(code, ast.Name):
+                texts = [code.body, code.orelse] if isinstance(code, ast.IfExp) else [code]
+                for text in texts:
+                    if not isinstance(text, ast.Constant) or text.value not in SENTENCES:
+                        yield ast.unparse(text)
+
+
 def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
     """Codes that are chosen before are looked for as texts; pydantic's are not in the code."""
     sources = [p.read_text() for p in SERVICE.rglob("*.py") if "client" not in p.parts]
@@ -99,6 +112,7 @@ def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
         if isinstance(node, ast.Constant)
     }
     assert {code for code in SENTENCES if code not in used} == OF_PYDANTIC
+    assert [text for source in sources for text in unknown_in(ast.parse(source))] == []
     for source in sources:
         for code, given in faults_in(ast.parse(source)):
             fields = {name for _, name, _, _ in Formatter().parse(SENTENCES[code]) if name}

@@ -40,7 +40,7 @@ def fault(**members: Any) -> tuple[str, str]:
     with pytest.raises(InvalidCoverage) as refused:
         places(**members)
     [found] = refused.value.faults
-    return found
+    return str(found.part), found.demand
 
 
 def test_a_pose_becomes_a_place_behind_the_others_and_the_start() -> None:

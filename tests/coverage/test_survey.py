@@ -229,9 +229,9 @@ def test_what_cannot_be_covered_is_named(
 ) -> None:
     with pytest.raises(InvalidCoverage) as raised:
         survey(room(**changed), 10, never)
-    assert [part for part, _ in raised.value.faults] == [part for part, _ in faults]
-    for (_, found), (_, sentence) in zip(raised.value.faults, faults, strict=True):
-        assert sentence in found
+    assert [found.part for found in raised.value.faults] == [part for part, _ in faults]
+    for found, (_, sentence) in zip(raised.value.faults, faults, strict=True):
+        assert sentence in found.demand
 
 
 def test_a_survey_that_is_told_to_stop_ends() -> None:
