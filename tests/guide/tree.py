@@ -42,7 +42,7 @@ FOLDERS = {
     "tests/fuzz": "Random and damaged bodies: `python -m tests.fuzz` for many of them.",
     "tests/guide": "Tests of the README and the guide; `python -m tests.guide` writes this tree.",
     "tests/helpers": "Live servers, stand-in actors, a browser and a Redis for the tests.",
-    "tests/page": "Tests of the page, in a real browser.",
+    "tests/page": "Tests of the page, in a real browser and in Node.",
 }
 _SHOWN_AS_ONE = ("service/page/vendor", "service/reference")
 _SUFFIXES = (".py", ".js", ".lua")

@@ -27,10 +27,16 @@ from tests.helpers.required import MAY_BE_MISSING
 WITHOUT_WINDOW, WHOLE = Path("/usr/bin/chromium-headless-shell"), Path("/usr/bin/chromium")
 CHROMIUM = WITHOUT_WINDOW if WITHOUT_WINDOW.exists() else WHOLE
 DESK, PHONE = 1440, 375  # widths of a window in pixels
-DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.3  # of search: as the page asks, and as tests need
+DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.05  # of search: as the page asks, and as tests need
 SECOND = 1000.0  # in milliseconds, playwright's unit
 CLIPBOARD = ["clipboard-read", "clipboard-write"]  # permissions
-NOTHING = "about:blank"  # the address of a window that shows nothing
+NOTHING = "about:blank"  # the address of a new window
+FREE = "/page/icon.svg#free"  # of the site: what a window shows between tests
+# Pages share a process, which keeps their modules compiled: a new one takes half a second.
+ONE_PROCESS = (
+    "--disable-site-isolation-trials",
+    "--disable-features=site-per-process,IsolateOrigins",
+)
 
 SVG = "{http://www.w3.org/2000/svg}"  # before the names of elements
 
@@ -82,6 +88,17 @@ CLIPBOARD_TEXT = f"""async () => {{
   }}
 }}"""
 
+# What a tab keeps of three stops that are not planned, and has the page open them with.
+DRAFT = json.dumps(
+    {
+        "hash": "",
+        "asked": {
+            "request": {"coordinates": [[0, 0, 1, 1], [1, 1, 0, 0], [2, 0, 2, 2]]},
+            "objectives": [{"name": "length 1", "unit": ""}, {"name": "length 2", "unit": ""}],
+        },
+    }
+)
+
 # Have a page keep nothing of what it shows in its window.
 FORGET_DRAFT = "sessionStorage.clear(); Storage.prototype.setItem = () => {}"
 
@@ -100,7 +117,7 @@ def chromium() -> Iterator[Browser]:
     Until then an event loop is under way in this thread, so that `asyncio.run` is refused.
     """
     with sync_playwright() as playwright:
-        yield playwright.chromium.launch(executable_path=CHROMIUM)
+        yield playwright.chromium.launch(executable_path=CHROMIUM, args=ONE_PROCESS)
 
 
 @contextmanager
@@ -112,8 +129,8 @@ def open_page(
 ) -> Iterator[Page]:
     """Open the page in a window that nobody uses, and fail if the console has an error at the end.
 
-    Where the page asks for its default seconds of search, the service is asked for a tenth of them.
-    A window serves one test after another, with its cache, since a new one takes Chromium a second.
+    Where the page asks for its default seconds of search, the service is asked for fewer.
+    A window serves one test after another, with its cache and its process.
     """
     page = _free_window(browser)
     page.set_viewport_size({"width": width, "height": 900})
@@ -132,21 +149,37 @@ def open_page(
     page.goto(address)
     yield page
     if not page.is_closed():
-        page.evaluate(FORGET_DRAFT)
-        page.goto(NOTHING)
         page.unroute_all()
+        page.evaluate(FORGET_DRAFT)
+        if page.url != NOTHING:
+            page.goto(page.evaluate("location.origin") + FREE)
         page.remove_listener("pageerror", note_error)
         page.remove_listener("console", note_line)
     unexpected = [error for error in errors if not any(line in error for line in EXPECTED)]
     assert not unexpected, unexpected
 
 
+@contextmanager
+def open_unplanned(browser: Browser, address: str, width: int = DESK) -> Iterator[Page]:
+    """Open the page with three stops and no plan, which takes half as long as with an example."""
+    with open_page(browser, address + FREE, width) as page:
+        page.evaluate("draft => sessionStorage.setItem('paretour-draft', draft)", DRAFT)
+        page.goto(address)
+        expect(page.locator("#count")).to_have_text("3 stops")
+        yield page
+
+
 def _free_window(browser: Browser) -> Page:
     for context in browser.contexts:
         for page in context.pages:
-            if page.url == NOTHING:
+            if page.url == NOTHING or page.url.endswith(FREE):
                 return page
-    page = browser.new_page(permissions=CLIPBOARD)
+    return new_window(browser)
+
+
+def new_window(browser: Browser, **options: Any) -> Page:
+    """Return a window of its own, with these options of playwright, which searches as shortly."""
+    page = browser.new_page(permissions=CLIPBOARD, **options)
     page.set_default_timeout(120 * SECOND)
     page.add_init_script(SHORTEN_SEARCH)
     return page

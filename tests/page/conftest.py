@@ -10,9 +10,11 @@ from tests.helpers.browsing import (
     chromium,
     copied,
     open_page,
+    open_unplanned,
     plan_city_deliveries,
     wait_until_planned,
 )
+from tests.helpers.node import Node, node_process
 
 
 @pytest.fixture(scope="package")
@@ -20,6 +22,13 @@ def browser() -> Iterator[Browser]:
     """Chromium, which ends with these tests, since others run event loops of their own."""
     with chromium() as browser:
         yield browser
+
+
+@pytest.fixture(scope="package")
+def node() -> Iterator[Node]:
+    """A process of Node for modules of the page that need no document."""
+    with node_process() as node:
+        yield node
 
 
 @pytest.fixture
@@ -56,7 +65,6 @@ def page(width: int, browser: Browser, link: str) -> Iterator[Page]:
 
 @pytest.fixture(scope="module")
 def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A page for all tests of a module, with its first example planned."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    """A page for all tests of a module, each of which opens its own stops."""
+    with open_unplanned(browser, released) as page:
         yield page

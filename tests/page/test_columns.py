@@ -43,7 +43,7 @@ def test_a_table_shows_its_columns_and_becomes_a_fleet_by_choosing(window: Page)
     window.get_by_label("sacks", exact=True).select_option("not used")
     expect(window.locator("#brought")).to_be_hidden()
     assert "demand" not in curl_body(window)["stops"][1]
-    check_on_a_phone(window)
+    check_on_a_phone(window, "#columns")
 
 
 def test_a_table_that_is_not_understood_can_be_explained(window: Page) -> None:

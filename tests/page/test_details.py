@@ -16,7 +16,7 @@ from tests.helpers.browsing import (
     copied,
     needs_chromium,
     open_files,
-    open_page,
+    open_unplanned,
     stops_as_text,
     wait_until_planned,
     wait_until_read,
@@ -37,13 +37,12 @@ PLANES = "x,y,u,v,who\n" + "".join(f"{k},{k % 2},{k % 3},{k},{w}\n" for k, w in 
 
 @pytest.fixture
 def page(browser: Browser, released: str) -> Iterator[Page]:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         yield page
 
 
 def plan(page: Page) -> None:
-    page.get_by_label("Seconds of planning").fill("0.3")
+    page.get_by_label("Seconds of planning").fill("0")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
 

@@ -5,7 +5,14 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    needs_chromium,
+    new_window,
+    open_files,
+    open_page,
+    open_unplanned,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
@@ -41,8 +48,7 @@ def choice(page: Page) -> str:
 @pytest.fixture
 def page(own: str, browser: Browser, released: str) -> Iterator[Page]:
     """The page with those stops planned."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         open_files(page, {"orders.csv": own})
         plan(page)
         yield page
@@ -74,8 +80,7 @@ def test_a_plan_is_there_after_a_reload(page: Page) -> None:
 def test_stops_without_a_plan_are_there_after_the_guide(
     own: str, browser: Browser, released: str
 ) -> None:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         open_files(page, {"orders.csv": own})
         page.get_by_role("link", name="Guide", exact=True).click()
         page.wait_for_url("**/guide/")
@@ -97,8 +102,7 @@ def test_a_tab_left_before_anything_is_shown_opens_an_example(
 def test_leaving_asks_first_where_a_browser_cannot_keep_so_much(
     browser: Browser, released: str
 ) -> None:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         open_files(page, {"orders.csv": TOUR})
         page.evaluate(FILL)
         with page.expect_event("dialog") as asked:
@@ -111,7 +115,7 @@ def test_leaving_asks_first_where_a_browser_cannot_keep_so_much(
 def test_a_browser_that_keeps_nothing_shows_the_page_all_the_same(
     browser: Browser, released: str
 ) -> None:
-    page = browser.new_page()
+    page = new_window(browser)
     page.add_init_script(
         "Object.defineProperty(window, 'sessionStorage', { get() { throw new Error('none'); } })"
     )

@@ -30,7 +30,7 @@ C,60.15,24.92,1,,,van 2
 def planned(page: Page, files: dict[str, str]) -> dict[str, Any]:
     """Open and plan files; return the front."""
     open_files(page, files)
-    page.get_by_label("Seconds of planning").fill("0.3")
+    page.get_by_label("Seconds of planning").fill("0.05")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     front: dict[str, Any] = shown_front(page)

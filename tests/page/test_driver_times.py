@@ -18,6 +18,7 @@ from tests.helpers.browsing import (
     saved,
     wait_until_planned,
 )
+from tests.helpers.node import Node
 from tests.helpers.stored_answers import open_stored_answer
 
 pytestmark = needs_chromium
@@ -260,9 +261,9 @@ def visit(arrives: str, begins: str, opens: str = "", stop: str = "A") -> dict[s
     ],
 )
 def test_a_vehicle_leaves_for_a_stop_that_opens_only_if_it_does_not_wait(
-    stored: Page, visits: list[dict[str, Any]], why: str
+    node: Node, visits: list[dict[str, Any]], why: str
 ) -> None:
     start = {**visit("8:05", "8:05", stop="depot"), "shift": at("7:30"), "released": 0}
-    said = stored.evaluate(NOTE, [start, *visits])
+    said = node.evaluate(NOTE, [start, *visits])
     assert said.startswith(f"Shift from 7:30; leaves at 8:05{why}")
     assert why or said.endswith("8:05.")

@@ -42,7 +42,7 @@ FLEET: dict[str, Any] = {
     ],
     "clock": "time",
     "seed": 7,
-    "time_limit": 0.2,
+    "time_limit": 0.05,
 }
 
 
@@ -104,26 +104,6 @@ def test_cells_are_written_as_people_write_times_and_amounts(fleet: Page) -> Non
     expect(fleet.locator("#brought")).to_have_text("A fleet: 4 vehicles and 4 stops.")
 
 
-def test_hours_are_times_of_day_where_the_clock_is_one(fleet: Page) -> None:
-    fleet.get_by_label("Add a column to the stops").select_option("Due")
-    for name, text, shown in (
-        ("Window of order-17", "8-12", "8:00-12:00"),
-        ("Window of order-17", "8.30-12; 14-16", "8:30-12:00; 14:00-16:00"),
-        ("Window of order-17", "0800-1200", "8:00-12:00"),
-        ("Window of order-17", "8h30-12h", "8:30-12:00"),
-        ("Window of order-17", "8-12 Uhr", "8:00-12:00"),
-        ("Window of order-17", "11 - 1:30 pm", "11:00-13:30"),
-        ("Shift of bike", "8am-1pm", "8:00-13:00"),
-        ("Shift of bike", "28800-43200", "8:00-12:00"),
-        ("Due of order-17", "8", "8:00"),
-        ("Due of order-17", "28800", "8:00"),
-    ):
-        write(fleet, name, text)
-        expect(cell(fleet, name)).to_have_value(shown)
-    write(fleet, "Due of order-17", "8.5")
-    expect(fleet.locator("#stops-fault")).to_contain_text("cannot be “8.5”: write a time, as 10:30")
-
-
 def test_new_names_are_taken_over_wherever_they_are_used(fleet: Page) -> None:
     fleet.get_by_label("Add a column to the stops").select_option("Served by")
     write(fleet, "Served by of order-19", "bike")
@@ -150,18 +130,6 @@ def test_new_names_are_taken_over_wherever_they_are_used(fleet: Page) -> None:
             "tomorrow",
             "Window of order-17 cannot be “tomorrow”: write two times",
         ),
-        (
-            "Demand of order-18",
-            "two",
-            "Demand of order-18 cannot be “two”: write a whole number such as 2",
-        ),
-        ("Capacity of bike", "big", "Capacity of bike cannot be “big”"),
-        (
-            "Window of order-17",
-            "10:00-9:00",
-            "Window of order-17 cannot be “10:00-9:00”: write two times in order",
-        ),
-        ("Count of van", "0", "Count of van cannot be “0”: write a whole number, 1 or more."),
         ("Start of bike", "deopt", "the name of a stop, got “deopt”; did you mean depot?"),
     ],
 )
@@ -253,7 +221,7 @@ def test_stops_and_vehicles_are_added_and_moved(fleet: Page) -> None:
     plan(fleet)
     wait_until_planned(fleet)
     expect(fleet.locator("#fleet")).to_be_visible()
-    check_on_a_phone(fleet)
+    check_on_a_phone(fleet, "#request")
 
 
 def test_a_chosen_stop_is_served_by_another_vehicle_and_planned_again(fleet: Page) -> None:

@@ -106,7 +106,7 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
             len(COLOURS) - len(routes)
         )
         assert {"van 1", f"van {len(routes)}"} <= {text.text for text in drawing.iter(f"{SVG}text")}
-        check_on_a_phone(page)
+        check_on_a_phone(page, "#result")
 
 
 def test_six_vans_look_different_and_no_cell_is_cut_off(browser: Browser, released: str) -> None:

@@ -14,6 +14,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    open_unplanned,
     saved,
     stops_as_text,
     wait_until_planned,
@@ -27,8 +28,7 @@ PLANES = "name,x,y,u,v\ndepot,0,0,5,5\nshop,3,1,9,1\nschool,5,2,2,8\n"
 @pytest.fixture(scope="module")
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page for all of these tests, each of which opens its own stops."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         yield page
 
 

@@ -166,7 +166,7 @@ def test_neither_loads_nor_windows_are_cut_off(shown: Page) -> None:
         shown.set_viewport_size({"width": width, "height": 900})
         wait_for_next_frame(shown)
         assert shown.evaluate(CUT_OFF) == [], width
-    check_on_a_phone(shown)
+    check_on_a_phone(shown, "#fleet")
 
 
 @pytest.mark.parametrize(("minutes", "asked"), [(30, [0.2]), (300, [0, 0.2])])

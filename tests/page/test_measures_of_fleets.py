@@ -306,7 +306,7 @@ def test_axe_finds_nothing_in_the_lanes(late: Page, scheme: Any) -> None:
     select(late, "Home")
     late.locator("#fleet-lanes .visit").nth(2).click()
     width = late.viewport_size
-    check_on_a_phone(late)
+    check_on_a_phone(late, "#fleet")
     late.set_viewport_size(width or {"width": 1440, "height": 900})
     late.emulate_media(color_scheme="light")
 
@@ -332,34 +332,16 @@ def test_vehicles_are_counted(browser: Browser, released: str) -> None:
         assert not re.search(r">[567]\.\d+<", drawing)
 
 
-@pytest.mark.parametrize(
-    ("first", "values", "unit", "said"),
-    [
-        ("m", [1_234_000.0, 800_000.0], "load \N{MULTIPLICATION SIGN} km", ["800", "1,230"]),
-        ("s", [36.0 * HOUR, 9.25 * HOUR], "load \N{MULTIPLICATION SIGN} hours", ["9.25", "36"]),
-        ("eur", [36.0, 9.0], "load \N{MULTIPLICATION SIGN} eur", ["9", "36"]),
-    ],
-)
-def test_what_is_carried_is_said_in_words(
-    browser: Browser, released: str, first: str, values: list[float], unit: str, said: list[str]
-) -> None:
-    front = answer("load_distance", values)
-    front["objectives"][0]["unit"] = first
+def test_what_is_carried_is_said_in_words(browser: Browser, released: str) -> None:
+    front = answer("load_distance", [1_234_000.0, 800_000.0])
     front["objectives"][1]["name"] = "load carried"
     asked = [REQUEST["objectives"][0], {"name": "load carried", "measure": "load_distance"}]
+    name = "Load carried, load \N{MULTIPLICATION SIGN} km"
     with open_page(browser, "about:blank") as page:
         open_answer(page, released, asked, front)
         select(page, "Home")
         page.get_by_role("button", name="Keep to compare").click()
         select(page, "End")
-        assert rows(page)[f"Load carried, {unit}"][:2] == said
-        assert f">Load carried, {unit}<" in saved(page, "SVG").decode()
+        assert rows(page)[name][:2] == ["800", "1,230"]
+        assert f">{name}<" in saved(page, "SVG").decode()
         expect(page.locator("#choice")).to_contain_text("less load carried")
-    also = answer("lateness", [60.0, 0.0])
-    also["objectives"][0]["unit"] = first
-    for plan, carried in zip(also["front"], values, strict=True):
-        plan["measures"] = {**plan["measures"], "load_distance": carried}
-    with open_page(browser, "about:blank") as page:
-        open_answer(page, released, REQUEST["objectives"], also)
-        select(page, "End")
-        assert rows(page)[f"Load carried, {unit}"][0] == said[0]

@@ -17,6 +17,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    open_unplanned,
     stops_as_text,
     wait_until_planned,
     wait_until_read,
@@ -36,8 +37,7 @@ DROP = """files => {
 @pytest.fixture(scope="module")
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page for all of these tests, each of which opens its own files."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         yield page
 
 
@@ -48,7 +48,7 @@ def open_examples(page: Page, *names: str) -> None:
 
 
 def plan(page: Page) -> None:
-    page.get_by_label("Seconds of planning").fill("0.2")
+    page.get_by_label("Seconds of planning").fill("0")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
 

@@ -2,7 +2,14 @@
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import PHONE, needs_chromium, open_files, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    PHONE,
+    needs_chromium,
+    new_window,
+    open_files,
+    open_page,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
@@ -57,7 +64,7 @@ def test_a_stop_is_added_on_the_map_without_scrolling_and_is_seen_in_the_table(
 def test_a_finger_shows_all_stops_again(browser: Browser, released: str) -> None:
     """Fingers zoom maps without buttons, and lose the stops as easily."""
     size = {"width": PHONE, "height": 812}
-    page = browser.new_page(viewport=size, has_touch=True, is_mobile=True)
+    page = new_window(browser, viewport=size, has_touch=True, is_mobile=True)
     page.goto(released)
     wait_until_planned(page)
     button = page.get_by_role("button", name="Show all stops").first

@@ -9,10 +9,10 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.helpers.browsing import (
-    CLIPBOARD,
     Held,
     curl_body,
     needs_chromium,
+    new_window,
     open_files,
     open_page,
     wait_until_planned,
@@ -169,7 +169,7 @@ def test_a_bad_file_at_the_start_leaves_the_first_example(
 
 
 def test_a_fault_of_the_page_itself_is_none_of_the_file(browser: Browser, released: str) -> None:
-    page = browser.new_page(permissions=CLIPBOARD)
+    page = new_window(browser)
     page.goto(released)
     wait_until_planned(page)
     answer: dict[str, Any] = {"kind": "front", "request": None, "notes": [], "name": "a.csv"}

@@ -13,8 +13,9 @@ from tests.helpers.browsing import (
     copied,
     curl_body,
     needs_chromium,
+    new_window,
     open_files,
-    open_page,
+    open_unplanned,
     select_last,
     shown_front,
     wait_until_planned,
@@ -40,8 +41,7 @@ Cell = tuple[int, int]
 @pytest.fixture(scope="module")
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page for all of these tests, each of which opens its own request."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         page.set_viewport_size({"width": 1440, "height": 1200})
         yield page
 
@@ -277,7 +277,7 @@ def test_a_radius_that_is_typed_holds_for_ends_at_once(opened: Page) -> None:
 
 
 def test_a_finger_moves_the_start_that_it_has_chosen(browser: Browser, released: str) -> None:
-    page = browser.new_page(viewport={"width": 1440, "height": 1200}, has_touch=True)
+    page = new_window(browser, viewport={"width": 1440, "height": 1200}, has_touch=True)
     page.goto(released)
     wait_until_planned(page)
     open_office(page)

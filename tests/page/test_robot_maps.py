@@ -16,7 +16,7 @@ from tests.helpers.browsing import (
     Held,
     curl_body,
     needs_chromium,
-    open_page,
+    open_unplanned,
     shown_front,
     wait_until_planned,
     wait_until_read,
@@ -38,8 +38,7 @@ HOW: list[dict[str, Any]] = [
 @pytest.fixture(scope="module")
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page for all of these tests, each of which opens its own map."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         yield page
 
 

@@ -12,6 +12,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    open_unplanned,
     saved,
     select_last,
     wait_until_planned,
@@ -40,8 +41,7 @@ def positions(message: dict[str, Any]) -> list[list[float]]:
 def test_the_selected_paths_are_saved_for_robots(
     kind: dict[str, Any], browser: Browser, released: str
 ) -> None:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         expect(page.get_by_role("button", name="Save the path (CSV)")).to_be_hidden()
         open_files(page, {"office.json": json.dumps({**OFFICE, **kind})})
         page.get_by_role("button", name="Plan", exact=True).click()

@@ -99,7 +99,7 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
         wait_for_next_frame(page)
         [[alone, *_]] = rows_of(page.locator("#fleet-legend"))
         assert set(COLOURS.values()) & set(routes.evaluate(DRAWN)) == {COLOURS[alone]}
-        check_on_a_phone(page)
+        check_on_a_phone(page, "#result")
 
 
 def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, released: str) -> None:

@@ -17,6 +17,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    open_unplanned,
     saved,
     wait_for_next_frame,
     wait_until_planned,
@@ -41,14 +42,13 @@ def request() -> str:
         {"name": "people met", "unit": "people", "matrix": (9 * rng.random((N, N))).tolist()},
         {"name": "climb", "unit": "m", "matrix": (30 * rng.random((N, N))).tolist()},
     ]
-    return json.dumps({"stops": stops, "objectives": objectives, "time_limit": 0.3})
+    return json.dumps({"stops": stops, "objectives": objectives, "time_limit": 0.1})
 
 
 @pytest.fixture(scope="module")
 def planned(browser: Browser, released: str) -> Iterator[Page]:
     """The page with a front of three objectives."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         open_files(page, {"three.json": request()})
         plan(page)
         yield page

@@ -10,10 +10,10 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
-    CLIPBOARD,
     DESK,
     curl_body,
     needs_chromium,
+    new_window,
     open_files,
     wait_until_planned,
 )
@@ -29,7 +29,7 @@ Place = tuple[float, float]  # pixels from the window's upper left
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page on a screen that can be touched, for tests that open stops of their own."""
     window = {"width": DESK, "height": 1400}
-    page = browser.new_page(viewport=window, has_touch=True, permissions=CLIPBOARD)
+    page = new_window(browser, viewport=window, has_touch=True)
     page.goto(released)
     wait_until_planned(page)
     yield page

@@ -92,6 +92,15 @@ def plan(page: Page) -> None:
     page.get_by_role("button", name="Plan", exact=True).click()
 
 
+def planned_choice(page: Page) -> str:
+    """Plan by the network alone, and return the sentence about the selected tour."""
+    page.get_by_label("Seconds of planning").fill("0")
+    plan(page)
+    wait_until_planned(page)
+    expect(page.locator("#choice")).not_to_be_empty()
+    return page.locator("#choice").inner_text()
+
+
 def write(page: Page, label: str, text: str) -> None:
     """Write a text into a field by its label, and leave it."""
     field = page.get_by_label(label, exact=True)
@@ -123,10 +132,8 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
     window: Page, content: str, label: str, fault: str, said: str
 ) -> None:
     open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
-    window.get_by_label("Seconds of planning").fill("0.3")
-    plan(window)
-    wait_until_planned(window)
-    front, chosen = shown_front(window), window.locator("#choice").inner_text()
+    chosen = planned_choice(window)
+    front = shown_front(window)
     field = window.get_by_label(label, exact=True).locator("visible=true")
     before = field.input_value()
     field.fill("6o.18")
@@ -148,17 +155,7 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
     ("content", "label", "typed", "fault", "said"),
     [
         (FLEET, "Count of van", "0", "vehicles", "Count of van cannot be “0”: write a whole"),
-        (FLEET, "Capacity of van", "-8", "vehicles", "Capacity of van cannot be “-8”"),
-        (FLEET, "Demand of shop", "2.5", "stops", "Demand of shop cannot be “2.5”"),
-        (
-            FLEET,
-            "Latitude of shop",
-            "95",
-            "stops",
-            "Latitude of shop cannot be “95”: write a number",
-        ),
         (FLEET, "Window of school", "12:00-8:00", "stops", "cannot be “12:00-8:00”: write two"),
-        (FLEET, "Service of school", "-5", "stops", "Service of school cannot be “-5”"),
         (FLEET, "Name of stop 2", "school", "stops", "Each stop needs a name of its own"),
         (FLEET, "Name of vehicle 1", "", "vehicles", "Each vehicle needs a name of its own"),
         (FLEET, "Second objective", "distance", "objectives", "Each objective needs a name"),
@@ -174,13 +171,6 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
             "Start of van must be the name of a stop, got “yard”",
         ),
         (
-            FLEET,
-            "End of van",
-            "yard",
-            "vehicles",
-            "End of van must be the name of a stop, got “yard”",
-        ),
-        (
             SERVED,
             "Served by of shop",
             "bike",
@@ -188,11 +178,8 @@ def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
             "Served by of shop must be the name of a vehicle, got “bike”",
         ),
         (SERVED, "Served by of shop", "van 2", "stops", "“van 2”: give that vehicle a row of its"),
-        (FLEET, "Window of school", "8:00-10:00; 9:00-12:00", "stops", "neither overlap nor touch"),
-        (FLEET, "Shift of van", "8:00-12:00; 12:00-16:00", "vehicles", "neither overlap nor touch"),
         (NAMED, "Seconds of planning", "100000", "time_limit", "must be at most 60"),
         (DAY, "Start", "order-8", "start", "Start must be the name of a stop"),
-        (DAY, "End elsewhere", "order-8", "end", "must be the name of a stop"),
         (LAYERED, "Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
         (
             LAYERED,
@@ -207,10 +194,7 @@ def test_a_value_that_is_refused_keeps_the_last_plan(
     window: Page, content: str, label: str, typed: str, fault: str, said: str
 ) -> None:
     open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
-    window.get_by_label("Seconds of planning").fill("0.3")
-    plan(window)
-    wait_until_planned(window)
-    chosen = window.locator("#choice").inner_text()
+    chosen = planned_choice(window)
     field = window.get_by_label(label, exact=True).locator("visible=true")
     before = field.input_value()
     field.fill(typed)
@@ -262,18 +246,15 @@ def test_a_layer_is_named_as_another_was_once_that_name_is_free(window: Page) ->
     expect(window.get_by_label("Name of cost layer 2")).to_have_value("dust")
 
 
-@pytest.mark.parametrize("name", ["curl", "Python"])
 @pytest.mark.parametrize(
-    ("content", "label", "typed", "said"),
+    ("content", "label", "typed", "said", "name"),
     [
-        (PLANES, "x₂ of 2", "6o", "X₂ of stop 2 must be a number."),
-        (ON_EARTH, "Latitude of shop", "95", "Latitude of shop must be a number."),
-        (FLEET, "Name of stop 2", "school", "Each stop needs a name of its own, got “school”."),
-        (FLEET, "Count of van", "two", "Count of van cannot be “two”: write a whole number"),
-        (DAY, "Leaves at, or from", "7.3o", "Leaves at must be a time, as 7:30."),
-        (DAY, "Start", "order-8", "Start must be the name of a stop."),
-        (PLANES, "End elsewhere", "shop", "End elsewhere must be the number of a stop."),
-        (MAP, RADIUS, "0,1o", f"{RADIUS} must be a number."),
+        (PLANES, "x₂ of 2", "6o", "X₂ of stop 2 must be a number.", "curl"),
+        (ON_EARTH, "Latitude of shop", "95", "Latitude of shop must be a number.", "Python"),
+        (FLEET, "Count of van", "two", "Count of van cannot be “two”: write a whole", "Python"),
+        (DAY, "Leaves at, or from", "7.3o", "Leaves at must be a time, as 7:30.", "curl"),
+        (PLANES, "End elsewhere", "shop", "End elsewhere must be the number of a stop.", "curl"),
+        (MAP, RADIUS, "0,1o", f"{RADIUS} must be a number.", "Python"),
     ],
 )
 def test_no_request_is_copied_before_what_was_typed_is_mended(

@@ -5,7 +5,12 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_files,
+    open_unplanned,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
@@ -17,8 +22,7 @@ FLEET = "id,lat,lon,demand\ndepot,60.1,24.9,0\n" + "".join(
 @pytest.fixture
 def page(browser: Browser, released: str) -> Iterator[Page]:
     """The page with a depot and five orders."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
+    with open_unplanned(browser, released) as page:
         open_files(page, {"orders.csv": FLEET})
         yield page
 
