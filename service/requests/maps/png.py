@@ -49,7 +49,8 @@ def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8] | NDArray[np.
         raise
     # The decoder is not ours, and raises a dozen kinds of exceptions over broken files.
     except Exception as error:
-        reason = shorten(str(error) or type(error).__name__)
+        said, *_ = str(error).partition(" <")  # some name our stream, with its address
+        reason = shorten(said or type(error).__name__)
         raise invalid("grid", "png-unreadable", given=reason) from None
 
 

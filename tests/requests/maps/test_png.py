@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from service.errors import Refusal
-from service.requests.maps.png import read_png
+from service.requests.maps.png import SIGNATURE, read_png
 from tests.helpers.serving import LIMITS
 
 GRID = [[0, 0, 0], [1, 1, 0], [0, 0, 0], [0, 1, 0]]
@@ -32,7 +32,7 @@ def chunk(kind: bytes, content: bytes) -> bytes:
 def bomb(width: int, height: int, content: bytes) -> bytes:
     """A small file that declares a size, and unpacks to something else."""
     header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + content + chunk(b"IEND", b"")
+    return SIGNATURE + chunk(b"IHDR", header) + content + chunk(b"IEND", b"")
 
 
 ZEROS = zlib.compress(bytes(50_000_000), 1)
@@ -43,6 +43,13 @@ def test_a_map_is_read_in_every_mode(mode: str) -> None:
     channels = read_png(png(GRID, mode), 12)
     assert channels.shape[2] == {"LA": 2, "P": 3, "RGB": 3, "RGBA": 4}.get(mode, 1)
     np.testing.assert_array_equal(channels[:, :, 0], 255 * (1 - np.array(GRID)))
+
+
+def test_a_png_of_an_unknown_depth_is_refused_without_an_address() -> None:
+    header = struct.pack(">IIBBBBB", 2, 2, 3, 0, 0, 0, 0)
+    picture = SIGNATURE + chunk(b"IHDR", header) + chunk(b"IEND", b"")
+    with pytest.raises(Refusal, match=r"can be read: cannot identify image file$"):
+        read_png(picture, 12)
 
 
 def test_a_png_that_declares_too_many_cells_is_refused_by_its_header() -> None:
