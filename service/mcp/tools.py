@@ -27,6 +27,7 @@ from service.mcp.arguments import (
 from service.mcp.summaries import explanation, front_text, tour_text, unreadable_text
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
+from service.requests.null_members import without_null_members
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.validation import refusal_of
@@ -97,7 +98,9 @@ class Tool:
             ValueError: The front has no tour for this choice, or the choice is not valid.
         """
         try:
-            parsed = self.arguments.model_validate(arguments)
+            parsed = self.arguments.model_validate(
+                without_null_members(self.arguments, dict(arguments))
+            )
         except ValidationError as error:
             schema = self.arguments.model_json_schema()
             raise refusal_of(error.errors(include_url=False), schema=schema) from None

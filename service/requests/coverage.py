@@ -253,7 +253,7 @@ def _check_poses(request: CoverageRequest) -> None:
 def _check_ends(item: CoverageRequest | RobotItem, part: str = "") -> None:
     """Raise a refusal where a start or an end is given as a place and as a pose."""
     for place, pose in ENDS:
-        if {place, pose} <= item.model_fields_set:
+        if getattr(item, place) is not None and {place, pose} <= item.model_fields_set:
             raise invalid(f"{part}{pose}", "or-left-out", member=place)
 
 
@@ -261,7 +261,7 @@ def _check_robots(request: CoverageRequest) -> None:
     """Raise a refusal where the robots of a request contradict its other fields, or each other."""
     given = request.model_fields_set
     for name in OF_ONE_ROBOT:
-        if name in given:
+        if name in given and getattr(request, name) is not None:
             raise invalid(name, "with-robots")
     if request.over == ["max", "max"]:
         raise invalid("over/1", "two-max")

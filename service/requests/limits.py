@@ -152,8 +152,6 @@ def _check_ends(request: PlanRequest, n: int) -> None:
             raise invalid(name, "not-an-index", noun="a city", last=n - 1, came=city)
     if request.closed and request.end is not None:
         raise invalid("end", "end-of-closed", came=request.end)
-    if request.closed and request.start is None:
-        raise invalid("start", "no-start")
     if not request.closed and n > 1 and request.ends.start == request.end is not None:
         raise invalid("end", "end-is-start", came=request.end)
 

@@ -14,6 +14,7 @@ from pydantic_core import ErrorDetails, from_json
 from service.errors import MOST_FAULTS, Fault, Refusal
 from service.errors.exceptions import summary
 from service.errors.faults import SENTENCES, shorten, show
+from service.requests.null_members import drop_null_members
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}
@@ -25,7 +26,7 @@ _NO_BRACKETS = bytes(set(range(256)).difference(b"[]{}"))
 
 
 def parse_json(model: type[Model], body: bytes) -> Model:
-    """Return a JSON body as a model.
+    """Return a JSON body as a model; members that are null where null means nothing are absent.
 
     Raises:
         Refusal: The body is not JSON, or does not fit the model.
@@ -33,7 +34,7 @@ def parse_json(model: type[Model], body: bytes) -> Model:
     with _building:
         model.model_rebuild()  # unless it was built before
     try:
-        return model.model_validate_json(body)
+        return model.model_validate_json(drop_null_members(model, body))
     except ValidationError as error:
         errors = error.errors(include_url=False)
         if errors[0]["type"] == "json_invalid":

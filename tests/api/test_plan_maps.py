@@ -208,7 +208,7 @@ def test_a_stored_tour_has_its_points(client: httpx.Client) -> None:
             "end_pose or end must be left out",
         ),
         ({"closed": False, "end_pose": [0, 0]}, "/end_pose", "end_pose must be a cell of the grid"),
-        ({"origin": None}, "/origin", "origin must be a valid array, got null"),
+        ({"origin": 1}, "/origin", "origin must be a valid array, got 1"),
         (
             {"initial_tours": [[0, 1]], "places": [[1, 1], [1, 2]]},
             "/initial_tours",

@@ -27,7 +27,7 @@ from service.requests.validation import parse_json
         ('"start": -1', "/start", "start must be at least 0, got -1"),
         ('"reference_point": [1]', "/reference_point", "must have 2 items or more, got 1"),
         ('"reference_point": [0, 1]', "/reference_point/0", "must be at least 1e-150, got 0"),
-        ('"reference_point": null', "/reference_point", "must be a valid array, got null"),
+        ('"reference_point": 1', "/reference_point", "must be a valid array, got 1"),
         ('"actor": 1', "/actor", "actor must be a valid string, got 1"),
         ('"seed": -1', "/seed", "seed must be at least 0, got -1"),
         ('"cities": 1', "/cities", "cities is not a field that this request has"),

@@ -92,9 +92,9 @@ GRID = {"grid": [[0, 0]], "cell_size": 1}
         ({"cell_size": 1, "mode": "binary"}, PGM, "mode must be 'trinary', 'scale' or 'raw'"),
         ({"cell_size": 1, "occupied_thresh": 2}, PGM, "occupied_thresh must be at most 1, got 2"),
         ({"cell_size": 1, "obstacle_from": 0}, PGM, "obstacle_from must be at least 1, got 0"),
-        ({"cell_size": 1, "unknown": None}, PGM, "unknown must be 'blocked' or 'free', got null"),
+        ({"cell_size": 1, "unknown": 1}, PGM, "unknown must be 'blocked' or 'free', got 1"),
         ({**GRID, "origin": [0, 0]}, None, "origin must have 3 items, got 2"),
-        ({"occupancy_grid": None}, None, "occupancy_grid must be"),
+        ({"occupancy_grid": 1}, None, "occupancy_grid must be"),
         ({"occupancy_grid": {"data": [0]}}, None, "occupancy_grid/info is required"),
     ],
 )
