@@ -233,7 +233,7 @@ def test_all_wrong_cells_are_told_at_once_and_those_that_are_not_listed_are_coun
     assert {"latitude", "ignored"} <= {*told["choices"]["orders.csv"]}
     alone = sent(address, ("vans.csv", vans), ("orders.csv", b"id,lat,lon,qty\na,1,2,3\nb,1,2,4\n"))
     told = alone.json()
-    assert told["errors"] == [{"detail": told["detail"]}]
+    assert told["errors"] == [{"detail": told["detail"], "code": "wrong-cell"}]
     assert "errors" not in sent(address, ("a.csv", b"")).json()
 
 

@@ -95,7 +95,8 @@ def test_what_is_plainly_impossible_is_refused_at_once_and_named(client: httpx.C
     refused = problem(client.post("/front", json=request, headers=headers), 422, "no-plan")
     sentence = "a way must lead from stop 'order-3' to another stop, and none does"
     assert refused["detail"] == sentence
-    assert refused["errors"] == [{"detail": sentence, "pointer": "/stops/3"}]
+    fault = {"detail": sentence, "pointer": "/stops/3", "code": "no-plan"}
+    assert refused["errors"] == [fault]
 
 
 def test_a_job_that_finds_no_tour_fails_with_the_reason(client: httpx.Client) -> None:

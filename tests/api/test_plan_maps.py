@@ -177,6 +177,9 @@ def test_unknown_cells_are_free_where_that_is_asked_for(client: httpx.Client) ->
     assert document["errors"][0] == {
         "detail": "start_pose must be a free cell, and [0, 0] is an obstacle",
         "pointer": "/start_pose",
+        "code": "obstacle",
+        "demand": "must be a free cell, and [0, 0] is an obstacle",
+        "values": {"given": "[0, 0]"},
     }
 
 

@@ -143,7 +143,8 @@ def test_every_city_without_a_way_is_named() -> None:
     )
     assert len(refused.value.errors) == 20
     assert refused.value.document("1")["errors"][1] == {
-        "detail": "a way must lead from city 11 to another city, and none does"
+        "detail": "a way must lead from city 11 to another city, and none does",
+        "code": "no-plan",
     }
 
 

@@ -2,6 +2,7 @@
 
 import { poseIn } from "./map_ends.js";
 import { nameOf, stopNamed } from "./places.js";
+import { nameOf as labelled } from "../planning/faults.js";
 
 const ENDS = ["start", "end"];
 
@@ -54,7 +55,7 @@ export class Fields {
     const found = Object.entries(this.members).find(([, value]) => typeof value === "string" && !this.#ids?.includes(value));
     if (!found) return undefined;
     const [name] = found;
-    return { pointer: `/${name}`, detail: `${name} must be ${ENDS.includes(name) ? `the ${this.#ids ? "name" : "number"} of a stop` : "a number"}` };
+    return { pointer: `/${name}`, detail: `${labelled([name], name)} must be ${ENDS.includes(name) ? `the ${this.#ids ? "name" : "number"} of a stop` : "a number"}` };
   }
 
   /** Takes the names of stops, and offers them in the fields. */
