@@ -45,9 +45,7 @@ _LEAST_SCALE = 1e-290  # least scale relative to the other's: its weight must be
 _ROUNDING = 1e-9  # relative, for a gain
 
 
-def network_sequences(
-    fleet: Fleet, constructor: Constructor, within: float | None = None
-) -> list[Indices]:
+def network_sequences(fleet: Fleet, constructor: Constructor) -> list[Indices]:
     """Return the different tours of a network through all stops to visit, shape (c,) each.
 
     They begin after the depot of the first type of vehicles, if it has one.
@@ -55,8 +53,6 @@ def network_sequences(
     Args:
         fleet: The fleet.
         constructor: The network, which must read matrices.
-        within: The seconds that it may take; there may be fewer tours then, or none. With None the
-            network builds all of them.
 
     Raises:
         Cancelled: The network was told to stop.
@@ -72,7 +68,7 @@ def network_sequences(
     if depot is not None and np.array_equal(costs[0], costs[1]):
         # If both costs are equal, every preference leads to the same tour.
         costs = np.stack((costs[0], _angular_costs(costs[0])))
-    tours = construct(constructor, Instance(matrices=costs), spread(_TOURS), within=within)
+    tours = construct(constructor, Instance(matrices=costs), spread(_TOURS))
     begun = [np.roll(tour, -int(tour.argmin())) for tour in tours]
     different = np.unique(np.array(begun, np.int64).reshape(-1, len(places)), axis=0)
     return [places[tour] for tour in (different if depot is None else different[:, 1:])]

@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 import pyvrp
 
-from service.construction.first_tours import SHARE, Constructor
+from service.construction.first_tours import Constructor
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import KeptPlans, SolutionArchive
 from service.fleet.conflicts import no_plan
@@ -62,8 +62,8 @@ def plan_fleet(
     Args:
         fleet: The fleet.
         options: The options of the front and the search.
-        constructor: The network whose tours are cut into the first plans; it must read matrices.
-            Without a network, the search constructs its first plans itself.
+        constructor: The network whose tours are cut into plans where the time limit is 0; it must
+            read matrices. A search does not ask it: its fronts are as good without.
         watch: Asked after each iteration of PyVRP, that is every few milliseconds, whether to
             stop; planning then ends with the best front so far. It also says when to report. The
             time limit is that of the options.
@@ -73,7 +73,7 @@ def plan_fleet(
         Refusal: `no-plan`: no plan keeps every rule, or none was found in time. If no rule can be
             broken, a plan is always found. `no-actor`: the time limit is 0 and there is no network.
             `invalid-instance`: costs, prizes and times are too far apart for whole numbers.
-        InvalidInstance: Costs are too far apart, or too large, for the network.
+        InvalidInstance: The time limit is 0, and costs are too far apart for the network.
         Cancelled: The watch said to stop before a plan was found.
         ValueError: A component of the reference point is not positive, or the size is below 1.
     """
@@ -88,7 +88,7 @@ def plan_fleet(
             return front_of(fleet, options, all_plans, "converged", watch)
     if options.time_limit == 0:
         return _without_search(fleet, options, constructor, watch)
-    return _searched(fleet, options, constructor, watch)
+    return _searched(fleet, options, watch)
 
 
 def _without_search(
@@ -117,18 +117,11 @@ def _completed(fleet: Fleet, plan: Plan) -> Plan | None:
     return None if violations(fleet, whole) else whole
 
 
-def _searched(
-    fleet: Fleet,
-    options: FleetOptions,
-    constructor: Constructor | None,
-    watch: Watch[FleetFront],
-) -> FleetFront:
+def _searched(fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> FleetFront:
     """Return the front that a search finds; if it found none, a front of one plain plan."""
     search = _Search(fleet, options, watch)
     if options.driven is not None:
         search.begin_with(options.driven)
-    elif constructor is not None and not fleet.rules.shipments:
-        search.begin_at(constructor)
     search.begin_plainly()
     terminated = search.run()
     plans: Iterable[Plan] = ()
@@ -195,32 +188,12 @@ class _Search:
         self.archive = SolutionArchive(self._translation)
         driven = options.driven
         self._kept = None if driven is None else KeptPlans(self._translation, driven)
-        self._constructed = 0
         self._iterations = 0
         self._checked = 0.0
         self._worked = 0  # stops looked at
         self._pause = 0.0  # the longest recent seconds between two checks of the time
         self._cancelled = False
         self._optional = any(visit.prize is not None for visit in fleet.rules.visits)
-
-    def begin_at(self, constructor: Constructor) -> None:
-        """Put plans into the archive that are cut from the tours of a network.
-
-        The network gets its share of the time limit, and cutting gets the same.
-        """
-        share = SHARE * self._options.time_limit
-        within = None if share == inf else share
-        sequences = network_sequences(self._fleet, constructor, within)
-        cutting = self._watch.lasting(share)
-        if not sequences:
-            return
-        try:
-            cutter = Cutter(self._fleet, sequences, cutting.ended)
-        except Refusal:  # too large to be cut: the search constructs its first plans itself
-            return
-        for plan in cutter.plans():
-            self._constructed += 1
-            self.archive.offer(self._translation.solution(plan), FREE)
 
     @property
     def _is_short(self) -> bool:
@@ -288,9 +261,7 @@ class _Search:
         if not plans:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
             raise no_plan(self._fleet, sentence, self._watch.lasting(_BRIEF).ended)
-        front = front_of(
-            self._fleet, self._options, plans, terminated, self._watch, self._constructed
-        )
+        front = front_of(self._fleet, self._options, plans, terminated, self._watch)
         return self._with_kept(replace(front, found=max(front.found, len(archive))))
 
     def _with_kept(self, front: FleetFront) -> FleetFront:

@@ -115,7 +115,7 @@ def document_of_plans(
     Args:
         front: The front.
         encode: Returns a plan as JSON, which begins with the members that it is given.
-        actor: The network whose tours were cut into the first plans, if there were any.
+        actor: The network; it is named where its tours were cut into plans.
         members: Other members of the document.
     """
     network = actor.info.identity if actor is not None and front.constructed else None

@@ -144,7 +144,7 @@ def test_a_file_beside_a_fleet_is_refused(client: httpx.Client) -> None:
     problem(refused, 415, "not-json")
 
 
-def test_without_time_the_tours_of_the_network_are_cut(client: httpx.Client) -> None:
+def test_the_network_plans_fleets_only_without_time(client: httpx.Client) -> None:
     request = fleet_request()
     request["time_limit"] = 0
     assert "shipments" in problem(client.post("/fleet", json=request), 422, "no-plan")["detail"]
@@ -153,6 +153,9 @@ def test_without_time_the_tours_of_the_network_are_cut(client: httpx.Client) -> 
     assert front["terminated"] == "converged"
     assert front["actor"]["name"] == "pa-one-matrix"
     assert front["front"]
+    searched = client.post("/fleet", json={**request, "time_limit": 0.1}).json()
+    assert searched["front"]
+    assert searched["actor"] is None
 
 
 HOUR, SPEED = 3600, 36

@@ -14,7 +14,6 @@ import httpx
 import numpy as np
 import pytest
 
-from service.construction.call_estimate import CallEstimate
 from service.coverage.survey import survey
 from service.fleet.fronts import FleetOptions
 from service.fleet.planner import plan_fleet
@@ -33,7 +32,7 @@ from tests.examples.deliveries import BLACK_SPOTS
 from tests.examples.helsinki import CROWDS, metres_beside, people_along
 from tests.examples.streets import KINDS
 from tests.examples.warehouse import DOCKS
-from tests.helpers.actors import Shuffler, info_of
+from tests.helpers.actors import Shuffler
 from tests.helpers.helsinki import Array
 from tests.helpers.serving import app_of, serving
 from tests.helpers.valhalla import RunningValhalla
@@ -75,9 +74,7 @@ def test_an_example_is_answered_with_a_choice_of_tours(url: str, example: dict[s
 
 def test_the_vans_keep_every_window_and_there_is_a_choice() -> None:
     fleet = parse_fleet_request((EXAMPLES / FLEET).read_bytes(), Settings().limits)
-    front = plan_fleet(
-        fleet.subject().fleet(), FleetOptions(time_limit=inf, iterations=400), matrix_actor()
-    )
+    front = plan_fleet(fleet.subject().fleet(), FleetOptions(time_limit=inf, iterations=400))
     # Six vans at most, each within its shift, and every order in its hour: all plans are checked.
     assert len(front.plans) > 1
     assert all(5 <= len(plan.routes) <= 6 for plan in front.plans)
@@ -88,15 +85,11 @@ def test_three_robots_share_the_warehouse_in_several_ways() -> None:
     task = parse_coverage_request((EXAMPLES / ROBOTS).read_bytes(), limits).shared()
     surveyed = survey(task.coverage, limits.most_places(shared=True), lambda: False)
     fleet = robot_fleet(surveyed, task.over)
-    front = plan_fleet(fleet.fleet, FleetOptions(time_limit=inf, iterations=400), matrix_actor())
+    front = plan_fleet(fleet.fleet, FleetOptions(time_limit=inf, iterations=400))
     robots = [{robot for robot, _ in fleet.routes(plan)} for plan in front.plans]
     assert len(robots) > 1
     assert robots[-1] == set(range(len(DOCKS)))
     assert front.points[-1, 1] < front.points[0, 1] / 1.5
-
-
-def matrix_actor() -> Shuffler:
-    return Shuffler(info=info_of("shuffler", "matrices"), estimate=CallEstimate("matrices"))
 
 
 def test_the_script_makes_the_examples(tmp_path: Path, valhalla: RunningValhalla) -> None:

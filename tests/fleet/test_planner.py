@@ -332,25 +332,12 @@ def test_without_time_the_tours_of_the_network_are_cut() -> None:
     assert [violations(fleet, plan) for plan in front.plans] == [[]] * 4
 
 
-def test_with_time_the_search_begins_at_the_cuts() -> None:
-    fleet = plain_deliveries(20)
-    cut = plan_fleet(fleet, FleetOptions(time_limit=0), shuffler())
-    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=60), shuffler())
-    assert front.constructed == cut.constructed
-    slack = 1 + 1e-6  # PyVRP's lengths are rounded
-    better = (front.points[:, np.newaxis] <= slack * cut.points).all(axis=2)
-    assert better.any(axis=0).all()
-
-
-def test_what_is_too_large_to_be_cut_is_searched_all_the_same() -> None:
+def test_what_is_too_large_to_be_cut_is_refused_without_time() -> None:
     fleet = plain_deliveries(12)
     types = tuple(replace(fleet.rules.vehicles[0], count=9) for _ in range(100))
     fleet = Fleet(rules=replace(fleet.rules, vehicles=types), costs=fleet.costs)
     with pytest.raises(Refusal, match="this many stops, types"):
         plan_fleet(fleet, FleetOptions(time_limit=0), shuffler())
-    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=60), shuffler())
-    assert front.plans
-    assert front.constructed == 0
 
 
 def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
