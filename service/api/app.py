@@ -26,6 +26,7 @@ from service.api.middleware import (
 )
 from service.api.openapi import complete
 from service.api.plan import PlanRoutes
+from service.api.questions import QuestionRoutes
 from service.api.request_bodies import request_schemas
 from service.api.request_headers import ALLOWED
 from service.api.response_headers import EXPOSED
@@ -147,6 +148,7 @@ def create_app(
         PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers, targets).router(),
         file_router(parser, budget, most_bytes, answers_budget),
         StoredFrontRoutes(store, engine, answers).router(),
+        QuestionRoutes(store, engine).router(),
         _actor_router(actors),
         edge.metrics.router(),
         *([] if agents is None else [agents.router()]),

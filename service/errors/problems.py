@@ -16,6 +16,7 @@ _PLANS = (*_PLANNED, *_FLEET)
 _FILES = ("POST /files",)
 _BODIES = (*_PLANS, *_FILES)
 _TOUR = ("GET /tour",)
+_QUESTIONS = "GET /front/{id}/questions"
 _LIST = "GET /front"
 _STORED = "GET /front/{id}"
 _ROADS = ("POST /front", *_FLEET, *_REPLAN, _STORED, *_TOUR)
@@ -47,7 +48,9 @@ PROBLEMS: Mapping[str, Problem] = {
         "no tour has a {which} length of at most {limit:.16g}: the least is {actual:.16g}",
         _TOUR,
     ),
-    "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
+    "no-tour": Problem(
+        404, "front {front} must have a tour, and has none yet", (*_TOUR, _QUESTIONS)
+    ),
     "no-tours": Problem(
         404, "front {front} has plans of a fleet, not tours: read the whole front", _TOUR
     ),
@@ -64,6 +67,12 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "not-replannable": Problem(
         409, "front {front} must be one that can be replanned, and is not: {reason}", _REPLAN
+    ),
+    "front-unfinished": Problem(
+        409,
+        "front {front} must be finished, as questions are about a front that stays as it is, and"
+        " is {status}",
+        (_QUESTIONS,),
     ),
     "front-expired": Problem(410, "front {front} is no longer kept: plan it again"),
     "body-too-long": Problem(413, "the body must have at most {limit} bytes, got {came}"),
@@ -88,7 +97,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "idempotency-mismatch": Problem(422, "this Idempotency-Key was used with another body", _PLANS),
     "invalid-instance": Problem(422, "{reason}", _PLANS),
     "invalid-parts": Problem(422, "{reason}", _BODIES),
-    "invalid-request": Problem(422, "{detail}", (*_PLANS, _LIST, _STORED, *_TOUR)),
+    "invalid-request": Problem(422, "{detail}", (*_PLANS, _LIST, _STORED, _QUESTIONS, *_TOUR)),
     "no-plan": Problem(422, "{reason}", _PLANS),
     "no-actor": Problem(
         422,

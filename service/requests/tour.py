@@ -82,7 +82,7 @@ class TourQuery(BaseModel):
         try:
             choice.the_way(self._given)
         except WrongChoice as error:
-            raise _refusal(error) from None
+            raise refusal_of(error) from None
 
     def choose(self, points: Array, angles: Array, names: Sequence[str] = ()) -> int:
         """Return the index of the tour chosen; of equally good ones the first.
@@ -109,7 +109,7 @@ class TourQuery(BaseModel):
                 "no-such-tour", which=error.which, limit=error.limit, actual=error.actual
             ) from None
         except WrongChoice as error:
-            raise _refusal(error) from None
+            raise refusal_of(error) from None
 
     @property
     def _given(self) -> dict[str, Any]:
@@ -124,6 +124,7 @@ def _split(texts: Iterable[str], known: Container[str]) -> Iterable[str]:
         yield from [text] if whole else text.split(",")
 
 
-def _refusal(error: WrongChoice) -> Refusal:
+def refusal_of(error: WrongChoice) -> Refusal:
+    """Return the refusal of a choice that is not valid."""
     fault = error.parameter and Fault("wrong-choice", parameter=error.parameter, said=str(error))
     return Refusal("invalid-request", detail=str(error), errors=[fault] if fault else [])

@@ -1,0 +1,105 @@
+"""The route that asks which of a few options is best: `GET /front/{id}/questions`."""
+
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+from pydantic.json_schema import SkipJsonSchema
+from pydantic_core import to_json
+from starlette.requests import Request
+from starlette.responses import Response
+
+from service.api.plan_responses import PlanItem, RobotPlanItem
+from service.api.responses import (
+    CoverageItem,
+    Lengths,
+    ObjectiveName,
+    TourItem,
+    json_bytes,
+    problem_responses,
+)
+from service.api.stored_fronts import find_record
+from service.errors import Refusal
+from service.jobs.engine import Engine
+from service.jobs.store import Store
+from service.kinds.table import KINDS
+from service.requests.questions import QuestionsQuery, members_of
+
+
+class OptionItem(BaseModel):
+    """A point to stand on."""
+
+    point: Lengths = Field(
+        description="at the last question the lengths of a tour or plan; before, each is at least"
+        " as good as where you stand"
+    )
+    best: Lengths = Field(description="the least length of each objective within reach")
+    within_reach: int = Field(
+        description="how many tours or plans exceed the point in no objective"
+    )
+
+
+class QuestionAnswer(OptionItem):
+    """A question: where the picks have led, and the options; at the end a tour or a plan."""
+
+    front: str = Field(description="the front's id")
+    left: int = Field(description="how many questions are left, this one included; 0 at the end")
+    options: list[OptionItem] = Field(description="by ascending first length; none at the end")
+    objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
+        default=None, description="as the request names them"
+    )
+    number: int | SkipJsonSchema[None] = Field(
+        default=None, description="at the end: the number in the front, from 0"
+    )
+    tour: CoverageItem | TourItem | SkipJsonSchema[None] = Field(
+        default=None, description="at the end, of a front of tours"
+    )
+    plan: PlanItem | RobotPlanItem | SkipJsonSchema[None] = Field(
+        default=None, description="at the end, of a front of plans"
+    )
+
+
+class QuestionRoutes:
+    """Asks questions about stored fronts. Each caller sees only its own."""
+
+    def __init__(self, store: Store, engine: Engine) -> None:
+        self._store = store
+        self._engine = engine
+
+    def router(self) -> APIRouter:
+        """Return the route with its entry in the OpenAPI document."""
+        router = APIRouter(tags=["fronts"])
+        router.get(
+            "/front/{id}/questions",
+            response_model=QuestionAnswer,
+            responses=problem_responses(404, 409, 410, 422, 503),
+        )(self.ask_about_front)
+        return router
+
+    async def ask_about_front(
+        self,
+        request: Request,
+        id: str,  # noqa: A002
+        query: Annotated[QuestionsQuery, Query()],
+    ) -> Response:
+        """Ask which option of a few is best, and after some picks return a tour of the front.
+
+        The first question begins at the worst length of every objective. Each option is at least as
+        good in all of them, and says the best that stays within reach (E-NAUTILUS). Nothing is
+        stored: the picks so far are a parameter.
+        """
+        record = self._engine.state(await find_record(self._store, request, id)).record
+        front = record.front
+        if not record.finished:
+            raise Refusal("front-unfinished", front=record.id, status=record.status)
+        if not front.tours:
+            raise Refusal("no-tour", front=record.id)
+        question = await asyncio.to_thread(query.ask, front.lengths)
+        named = {} if front.objectives is None else {"objectives": front.objectives}
+        answer = to_json({"front": record.id, **members_of(question), **named})
+        if question.chosen is not None:
+            item = KINDS[front.kind].item.encode()
+            chosen = front.tour(question.chosen)
+            answer = b"".join((answer[:-1], b',"', item, b'":', chosen, b"}"))
+        return json_bytes(answer)
