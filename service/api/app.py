@@ -130,7 +130,7 @@ def create_app(
 
     app = _DocumentedApp(
         request_schemas(limits, actors),
-        title="Paretour",
+        title="Paretour API",  # generators name the packages of clients after it
         summary="Pareto fronts of tours under two to four objectives",
         version=version,
         lifespan=lifespan,

@@ -9,13 +9,14 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import httpx
 import pytest
 
-from tests.guide.pages import GUIDE, blocks, commands
+from tests.guide.pages import GUIDE, ROOT, blocks, commands
 from tests.helpers.sampled import at_night
 from tests.helpers.serving import app_of, serving
 
@@ -148,11 +149,23 @@ def test_the_program_of_the_guide_has_the_types_of_the_service(typescript_folder
     make_types = commands(FROM_TYPESCRIPT)[:2]
     assert set(make_types[0].split()[3:]) == set(TYPESCRIPT_GENERATOR)
     assert make_types[1].endswith(f" -o paretour.ts {FLAG}")
+    *_, compiling = (each for each in commands(FROM_TYPESCRIPT) if each.startswith("npx tsc "))
+    options = compiling.partition(" && ")[0].split()[2:]
     [program] = [each.text for each in blocks(FROM_TYPESCRIPT) if each.title == "plan.ts"]
     (typescript_folder / "plan.ts").write_text(program)
-    (typescript_folder / "paretour.ts").write_text('export type * from "./generated";\n')
-    modern = ["--target", "es2022", "--module", "esnext", "--moduleResolution", "bundler"]
-    run(["node_modules/.bin/tsc", "--noEmit", "--strict", *modern, "plan.ts"], typescript_folder)
+    (typescript_folder / "paretour.ts").write_text('export type * from "./generated.js";\n')
+    run(["npm", "pkg", "set", "type=module"], typescript_folder)
+    run(["node_modules/.bin/tsc", *options], typescript_folder)
+    compiled = (typescript_folder / "plan.js").read_text()
+    assert "import" not in compiled  # the types alone are imported
+    run(["node", "--check", "plan.js"], typescript_folder)
+
+
+def test_generated_packages_do_not_take_the_name_of_the_client(document: Path) -> None:
+    """openapi-python-client names a package after the title of the document."""
+    name = json.loads(document.read_text())["info"]["title"].lower().replace(" ", "-") + "-client"
+    client = tomllib.loads((ROOT / "service/client/pyproject.toml").read_text())["project"]
+    assert name not in (client["name"], "paretour")
 
 
 def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) -> None:

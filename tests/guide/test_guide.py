@@ -42,6 +42,8 @@ NOT_RUN = (
     "python3 -m venv ",
     ".venv/bin/",
     "npm install ",
+    "npm pkg ",
+    "npx tsc ",
     "npx openapi-typescript ",
     "PARETOUR_OWN_ACTORS=",
     "PARETOUR_CONSTRUCTORS=",
