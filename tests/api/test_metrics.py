@@ -48,6 +48,9 @@ def test_requests_are_counted_by_the_path_that_they_matched() -> None:
             httpx.post(f"{url}/front", json=FRONT)
         httpx.get(f"{url}/front/none")
         httpx.get(f"{url}/nowhere/at/all")
+        for path in ("", "/guide/limits", "/guide/none", "/page/style.css", "/docs"):
+            httpx.get(url + path)
+        httpx.post(f"{url}/files", files={"file": ("a.csv", b"id,lat,lon\na,60,24\nb,61,24\n")})
         httpx.request("BREW", f"{url}/front")
         counted = samples(url)
     requests = {key[1:]: value for key, value in counted.items() if key[0].endswith("s_total")}
@@ -55,6 +58,10 @@ def test_requests_are_counted_by_the_path_that_they_matched() -> None:
     assert requests["GET", "/front/{id}", "404"] == 1
     assert requests["GET", "unmatched", "404"] == 1
     assert requests["other", "/front", "405"] == 1
+    assert requests["GET", "/", "200"] == requests["GET", "/docs", "200"] == 1
+    assert requests["GET", "/guide/{name}", "200"] == requests["GET", "/guide/{name}", "404"] == 1
+    assert requests["GET", "/page/{path:path}", "200"] == 1
+    assert requests["POST", "/files", "200"] == 1
     assert counted["paretour_request_seconds_count", "POST", "/front"] == 3
 
 

@@ -15,10 +15,11 @@ from starlette.responses import (
     RedirectResponse,
     Response,
 )
-from starlette.routing import BaseRoute, Route
+from starlette.routing import BaseRoute
 
 from service.api.responses import root_path_of
 from service.api.site.markdown import Page, render
+from service.api.site.routes import NamedRoute
 from service.api.site.static import REVALIDATE, files
 
 _SERVICE = Path(__file__).parents[2]
@@ -35,14 +36,14 @@ _GROUP = re.compile(r"^\*\*(.+)\*\*$|^- \[(.+?)\]\(([a-z-]+)\.md\) (.+)$", re.MU
 def guide_routes() -> list[BaseRoute]:
     """Return the routes of the guide, its pictures and the manifests that it links to."""
     return [
-        Route("/guide", _to_the_index),
-        Route("/guide/", _page),
-        Route("/guide/search.json", _search),
-        Route("/guide/site/{path:path}", files(_GUIDE / "site")),
-        Route("/guide/pictures/{path}", files(_GUIDE / "pictures")),
-        Route("/guide/deploy/{path}.yaml", files(_SERVICE / "deploy", ".yaml")),
-        Route("/guide/{name}", _page),
-        Route("/llms.txt", _outline),
+        NamedRoute("/guide", _to_the_index),
+        NamedRoute("/guide/", _page),
+        NamedRoute("/guide/search.json", _search),
+        NamedRoute("/guide/site/{path:path}", files(_GUIDE / "site")),
+        NamedRoute("/guide/pictures/{path}", files(_GUIDE / "pictures")),
+        NamedRoute("/guide/deploy/{path}.yaml", files(_SERVICE / "deploy", ".yaml")),
+        NamedRoute("/guide/{name}", _page),
+        NamedRoute("/llms.txt", _outline),
     ]
 
 

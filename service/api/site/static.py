@@ -18,9 +18,11 @@ from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
-from starlette.routing import BaseRoute, Route
+from starlette.routing import BaseRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
+
+from service.api.site.routes import NamedRoute
 
 _SERVICE = Path(__file__).parents[2]
 _PAGE = _SERVICE / "page"
@@ -47,11 +49,11 @@ def static_routes() -> list[BaseRoute]:
     """Return the routes of the page, the HTTP reference, and the files that they load."""
     page = _Page()
     return [
-        Route("/", page.index, middleware=_COMPRESSED),
-        Route("/docs", files(_REFERENCE), middleware=_COMPRESSED),
-        Route("/page/{path:path}", page.file, middleware=_COMPRESSED),
-        Route("/docs/{path:path}", files(_REFERENCE), middleware=_COMPRESSED),
-        Route("/examples/{path}.json", files(_EXAMPLES, ".json"), middleware=_COMPRESSED),
+        NamedRoute("/", page.index, middleware=_COMPRESSED),
+        NamedRoute("/docs", files(_REFERENCE), middleware=_COMPRESSED),
+        NamedRoute("/page/{path:path}", page.file, middleware=_COMPRESSED),
+        NamedRoute("/docs/{path:path}", files(_REFERENCE), middleware=_COMPRESSED),
+        NamedRoute("/examples/{path}.json", files(_EXAMPLES, ".json"), middleware=_COMPRESSED),
     ]
 
 

@@ -5,7 +5,8 @@ from urllib.parse import urlsplit
 
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
-from starlette.routing import Route
+
+from service.api.site.routes import NamedRoute
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Tiles:
         scheme, server, *_ = urlsplit(self.url)
         return f"{scheme}://{server.replace('{s}', '*')}"
 
-    def route(self, roads: bool, seconds: float) -> Route:
+    def route(self, roads: bool, seconds: float) -> NamedRoute:
         """Return the route of the settings that the page needs: of its map, and of requests.
 
         Args:
@@ -41,4 +42,4 @@ class Tiles:
         async def tell(_: Request) -> Response:
             return JSONResponse(answer, headers={"Cache-Control": "no-cache"})
 
-        return Route("/page/settings.json", tell)
+        return NamedRoute("/page/settings.json", tell)

@@ -119,3 +119,9 @@ def test_a_search_finds_sections_by_an_address_that_leads_to_them(client: httpx.
 @pytest.mark.parametrize("path", ["none", "INDEX", "index.md", "../settings", "site/none.js"])
 def test_a_path_without_a_page_is_404(client: httpx.Client, path: str) -> None:
     problem(client.get(f"/guide/{path}"), 404, "no-such-path")
+
+
+@pytest.mark.parametrize("word", ["webhook", "geocode"])
+def test_a_search_finds_what_callers_look_for(client: httpx.Client, word: str) -> None:
+    sections = client.get("/guide/search.json").json()
+    assert any(word in section["heading"].lower() for section in sections)
