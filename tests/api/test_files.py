@@ -273,3 +273,13 @@ def test_the_client_sends_a_file_whose_name_is_no_text(address: str) -> None:
     with paretour.Client(address) as client:
         answer = client.read_files({"caf\udce9.csv": rows})
     assert answer["name"] == "caf?.csv"
+
+
+def test_the_client_plans_what_it_has_read(address: str) -> None:
+    rows = b"id,x,y,second x,second y\na,0,0,5,5\nb,3,1,9,1\nc,5,2,2,8\n"
+    with paretour.Client(address) as client:
+        plan = client.read_files({"stops.csv": rows})
+        front = client.plan_any(plan)
+    assert isinstance(front, paretour.Front)
+    assert sorted(front[0].stops or ()) == ["a", "b", "c"]
+    assert {"kind", "request", "notes"} <= plan.keys()

@@ -1,8 +1,10 @@
 """Fronts as a notebook shows them: a line, HTML, a table of pandas, a plot of matplotlib."""
 
+from io import StringIO
 from xml.etree import ElementTree
 
 import matplotlib as mpl
+import moocore
 import paretour
 import pytest
 from paretour import Client
@@ -63,6 +65,20 @@ def test_a_table_has_a_row_for_each_tour() -> None:
     assert len(parse_front(EMPTY).to_frame()) == 0
 
 
+@pytest.mark.parametrize("document", [NAMED, THREE])
+def test_moocore_reads_a_front_as_it_is(document: dict[str, object]) -> None:
+    front = parse_front(document)
+    both = moocore.read_datasets(StringIO(front.to_moocore() * 2))
+    assert both[:, :-1].tolist() == front.lengths.tolist() * 2
+    assert both[:, -1].tolist() == [1] * len(front) + [2] * len(front)
+
+
+def test_a_front_has_the_names_of_pymoo() -> None:
+    front = parse_front(NAMED)
+    assert front.F.tolist() == front.lengths.tolist()
+    assert front.X.tolist() == front.tours.tolist()
+
+
 def test_three_objectives_are_drawn_in_space_and_four_are_refused() -> None:
     assert parse_front(THREE).plot().name == "3d"
     four = parse_front(
@@ -110,6 +126,7 @@ def test_a_table_of_a_fleet_has_every_route_of_vehicles_of_one_type(url: str) ->
                 {"name": "longest", "matrix": matrix, "over": "max"},
             ],
         )
+    assert (len(front.F), front.X.tolist()) == (len(front), list(front.plans))
     [routes, *_] = front.to_frame()["routes"]
     assert sorted(routes) == [("van", ("depot", "a", "depot")), ("van", ("depot", "b", "depot"))]
 

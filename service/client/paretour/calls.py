@@ -33,6 +33,7 @@ from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.requests import (
     Instance,
     Plan,
+    PlanOfFiles,
     coverage_plan,
     fleet_plan,
     front_path,
@@ -278,18 +279,17 @@ class Calls:
 
     def read_files(
         self, files: Mapping[str, bytes], columns: Sequence[Mapping[str, str]] = ()
-    ) -> Call[Mapping[str, Any]]:
-        """Return the request in files by their names, with its kind and notes.
+    ) -> Call[PlanOfFiles]:
+        """Return the request in files by their names, for `plan_any`; a mapping with its notes.
 
         `columns` say what columns are taken for, each with `file`, `name` and `taken_for`.
         """
         content = {"files": parts_of(files, columns)}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
         answer = _answer((yield from self._send(request)))
-        answer.read("kind", text)
-        answer.read("request", members)
+        kind, request = answer.read("kind", text), answer.read("request", members)
         answer.read("notes", each(members))
-        return answer.document
+        return PlanOfFiles(f"/{kind}", request.document, answer=answer.document)
 
     def fronts(self, most: int = PAGE) -> Call[tuple[ListedFront, ...]]:
         """Return what the service lists of your `most` newest fronts, the newest first.

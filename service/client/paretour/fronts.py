@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from paretour import display
 from paretour.choice import losses
+from paretour.text_sets import text_set
 
 Array = NDArray[np.float64]
 Item = TypeVar("Item")  # a tour, or a plan
@@ -110,6 +111,15 @@ class StoredFront(Generic[Item]):
         except IndexError:
             raise IndexError(f"there are {self._counted()}, got {index}") from None
         return self._item(number)
+
+    @property
+    def F(self) -> Array:  # noqa: N802
+        """The lengths of each item, shape (k, m), by the name that pymoo has for them."""
+        return self.lengths
+
+    def to_moocore(self) -> str:
+        """Return the lengths as a set of points in the text that moocore.read_datasets reads."""
+        return text_set(self.labels, self.lengths)
 
     @abstractmethod
     def _item(self, number: int) -> Item:

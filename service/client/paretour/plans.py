@@ -159,6 +159,11 @@ class _FrontOfPlans(StoredFront[Plan]):
         angles = np.empty(0)  # no choice by angle can be asked for
         return self[choose(self.lengths, angles, self.names, choice)]
 
+    @property
+    def X(self) -> NDArray[np.object_]:  # noqa: N802
+        """The plans, shape (k,), by the name that pymoo has for solutions."""
+        return np.array(self.plans, dtype=object)
+
     def _item(self, number: int) -> Plan:
         return self.plans[number]
 

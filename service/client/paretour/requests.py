@@ -1,8 +1,8 @@
 """Build the requests that plan a front: JSON, and a file beside it for large arrays."""
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from decimal import Decimal
 from io import BytesIO
 from typing import Any
@@ -81,6 +81,25 @@ class Plan:
             return {"content": self.json, "headers": {"Content-Type": "application/json"}}
         parts = {"request": self.json, self.file.part: self.file.content}
         return {"files": {name: (name, content) for name, content in parts.items()}}
+
+
+@dataclass(frozen=True, eq=False)
+class PlanOfFiles(Plan, Mapping[str, Any]):
+    """The request in files, ready to be planned, and a mapping of the answer that told it.
+
+    The mapping has `kind`, `request`, `notes` and, of tables, what `columns` are taken for.
+    """
+
+    answer: Mapping[str, Any] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.answer[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.answer)
+
+    def __len__(self) -> int:
+        return len(self.answer)
 
 
 def front_plan(request: FrontRequest, instance: Instance | None = None) -> Plan:

@@ -191,6 +191,11 @@ class Front(StoredFront[Tour]):
     def _counted(self) -> str:
         return f"{counted(len(self), 'tour')} of {self.tours.shape[1]} cities"
 
+    @property
+    def X(self) -> NDArray[np.int64]:  # noqa: N802
+        """The tours, shape (k, n), by the name that pymoo has for solutions."""
+        return self.tours
+
     def _columns(self) -> dict[str, Sequence[Any]]:
         found: dict[str, Sequence[Any]] = {}
         if self.lengths.shape[1] == PAIR:

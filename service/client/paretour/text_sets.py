@@ -1,0 +1,17 @@
+"""Write points as text that moocore reads: its `read_datasets`, in Python and in R."""
+
+from collections.abc import Iterable, Sequence
+
+
+def text_set(names: Iterable[str], points: Iterable[Sequence[float]]) -> str:
+    """Return a line for each point, after a comment that names the objectives.
+
+    An empty line ends the set, so that the texts of several fronts may follow each other.
+
+    Args:
+        names: Those of the objectives.
+        points: The lengths of each tour or plan, exact to the last digit.
+    """
+    heading = ", ".join(" ".join(name.split()) for name in names)
+    lines = [" ".join(repr(float(length)) for length in point) for point in points]
+    return "\n".join([f"# {heading}", *lines, "", ""])
