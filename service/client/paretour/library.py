@@ -89,7 +89,7 @@ def replan(front: Front | FleetFront, *, progress: bool = False, **request: Any)
 
     Args:
         front: The front.
-        progress: As of `plan`.
+        progress: Whether to show a bar, as `plan` does.
         **request: What has changed, and the options of the new front.
 
     Raises:

@@ -23,7 +23,7 @@ class ListedFront:
         stored_at: When it was submitted or, once it is finished, when it was finished.
         cities: The number of its cities, stops or places.
         points: The number of nondominated points found.
-        hypervolume: That of the tours that it holds.
+        hypervolume: The hypervolume of the tours that it holds.
         objectives: Their names and units, if the request named them.
     """
 

@@ -35,7 +35,7 @@ class FleetRoute:
             (len(stops),). None without a clock.
         breaks: When each break on the way begins.
         shift: The number of its shift, if its vehicle has several.
-        route: Of a vehicle on its way, the number of its route in the plan that is driven.
+        route: The number of its route in the plan that is driven, if it is on its way.
     """
 
     vehicle: str

@@ -47,7 +47,7 @@ class Question:
     Attributes:
         current: The option that was picked last; at first the worst length of every objective.
         left: How many questions are left, this one included; 0 at the end.
-        options: By ascending first length; none at the end.
+        options: The options by ascending first length; none at the end.
         chosen: The index of the chosen tour at the end; None before.
     """
 
