@@ -114,7 +114,7 @@ class RecordScript:
 
         Args:
             id: Its id, which may be missing in the hashes.
-            hashes: As HGETALL gives them.
+            hashes: The fields and values that HGETALL gives.
             caller: Its caller, if known.
             whole: Whether an unfinished record must have its source.
         """

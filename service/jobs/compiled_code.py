@@ -122,7 +122,7 @@ class _CompilationProgress:
 
     Args:
         parts: The parts that are compiled.
-        processes: In how many processes.
+        processes: The number of processes that compile them.
         tell: Called with how far it is.
     """
 

@@ -60,7 +60,7 @@ class Outbox(Protocol):
 
         Args:
             most: The most deliveries.
-            seconds: After which they are due again.
+            seconds: The time after which they are due again.
 
         Raises:
             StoreUnavailable: The store does not answer.

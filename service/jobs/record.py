@@ -66,7 +66,7 @@ def as_ended(
         record: The record of the job.
         front: The best front found.
         reason: Why the job was stopped; None if it was not.
-        seconds: From the request to the end.
+        seconds: The time from the request to the end.
     """
     late = reason is DeadlineExceeded
     if front.tours:

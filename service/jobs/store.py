@@ -64,7 +64,7 @@ class Store(Outbox, Protocol):
         Args:
             caller: The name of the API key.
             client: The caller or, without keys, an address.
-            below: Only those with a number below this.
+            below: Only records with a number below this are returned.
             most: The most records to return.
         """
 

@@ -36,7 +36,7 @@ class Drawing:
         """Return the drawing of tours of a front, or of the routes of its plans.
 
         Args:
-            record: As in the class.
+            record: The record of the front, whose stops all have locations.
             tours: Tours or plans that follow one another in the front, a JSON array.
             first: The number of the first one.
         """
