@@ -56,10 +56,10 @@ class Coverage:
         blocked: Obstacles, shape (rows, columns).
         cell_size: The side of a cell, in metres.
         origin: The pose of the map's lower left corner, as in MapFrame; None if it is unknown.
-        robot_radius: In metres.
+        robot_radius: The radius of the robot, in metres.
         places: Rows and columns of the places, shape (n, 2).
-        spacing: In metres. The places cover the region of the first pose, or without poses the
-            largest free region: one in each square of this side.
+        spacing: A distance in metres. The places cover the region of the first pose, or without
+            poses the largest free region: one in each square of this side.
         start: The place from which all others must be reachable.
         ends: Whether tours are closed, and the places at which open routes start and end.
         start_pose: Replaces both starts: x and y in the frame of the map; further numbers are

@@ -21,7 +21,7 @@ def free_cells(blocked: Mask, cell_size: float, robot_radius: float) -> Mask:
     Args:
         blocked: Obstacles, shape (rows, columns).
         cell_size: The side of a cell, in any unit.
-        robot_radius: In the same unit.
+        robot_radius: The radius of the robot, in the same unit.
     """
     if not blocked.any():
         return ~blocked

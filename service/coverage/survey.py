@@ -43,9 +43,9 @@ class Survey:
         start: The place at which reported tours begin.
         legs: The paths between places.
         frame: The frame of the map, if it is known.
-        to_visit: As in Places.
+        to_visit: The number of places that the caller gave or that cover a region, as in Places.
         uncovered: The cells to which no path leads.
-        robots: As in Places.
+        robots: The places at which each robot starts and ends, as in Places.
         objectives: The names of all objectives, if the caller named the cost layers.
     """
 

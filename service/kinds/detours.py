@@ -43,7 +43,7 @@ class PlanWithDetours:
         legs: The paths between the places.
         options: The options of the front and the search.
         earlier: The rest of the tours of an earlier front, if that front is replanned.
-        watch: As in plan(...).
+        watch: The watch over the work, as in plan(...).
     """
 
     def __init__(

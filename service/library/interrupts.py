@@ -21,7 +21,7 @@ def until_done(
 
     Args:
         run: The function.
-        interrupted: As `interrupt_flag` yields it.
+        interrupted: The function that `interrupt_flag` yields.
         terminate: Called repeatedly after Ctrl-C: it ends a running call of the network.
     """
     if not _is_told():
