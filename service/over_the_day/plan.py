@@ -52,7 +52,7 @@ def plan_over_the_day(
         day: The day.
         options: The options of the front and the search.
         earlier: What is left of the tours of the front that is replanned, if one is.
-        watch: As in plan(...).
+        watch: The watch over the work, as in plan(...).
 
     Raises:
         Cancelled, NoTour, Refusal: As in plan(...) and replan(...).

@@ -80,8 +80,8 @@ def with_most_kept_at(
 
     Args:
         instance: The instance.
-        driven: As in kept_shares().
-        balance: In the box of the chosen tours.
+        driven: The cities of the driven tour, as in kept_shares().
+        balance: The balance, in the box of the chosen tours.
         found: The front.
         chosen: Indices in it, ascending.
     """

@@ -45,7 +45,7 @@ def replan(
         instance: The rest of the way.
         earlier: The rest of the tours of the earlier front.
         options: The options of the front and the search.
-        watch: As in plan(...).
+        watch: The watch over the work, as in plan(...).
 
     Raises:
         Cancelled, NoTour: As in plan(...).
