@@ -104,7 +104,7 @@ class Front:
         terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
         bound: A hypervolume that no front of the instance exceeds, if it was asked for.
-        gained: By how much the search increased the hypervolume of its initial tours.
+        gained: The hypervolume that the search added to that of its initial tours.
         closed: Whether the tours return to where they began.
         kept: In a replanned front, the share of the driven tour's legs that each tour keeps, shape
             (k,).

@@ -110,7 +110,7 @@ class OverTheDay:
 
     Args:
         base: The other source.
-        begins: From when each factor holds, shape (s,), ascending seconds of the day.
+        begins: The times from which each factor holds, shape (s,), ascending seconds of the day.
         factors: Shape (s,), positive.
     """
 
