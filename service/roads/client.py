@@ -43,7 +43,7 @@ class RoadClient:
     """A client of a routing engine, for one event loop, which remembers the answers.
 
     Args:
-        settings: Which engine to ask, and what may be spent on it.
+        settings: The engine to ask, and what may be spent on it.
         observe: Called with the outcome and the seconds of every question.
     """
 
@@ -79,8 +79,8 @@ class RoadClient:
 
         Args:
             departures: The times, as 2026-11-27T07:30.
-            locations: As of `costs`.
-            ids: As of `costs`.
+            locations: The locations of the stops, as for `costs`.
+            ids: The names of the stops, as for `costs`.
 
         Raises:
             Refusal: As of `costs`.
@@ -102,8 +102,8 @@ class RoadClient:
         """Return the line along the streets of each way. Legs of several are asked for once.
 
         Args:
-            locations: As of `costs`.
-            ids: As of `costs`.
+            locations: The locations of the stops, as for `costs`.
+            ids: The names of the stops, as for `costs`.
             ways: One at least: indices of stops in the order of their visits, shape (m,) each, m at
                 least 2.
             seconds: The remaining time, if it is less than the settings allow.

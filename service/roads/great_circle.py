@@ -32,7 +32,7 @@ def great_circle_distances(one: Array, other: Array) -> Array:
 
     Args:
         one: Longitude and latitude of each place in degrees, shape (..., 2).
-        other: Likewise.
+        other: The other positions, likewise.
 
     >>> great_circle_distances(np.array([[0.0, 90.0]]), np.array([[17.0, 0.0]])).round()
     array([10007557.])

@@ -75,7 +75,7 @@ class Questions:
 
         Args:
             legs: Each from one stop to another.
-            snap: As of `check_snapped`.
+            snap: The metres that a stop may lie from a road, as for `check_snapped`.
             keep: Called with each leg and its line, which is not empty, as they come.
 
         Raises:

@@ -33,7 +33,7 @@ def trails(legs: Iterable[Leg], most: int) -> list[list[int]]:
 
     Args:
         legs: Each from one stop to another; repeats count once.
-        most: At least 2.
+        most: The most stops of a sequence, at least 2.
 
     >>> trails([(0, 1), (1, 2), (2, 0), (0, 2), (1, 2)], 4)
     [[0, 1, 2, 0], [0, 2]]
