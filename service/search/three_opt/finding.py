@@ -172,7 +172,7 @@ def find_behind(
     Args:
         working: The tour.
         scalarization: The weighted sum.
-        opened: As in find_after(); the step before other is removed as well.
+        opened: The cities of find_after(); the step before other is removed as well.
         joined: The city before other, and the third, behind it, to which a step from there is
             added.
         gain: What all that gains.
