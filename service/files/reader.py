@@ -23,7 +23,7 @@ from service.files.reading import (
     choices_of,
     reading_of_several,
 )
-from service.files.stop_tables import Part, part_of, reading_of
+from service.files.stop_tables import FilePart, part_of, reading_of
 from service.files.tables import Table, table_of_csv, table_of_rows
 from service.files.texts import text_of
 from service.files.tsplib import (
@@ -187,7 +187,7 @@ def _content(source: Source) -> Table | TsplibFile | str:
     return table_of_csv(source, text)
 
 
-def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Part:
+def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> FilePart:
     """Return the content of one of several files."""
     if isinstance(file, Table):
         return part_of(source, file)
@@ -197,14 +197,14 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Pa
     if unrounded:
         if file.kind != "EUC_2D":
             raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
-        return Part(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
+        return FilePart(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
     found = costs(file)
     note_rounded(file)
     plane = places(file).tolist() if file.kind == "EUC_2D" else None
-    return Part(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
+    return FilePart(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
 
 
-def _joined(parts: Sequence[Part]) -> Request:
+def _joined(parts: Sequence[FilePart]) -> Request:
     """Return the request of files about the same stops, one for each objective.
 
     Raises:

@@ -36,7 +36,7 @@ _FREE = {"0", "0.0", "0,0", *_NO_WAY}
 
 
 @dataclass(frozen=True)
-class Part:
+class FilePart:
     """The stops in one of several files: their ids, and costs, a plane, or places on the earth."""
 
     name: str
@@ -265,7 +265,7 @@ def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> dict[str,
     return {"name": named, "unit": unit, "matrix": weighted(places, weights)}
 
 
-def part_of(source: Source, table: Table) -> Part:
+def part_of(source: Source, table: Table) -> FilePart:
     """Return the content of one of several tables: stops, a plane, or costs from rows to columns.
 
     Raises:
@@ -278,7 +278,7 @@ def part_of(source: Source, table: Table) -> Part:
         stops = _stops(columns, _places(columns))
         note_places(source, stops)
         columns.report()
-        return Part(name, count, [stop["id"] for stop in stops], stops=stops)
+        return FilePart(name, count, [stop["id"] for stop in stops], stops=stops)
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
     if table.heading is None and len(free) == table.width and _is_numbered(columns):
         columns.fields[0] = "id"
@@ -297,9 +297,9 @@ def part_of(source: Source, table: Table) -> Part:
     columns.read_signs(free)
     ids = columns.ids() if "id" in columns.fields else None
     if len(free) == 2 != count:
-        return Part(name, count, ids, {"coordinates": columns.numbers(free)})
+        return FilePart(name, count, ids, {"coordinates": columns.numbers(free)})
     source.check_count("cities", source.bounds.matrix_cities, count)
-    return Part(name, count, ids, {"matrix": _costs(columns, free)})
+    return FilePart(name, count, ids, {"matrix": _costs(columns, free)})
 
 
 def _is_numbered(columns: Columns) -> bool:
