@@ -24,7 +24,7 @@ class Do:
 
 
 @dataclass(frozen=True)
-class Stop:
+class StopTask:
     """To a worker: end the task of this number, if it is still running."""
 
     number: int

@@ -27,7 +27,7 @@ from service.jobs.deadline import Deadline
 from service.jobs.fair_queue import FairQueue
 from service.jobs.record import StopReason
 from service.jobs.submission import MOST_ATTEMPTS, Submission
-from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
+from service.jobs.workers.messages import Do, Done, Failed, Found, StopTask
 from service.jobs.workers.worker_process import MakeRunner
 from service.jobs.workers.worker_set import Worker, WorkerSet
 from service.kinds.front_document import FrontDocument
@@ -241,7 +241,7 @@ class WorkerPool:
         submission.stop_reason = reason
         for worker in self._workers:
             if submission.number in worker.submissions:
-                worker.process.send(Stop(submission.number))
+                worker.process.send(StopTask(submission.number))
                 loop = asyncio.get_running_loop()
                 loop.call_later(GRACE, submission.cut_short)
                 loop.call_later(self._stop_seconds, self._kill_if_still_running, worker, submission)

@@ -25,7 +25,7 @@ from service.jobs.workers.messages import (
     Failed,
     Found,
     Stage,
-    Stop,
+    StopTask,
     Unable,
     Warm,
     WarmUp,
@@ -162,7 +162,7 @@ class _WorkerLoop:
         try:
             while True:
                 match receive(self._signals):
-                    case Stop(number=number):
+                    case StopTask(number=number):
                         self._stop(number)
                     case WarmUp() as warm_up:
                         self._to_warm_up.put(warm_up)
@@ -279,7 +279,7 @@ class WorkerProcess:
         """The id of the process."""
         return self._process.pid
 
-    def send(self, message: Do | Stop | WarmUp) -> None:
+    def send(self, message: Do | StopTask | WarmUp) -> None:
         """Send a message; one to a process that is gone is lost."""
         connection = self._tasks if isinstance(message, Do) else self._signals
         connection.write(encode(message))
