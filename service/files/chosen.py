@@ -9,7 +9,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from service.errors import Refusal
 from service.errors.printable import printable
 from service.files.reading import LONGEST_NAME, NamedFile, Source, quoted
-from service.files.tables import LeftOut, Table
+from service.files.tables import ColumnLeftOut, Table
 from service.requests.byte_order_marks import without_mark
 from service.requests.fields import StrictModel, Text
 
@@ -82,7 +82,7 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
             raise source.refusal(demand, field)
     chosen = chosen_fields(source.file, heading)
     left_out = {
-        at: LeftOut(heading[at], each, [row[at] for _, row in table.rows])
+        at: ColumnLeftOut(heading[at], each, [row[at] for _, row in table.rows])
         for at, each in enumerate(chosen)
         if each in (DETAIL, IGNORED)
     }

@@ -21,7 +21,7 @@ from service.files.column_names import (
     plain_name,
 )
 from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
-from service.files.tables import LeftOut, Table, number_in, plain_numbers
+from service.files.tables import ColumnLeftOut, Table, number_in, plain_numbers
 
 Read = TypeVar("Read")
 _DEGREES = r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d{1,2})?)"
@@ -167,14 +167,14 @@ class Columns:
         """Return what each column in the file is taken for."""
         return [Column(self.source.name, n[:LONGEST_NAME], field) for n, field, _ in self._placed()]
 
-    def _placed(self) -> list[LeftOut]:
+    def _placed(self) -> list[ColumnLeftOut]:
         """Return all columns in the order of the file; the texts only of those that are not used.
 
         Of a table of stops, up to ten unused columns that have a name and texts are details: those
         that were chosen to be, then the first others.
         """
         placed = [
-            LeftOut(name, field or "", [] if field else self._texts(at))
+            ColumnLeftOut(name, field or "", [] if field else self._texts(at))
             for at, (name, field) in enumerate(zip(self.names, self.fields, strict=True))
         ]
         for at, column in sorted(self.table.left_out.items()):

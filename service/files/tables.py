@@ -35,7 +35,7 @@ _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNOR
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
 
 
-class LeftOut(NamedTuple):
+class ColumnLeftOut(NamedTuple):
     """A column that was taken out of a table: its name, what was chosen for it, and its texts."""
 
     name: str
@@ -52,7 +52,7 @@ class Table:
 
     heading: list[str] | None
     rows: list[Row]
-    left_out: Mapping[int, LeftOut] = field(default_factory=dict)
+    left_out: Mapping[int, ColumnLeftOut] = field(default_factory=dict)
 
     @property
     def width(self) -> int:

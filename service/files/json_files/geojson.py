@@ -20,7 +20,7 @@ from service.files.fleets import (
 from service.files.json_files.records import check_lists, is_place, members_of
 from service.files.reading import Reading, Request, Source, quoted
 from service.files.stop_tables import reading_of_columns, visits_of
-from service.files.tables import MOST_COLUMNS, LeftOut, Table, number_in, table_of
+from service.files.tables import MOST_COLUMNS, ColumnLeftOut, Table, number_in, table_of
 from service.files.visits import add_visits
 
 _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
@@ -127,7 +127,7 @@ def _table(source: Source, records: Sequence[_Record]) -> Table:
     )
     table = table_of(source, chain([[*_GEOMETRY, *kept]], rows))
     left_out = {
-        len(_GEOMETRY) + len(kept) + at: LeftOut(
+        len(_GEOMETRY) + len(kept) + at: ColumnLeftOut(
             f"{name} (property)" if name in _GEOMETRY else name,
             IGNORED,
             [record.properties.get(name, "") for record in records],
