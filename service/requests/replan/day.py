@@ -42,7 +42,7 @@ class Way:
 
 
 @dataclass(frozen=True, eq=False)
-class Day:
+class DaySoFar:
     """The day so far.
 
     Args:
@@ -63,7 +63,7 @@ class Day:
 
 def day_of(
     request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
-) -> Day:
+) -> DaySoFar:
     """Return the day so far.
 
     Args:
@@ -88,7 +88,7 @@ def day_of(
         route, departure = routes[item.route], departures[item.route]
         ways.append(_way(item, part, fleet.rules, route, departure, ids))
     waiting = tuple(route for number, route in enumerate(routes) if number not in numbers)
-    return Day(tuple(ways), tuple(numbers), waiting)
+    return DaySoFar(tuple(ways), tuple(numbers), waiting)
 
 
 def _driven(

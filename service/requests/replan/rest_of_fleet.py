@@ -23,7 +23,7 @@ from service.requests.replan.costs import (
     changed_sources,
     extended_sources,
 )
-from service.requests.replan.day import Day, Way, day_of
+from service.requests.replan.day import DaySoFar, Way, day_of
 from service.requests.replan.fields import NewStop
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.way import ReplanSource, StoredFront
@@ -320,7 +320,7 @@ def _all_stops(request: ReplanFleetRequest, labels: Labels) -> AllStops:
 
 
 def _removed(
-    request: ReplanFleetRequest, day: Day, rules: Rules, ids: Mapping[str, int]
+    request: ReplanFleetRequest, day: DaySoFar, rules: Rules, ids: Mapping[str, int]
 ) -> frozenset[int]:
     """Return the stops that are no longer visited.
 
