@@ -8,7 +8,7 @@ from service.files.fleets import Stop, Vehicle, fleet_request, have_times, spans
 from service.files.places import check_range
 from service.files.planners.vroom_costs import objectives_of
 from service.files.planners.vroom_members import note_others
-from service.files.planners.vroom_times import Task, add_services, load_of_jobs
+from service.files.planners.vroom_times import VroomTask, add_services, load_of_jobs
 from service.files.reading import Reading, Source, quoted
 
 _NO_BREAKS = "breaks of vehicles without exactly one time window were left out."
@@ -22,7 +22,7 @@ class _Problem:
     source: Source
     stops: list[Stop] = field(default_factory=list)
     indexes: list[Any] = field(default_factory=list)
-    tasks: list[Task] = field(default_factory=list)
+    tasks: list[VroomTask] = field(default_factory=list)
     depots: dict[str, str] = field(default_factory=dict)  # the ids of stops, by their places
 
     def add(self, name: str, place: Any, index: Any, where: str, **members: Any) -> Stop:
@@ -42,7 +42,7 @@ class _Problem:
         """Add the stop of a job, a pick-up or a delivery, and return its id."""
         place, index = task.get("location"), task.get("location_index")
         stop = self.add(members.pop("id"), place, index, where, **members)
-        self.tasks.append(Task(task, of, where, stop, f"{place} {index}"))
+        self.tasks.append(VroomTask(task, of, where, stop, f"{place} {index}"))
         return str(stop["id"])
 
     def depot(self, place: Any, index: Any, where: str) -> str:

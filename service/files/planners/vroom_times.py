@@ -11,7 +11,7 @@ from service.files.reading import Source
 _LONGEST_TAKEN = "vehicles of several types visit them: the longest of their times was taken"
 
 
-class Task(NamedTuple):
+class VroomTask(NamedTuple):
     """A job, or a step of a shipment, and the stop that it became."""
 
     task: Mapping[str, Any]
@@ -22,7 +22,10 @@ class Task(NamedTuple):
 
 
 def add_services(
-    source: Source, vehicles: Sequence[Mapping[str, Any]], tasks: Sequence[Task], depots: set[str]
+    source: Source,
+    vehicles: Sequence[Mapping[str, Any]],
+    tasks: Sequence[VroomTask],
+    depots: set[str],
 ) -> None:
     """Add to stops how long their visits take: the set-up, and the service.
 
@@ -50,7 +53,7 @@ def add_services(
                 source.note("times", note)
 
 
-def _time(source: Source, task: Task, name: str, types: set[str]) -> Any:
+def _time(source: Source, task: VroomTask, name: str, types: set[str]) -> Any:
     """Return a time of a task: for the types of all vehicles, or by itself."""
     usual, of_types = task.task.get(name) or 0, task.task.get(f"{name}_per_type") or {}
     if not isinstance(of_types, dict):
