@@ -24,7 +24,7 @@ Matrix = list[list[Any]]
 
 
 @dataclass(frozen=True)
-class Rates:
+class VroomRates:
     """What VROOM's vehicles cost: for an hour, for a kilometre, and each at all."""
 
     per_hour: float
@@ -32,7 +32,7 @@ class Rates:
     fixed: bool
 
 
-def rates_of(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> Rates:
+def rates_of(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> VroomRates:
     """Return the rates of all vehicles. Where they differ, they are noted, and are the defaults.
 
     Raises:
@@ -56,8 +56,8 @@ def rates_of(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> Rates:
         note_unused(source, name, _OF, _DIFFER)
     fixed = any(each.get("fixed") for each in costs)
     if differing or not costs:
-        return Rates(_PER_HOUR, _PER_KM, fixed)
-    return Rates(hours.pop(), kilometres.pop(), fixed)
+        return VroomRates(_PER_HOUR, _PER_KM, fixed)
+    return VroomRates(hours.pop(), kilometres.pop(), fixed)
 
 
 def objectives_of(
@@ -103,7 +103,7 @@ def objectives_of(
 
 
 def _by_places(
-    source: Source, stops: Sequence[Stop], rates: Rates, factor: float, timed: bool
+    source: Source, stops: Sequence[Stop], rates: VroomRates, factor: float, timed: bool
 ) -> tuple[Objectives, float]:
     """Return the objectives of stops on the earth, and VROOM's cost of a unit of the first."""
     if source.bounds.roads and factor != 1:
@@ -165,7 +165,7 @@ class _Cut:
 
 
 def _by_matrices(
-    source: Source, cut: _Cut, rates: Rates, factor: float
+    source: Source, cut: _Cut, rates: VroomRates, factor: float
 ) -> tuple[Objectives, float]:
     """Return the objectives of matrices, and VROOM's cost of a unit of the first."""
     durations = cut.matrix("durations", 1 / factor)
@@ -189,7 +189,7 @@ def _by_matrices(
     return [distance, longest], _unit(source, "distance", rates)
 
 
-def _unit(source: Source, name: str, rates: Rates) -> float:
+def _unit(source: Source, name: str, rates: VroomRates) -> float:
     """Return VROOM's cost of a unit of the first objective, time or distance, with a note."""
     if not rates.fixed:
         if not rates.per_km:
@@ -198,7 +198,7 @@ def _unit(source: Source, name: str, rates: Rates) -> float:
     return _noted(source, name, rates.per_km / 1000 if rates.per_km else rates.per_hour / 3600)
 
 
-def _note_beside_costs(source: Source, cut: _Cut, rates: Rates) -> None:
+def _note_beside_costs(source: Source, cut: _Cut, rates: VroomRates) -> None:
     """Note what a matrix of costs stands for."""
     why = "there are matrices of costs"
     _note_rates(source, rates, why)
@@ -206,7 +206,7 @@ def _note_beside_costs(source: Source, cut: _Cut, rates: Rates) -> None:
         note_unused(source, "distances", "matrices", why)
 
 
-def _note_rates(source: Source, rates: Rates, why: str) -> None:
+def _note_rates(source: Source, rates: VroomRates, why: str) -> None:
     """Note rates that are not the defaults, and are not used."""
     if rates.per_hour != _PER_HOUR:
         note_unused(source, "per_hour", _OF, why)
@@ -214,7 +214,7 @@ def _note_rates(source: Source, rates: Rates, why: str) -> None:
         note_unused(source, "per_km", _OF, why)
 
 
-def _costs(durations: Matrix, distances: Matrix, rates: Rates) -> Matrix:
+def _costs(durations: Matrix, distances: Matrix, rates: VroomRates) -> Matrix:
     """Return what legs cost by their time and their length."""
     return [
         [_sum(second, metre, rates) for second, metre in zip(*rows, strict=True)]
@@ -222,7 +222,7 @@ def _costs(durations: Matrix, distances: Matrix, rates: Rates) -> Matrix:
     ]
 
 
-def _sum(second: Any, metre: Any, rates: Rates) -> Any:
+def _sum(second: Any, metre: Any, rates: VroomRates) -> Any:
     """Return the cost of a leg; None where there is no way."""
     if not _is_cost(second) or not _is_cost(metre):
         return None
