@@ -28,7 +28,7 @@ from service.fleet.plans import FleetFront, Plan
 from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
-from service.fleet.sweep import Searches, Sweep
+from service.fleet.sweep import Searches, SumSweep
 from service.fleet.translation import Translation
 from service.front import Termination
 from service.search.best_subset import best_subset, selection_limit, selection_seconds
@@ -334,4 +334,4 @@ def _sweep_of(rules: Rules) -> type[Searches]:
     second, *more = rules.over[1:]
     if more or second in ("imbalance", "load_distance"):
         return MixedSweep
-    return Sweep if second in ("sum", "max", "unassigned") else MeasureSweep
+    return SumSweep if second in ("sum", "max", "unassigned") else MeasureSweep

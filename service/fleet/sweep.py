@@ -81,7 +81,7 @@ class Searches(ABC):
         return self._archive.solutions[0] if len(self._archive) else None
 
 
-class Sweep(Searches):
+class SumSweep(Searches):
     """The searches for a sum against a maximum, another sum, or the prizes of what is left out."""
 
     def __init__(

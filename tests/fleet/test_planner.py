@@ -25,7 +25,7 @@ from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, kept_share
 from service.fleet.rules import Over, Rules
 from service.fleet.solver import Solver
-from service.fleet.sweep import Searches, Sweep
+from service.fleet.sweep import Searches, SumSweep
 from service.fleet.translation import Translation
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.pareto import nondominated
@@ -84,7 +84,7 @@ def test_a_handful_of_stops_has_the_front_of_brute_force(
         assert refused.value.code == "no-plan"
 
 
-def searched(fleet: Fleet, sweep: type[Searches] = Sweep, searches: int = 8) -> list[Point]:
+def searched(fleet: Fleet, sweep: type[Searches] = SumSweep, searches: int = 8) -> list[Point]:
     """Return the points that PyVRP finds of a fleet so small that it would be enumerated."""
     translation = Translation(fleet)
     archive = SolutionArchive(translation)
