@@ -19,7 +19,7 @@ from service.coverage.shortest_paths import DIAGONAL, Grid, mark, unmark
 from service.jit import allocating, compiled
 
 
-class _State(NamedTuple):
+class _PathsFound(NamedTuple):
     """The paths found so far, and the targets of the search."""
 
     cost: Array  # (cells,), infinite if no path was found
@@ -38,7 +38,7 @@ class CheapestPaths:
     def __init__(self, grid: Grid) -> None:
         cells = len(grid.free)
         self._grid = grid
-        self._state = _State(
+        self._state = _PathsFound(
             np.full(cells, np.inf),
             np.full(cells, -1, np.int32),
             np.zeros(cells, np.bool_),
@@ -65,7 +65,7 @@ class CheapestPaths:
 
 
 @compiled
-def _forget(state: _State) -> None:
+def _forget(state: _PathsFound) -> None:
     """Remove the paths of the last search."""
     for k in range(state.reached_size[0]):
         cell = state.reached[k]
@@ -73,7 +73,7 @@ def _forget(state: _State) -> None:
 
 
 @allocating
-def _search(grid: Grid, state: _State, layer: Array, source: int, targets: Cells) -> None:
+def _search(grid: Grid, state: _PathsFound, layer: Array, source: int, targets: Cells) -> None:
     cost, predecessor, is_target, reached, reached_size = state
     left = mark(is_target, targets)
     cost[source], reached[0], reached_size[0] = 0.0, source, 1
