@@ -8,6 +8,7 @@ import argparse
 import json
 import re
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from models.validation import COUNTS, mean_hypervolume, validation_sets
 
 RELEASED = Path(__file__).parents[1] / "service/actors"
 OWN_ACTORS = Path("runs/actors")
+_UNKNOWN = "version unknown"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 # By the construction of an actor's tours.
@@ -53,6 +55,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument(
         "--replace", action="store_true", help="write over a file, or take a released actor's name"
     )
+    parser.add_argument("--yes", action="store_true", help="begin without asking")
     options = parser.parse_args(arguments)
     progress = Progress()
     progress.begin(f"reading {options.checkpoint}")
@@ -61,6 +64,7 @@ def main(arguments: list[str] | None = None) -> None:
     out = options.out or OWN_ACTORS / f"{name}.onnx"
     if refusal := _refusal(name, out, options.replace):
         parser.error(refusal)
+    _ask(options.yes)
     progress.begin(f"tracing a {trained.config.network.label} network of {trained.step} steps")
     model = to_onnx(trained.actor)
     progress.begin("comparing the graph's tours with PyTorch's")
@@ -69,14 +73,26 @@ def main(arguments: list[str] | None = None) -> None:
     describe(model, trained, name)
     out.parent.mkdir(parents=True, exist_ok=True)
     content = model.SerializeToString()
-    kilobytes = len(content) / 1000
-    progress.begin(f"writing {out}, {kilobytes:.0f} kB, and {out.with_suffix('.md').name}")
+    progress.begin(f"writing {_described(out, len(content))}")
     out.write_bytes(content)
     metadata = {entry.key: entry.value for entry in model.metadata_props}
     out.with_suffix(".md").write_text(
         card(name, str(options.checkpoint), trained, metadata), encoding="utf-8"
     )
     progress.begin(f"done: hypervolume {metadata['figures']} by number of cities")
+
+
+def _described(out: Path, size: int) -> str:
+    return f"{out}, {size / 1000:.0f} kB, and {out.with_suffix('.md').name}"
+
+
+def _ask(agreed: bool) -> None:
+    """Ask somebody at a terminal whether to begin, and end the command unless the answer is yes."""
+    if agreed or not sys.stdin.isatty():
+        return
+    answer = input("This takes about three minutes. Begin? [y/N] ")
+    if answer.strip().lower() not in ("y", "yes"):
+        sys.exit("nothing was written")
 
 
 def _refusal(name: str, out: Path, replace: bool) -> str | None:
@@ -133,13 +149,17 @@ def _hypervolumes(model: ModelProto, trained: Trained) -> dict[str, float]:
 
 
 def _commit() -> str:
-    described = subprocess.run(
-        ["git", "describe", "--always", "--dirty"],
-        capture_output=True,
-        text=True,
-        check=True,
-        encoding="utf-8",
-    )
+    """Return the version of the code that exports, if it lies in a repository of git."""
+    try:
+        described = subprocess.run(
+            ["git", "describe", "--always", "--dirty"],
+            capture_output=True,
+            text=True,
+            check=True,
+            encoding="utf-8",
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return _UNKNOWN
     return described.stdout.strip()
 
 

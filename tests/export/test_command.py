@@ -1,6 +1,7 @@
 """`python -m export`: an actor of one's own, and no released one lost."""
 
 import re
+from io import StringIO
 from pathlib import Path
 
 import onnx
@@ -14,6 +15,13 @@ from models.config import NetworkConfig, TrainingConfig
 from service.actor import load_actors
 
 SMALL = NetworkConfig(name="pa-one", width=8, heads=2, layers=1, feedforward=8)
+
+
+class Terminal(StringIO):
+    """A terminal at which somebody types."""
+
+    def isatty(self) -> bool:
+        return True
 
 
 @pytest.fixture
@@ -83,3 +91,24 @@ def test_a_file_is_replaced_where_that_is_asked_for(weights: Path) -> None:
     for _ in range(2):
         command.main([str(weights), "--out", "here/one.onnx", "--replace"])
     assert list(load_actors(Path("here"), 1)) == ["pa-one"]
+
+
+def test_somebody_at_a_terminal_is_asked_first(
+    weights: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdin", Terminal("\ny\n"))
+    with pytest.raises(SystemExit, match="nothing was written"):
+        command.main([str(weights), "--name", "my-one"])
+    assert not Path("runs").exists()
+    command.main([str(weights), "--name", "my-one"])
+    assert Path("runs/actors/my-one.onnx").exists()
+
+
+def test_the_version_is_unknown_outside_a_repository(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    assert command._commit() == "version unknown"
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert command._commit() == "version unknown"
