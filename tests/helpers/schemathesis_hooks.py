@@ -28,12 +28,15 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
     stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
     reference point is beyond some tour; what has changed is about the stops of a front; a tour is
-    chosen in one way; a fleet can keep its rules; robots have ids of their own; an idempotency key
-    belongs to one body; webhooks go where the operator allows, and here nowhere.
+    chosen in one way, and picks are of options; a fleet can keep its rules; robots have ids of
+    their own; an idempotency key belongs to one body; webhooks go where the operator allows, and
+    here nowhere.
     """
     (case.headers or {}).pop("Webhook-Url", None)
     if case.path == "/tour" and case.meta.generation.mode.is_positive:
         _choose_in_one_way(case)
+    if case.path.endswith("/questions") and case.meta.generation.mode.is_positive:
+        (case.query or {}).pop("picks", None)  # which are of options that the front has
     if (case.query or {}).get("geometry") == "roads":  # there is no routing engine
         case.query["geometry"] = "straight"
     if "plan" in (case.query or {}) and case.meta.generation.mode.is_positive:
