@@ -17,6 +17,8 @@ Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
 Termination = Literal["converged", "time_limit", "cancelled"]
 
+BOUND_SECONDS = 5.0  # for tightening a bound; it is valid at any time
+
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.construction.repairs import repairs_worth
 from service.errors import Cancelled, NoTour, Obstacle
-from service.front import Front, PlanOptions, SearchFunction, SearchResult
+from service.front import BOUND_SECONDS, Front, PlanOptions, SearchFunction, SearchResult
 from service.instance import Instance, tour_lengths
 from service.search.best_subset import best_subset, selection_limit, selection_seconds
 from service.search.bound.hypervolume import hypervolume_bound
@@ -32,7 +32,6 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
 _PHASES = ("construction", "improvement", "selection", "bound")
-BOUND_SECONDS = 5.0  # for tightening a bound; it is valid at any time
 
 
 def improved(

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from service.front import BOUND_SECONDS
 from service.requests.coverage import CoverageRequest
 from service.requests.fields import PlanFields, SearchFields
 from service.requests.fleet import FleetRequest
@@ -62,6 +63,7 @@ from numpy.typing import ArrayLike
 from paretour.frames import Costs, Frame
 
 DEFAULT_TIME_LIMIT = {FrontRequest.model_fields["time_limit"].default}  # seconds
+BOUND_SECONDS = {BOUND_SECONDS}  # the most that the service takes to prove a bound
 '''
 _WRAPPER = textwrap.TextWrapper(width=84, subsequent_indent="    ", break_on_hyphens=False)
 

@@ -12,7 +12,7 @@ from paretour import bodies
 from pydantic import BaseModel
 from typer.main import get_command
 
-from service import planner
+from service import front
 from service.actor_info import RELEASED, read_actor_infos
 from service.api import mcp, request_headers, stored_fronts
 from service.cli.commands import app
@@ -61,7 +61,7 @@ def cells(page: Path, heading: str) -> list[list[str]]:
         (r"nothing better for ([\d,]+) iterations per city", [schedule.PATIENCE]),
         (r"[Uu]p to (\w+) cities it tries all", [sizes.MAX_ENUMERATED]),
         (r"up to (\w+) stops to visit and (\w+) vehicles", [all_plans.MOST_STOPS, 6]),
-        (r"it takes up to (\d+) s more", [planner.BOUND_SECONDS]),
+        (r"it takes up to (\d+) s more", [front.BOUND_SECONDS]),
         (r"For up to (\d+) stops it also names stops", [conflicts.FEW_STOPS]),
         (r"a text of up to (\d+) characters", [fields.LONGEST_TEXT]),
         (r"the most load: whole numbers, up to (\d+)", [fleet_fields._MOST_DIMENSIONS]),

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from paretour.frames import Costs, Frame
 
 DEFAULT_TIME_LIMIT = 1.0  # seconds
+BOUND_SECONDS = 5.0  # the most that the service takes to prove a bound
 
 
 class SearchOptions(TypedDict, total=False):

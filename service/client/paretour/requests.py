@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from paretour.arrays import plain_object
 from paretour.frames import COSTS, Costs, Frame, has_ids, without_frames
 from paretour.members import (
+    BOUND_SECONDS,
     DEFAULT_TIME_LIMIT,
     CoverageRequest,
     FleetRequest,
@@ -30,7 +31,6 @@ Instance = ArrayLike | Sequence[Costs] | Sequence[StopRequest] | Frame
 
 _OBJECTIVES = (2, 3, 4)
 _MEMBERS = {2: "coordinates", 3: "matrices"}  # by the dimensions of an array
-_BOUND_SECONDS = 5.0  # seconds: the most that the service takes to prove a bound
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Plan:
     def seconds(self) -> float:
         """The most seconds that search and bound may take; the default for an invalid limit."""
         limit = self.request.get("time_limit", DEFAULT_TIME_LIMIT)
-        bound = _BOUND_SECONDS if self.request.get("bound") else 0.0
+        bound = BOUND_SECONDS if self.request.get("bound") else 0.0
         return bound + (limit if isinstance(limit, int | float) else DEFAULT_TIME_LIMIT)
 
     @property
