@@ -8,12 +8,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from service.requests.json_schemas import (
-    FILE_FORMS,
-    JSON_FORMS,
     coverage_schemas,
     fleet_schemas,
     front_schemas,
-    one_of,
     reference_to,
     replan_fleet_schemas,
     replan_schemas,
@@ -34,7 +31,7 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         **replan_schemas(limits, names),
         **replan_fleet_schemas(limits),
         **fleet_schemas(limits),
-        "FrontForm": _form_schema(one_of(FILE_FORMS), "matrices", file),
+        "FrontForm": _form_schema(reference_to("FrontFileRequest"), "matrices", file),
         "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
     }
 
@@ -60,7 +57,7 @@ def _form_schema(request: Schema, file: str, description: str) -> Schema:
 
 
 _JSON = "application/json"
-FRONT_BODY = _body(one_of(JSON_FORMS), "FrontForm")
+FRONT_BODY = _body(reference_to("FrontRequest"), "FrontForm")
 REPLAN_BODY = _body({"anyOf": [reference_to("ReplanRequest"), reference_to("ReplanFleetRequest")]})
 COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")
 FLEET_BODY = _body(reference_to("FleetRequest"))

@@ -7,10 +7,10 @@ agents seldom need. All members are passed on, and the service checks them.
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
-from pydantic.json_schema import GenerateJsonSchema
-from pydantic_core.core_schema import ModelSchema, StringSchema, WithDefaultSchema
+from pydantic_core.core_schema import ModelSchema, StringSchema
 
 from service.requests.fields import SearchFields
+from service.requests.json_schemas import RULES, WithoutNull
 
 _MOST_TEXT = 2**20  # characters of a file
 # The members of forms that agents seldom need. All others are in the schemas, new ones as well.
@@ -114,7 +114,7 @@ class Changes(StoredFront, Members):
     """A front, and the changes since it was planned."""
 
 
-class _ForAgents(GenerateJsonSchema):
+class _ForAgents(WithoutNull):
     """Make JSON schemas without what agents seldom need; forms may have other members, too."""
 
     def field_title_should_be_set(self, schema: Any) -> bool:  # noqa: ARG002
@@ -124,16 +124,12 @@ class _ForAgents(GenerateJsonSchema):
         found = super().str_schema(schema)
         return {key: value for key, value in found.items() if key != "pattern"}
 
-    def default_schema(self, schema: WithDefaultSchema) -> dict[str, Any]:
-        found = super().default_schema(schema)
-        return {key: value for key, value in found.items() if (key, value) != ("default", None)}
-
     def model_schema(self, schema: ModelSchema) -> dict[str, Any]:
         found = super().model_schema(schema)
         rare = _RARE.get(schema["cls"].__name__, "").split()
         for name in rare:
             del found["properties"][name]
-        left_out = ("title", "additionalProperties") if rare else ("title",)
+        left_out = {"title", *RULES, *(["additionalProperties"] if rare else [])}
         return {key: value for key, value in found.items() if key not in left_out}
 
 

@@ -69,7 +69,9 @@ class RobotItem(StrictModel):
         description="instead of start: x and y, and maybe yaw, in the frame of the map",
     )
     end: NonNegativeInteger = Field(
-        default=0, description="with closed false, the place where it ends; by default anywhere"
+        default=0,
+        json_schema_extra=without_default,
+        description="with closed false, the place where it ends; by default anywhere",
     )
     end_pose: RobotPose = Field(
         default_factory=list, description="instead of end: where it ends, in the frame of the map"

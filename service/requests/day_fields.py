@@ -11,8 +11,17 @@ from service.errors import invalid
 from service.errors.faults import show
 from service.objectives import Objective
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.fields import NO_WAY, CostRows, Pair, StrictModel, Text, optional
-from service.requests.stop_fields import NamedStop, ObjectiveItem
+from service.requests.fields import (
+    ABSENT,
+    NO_WAY,
+    CostRows,
+    Pair,
+    StrictModel,
+    Text,
+    one_of,
+    optional,
+)
+from service.requests.stop_fields import OF_A_SPEED, NamedStop, ObjectiveItem
 from service.requests.stops import (
     FixedSource,
     Hours,
@@ -105,7 +114,23 @@ class StopItem(NamedStop):
 
 
 class DayObjectiveItem(ObjectiveItem):
-    """An objective, whose costs may change over the day."""
+    """An objective, whose costs may change over the day.
+
+    It has exactly one source of costs: matrix, coordinates, from or slices.
+    """
+
+    model_config = one_of(
+        "matrix",
+        "coordinates",
+        "from",
+        "slices",
+        speed=OF_A_SPEED,
+        traffic={
+            "required": ["from"],
+            "properties": {"from": {"const": "road_time"}, "over_the_day": ABSENT},
+        },
+        slices={"properties": {"over_the_day": ABSENT}},
+    )
 
     over_the_day: Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)] = (
         Field(

@@ -5,10 +5,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, JsonValue, Tag
 
 from service.errors import invalid
-from service.front import PlanOptions
+from service.front import BOUND_SECONDS, PlanOptions
 from service.instance import CLOSED, RouteEnds
 from service.objectives import MOST_OBJECTIVES, MOST_OF_FLEETS, OBJECTIVES
 from service.preferences import from_angles, spread
@@ -64,6 +64,7 @@ Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
 PlanePoint = Pair[Number]
 AsInteger = BeforeValidator(_integer)
+ABSENT: dict[str, JsonValue] = {"not": {}}  # of a member that must not be there
 # AsInteger comes last: in front of the bounds it would hide them from the OpenAPI document.
 PositiveInteger = Annotated[int, Field(ge=1, le=LARGEST_INTEGER), AsInteger]
 NonNegativeInteger = Annotated[int, Field(ge=0, le=LARGEST_INTEGER), AsInteger]
@@ -111,6 +112,19 @@ def optional(description: str) -> Any:
 def without_default(schema: dict[str, Any]) -> None:
     """Leave a default that depends on other fields out of the JSON schema of a field."""
     del schema["default"]
+
+
+def one_of(*choices: str, **of_some: JsonValue) -> ConfigDict:
+    """Return the configuration of a form that must have exactly one of these members.
+
+    Args:
+        choices: The members; with a `+` between those that belong together.
+        of_some: The schema that a form must fit as well if it has a member, by that member.
+    """
+    alone: list[JsonValue] = [{"required": [*names.split("+")]} for names in choices]
+    # Inside of `allOf`, or generators of clients would make a union of it, and no type.
+    rules: dict[str, JsonValue] = {"allOf": [{"oneOf": alone}], "dependentSchemas": of_some}
+    return ConfigDict(json_schema_extra=rules)
 
 
 class StrictModel(BaseModel):
@@ -201,7 +215,8 @@ class PlanFields(SearchFields):
         bool, Offered(label="Say how far from the best possible it may be", more=1)
     ] = Field(
         default=False,
-        description="whether to compute, in up to 5 s, a bound that no hypervolume exceeds",
+        description=f"whether to compute, in up to {BOUND_SECONDS:g} s, a bound that no hypervolume"
+        " exceeds",
     )
     actor: Annotated[str, Offered(option="The network, one of `paretour actors`.")] = Field(
         default="",

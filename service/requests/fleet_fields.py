@@ -10,6 +10,7 @@ from service.errors import invalid
 from service.fleet.rules import Measure, Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 from service.requests.fields import (
+    ABSENT,
     AsInteger,
     Cost,
     Pair,
@@ -17,9 +18,12 @@ from service.requests.fields import (
     PositiveNumber,
     StrictModel,
     Text,
+    one_of,
     optional,
+    without_default,
 )
 from service.requests.stop_fields import (
+    OF_A_SPEED,
     NamedStop,
     ObjectiveItem,
     StopReference,
@@ -218,7 +222,19 @@ Clock = Annotated[
 
 
 class FleetObjectiveItem(ObjectiveItem):
-    """An objective by its name: costs with their source, or another measure of plans."""
+    """An objective by its name: costs with their source, or another measure of plans.
+
+    It has exactly one of matrix, coordinates, from and measure.
+    """
+
+    model_config = one_of(
+        "matrix",
+        "coordinates",
+        "from",
+        "measure",
+        speed=OF_A_SPEED,
+        measure={"properties": {"over": ABSENT}},
+    )
 
     of_plan: Measure | None = Field(
         default=None,
@@ -231,8 +247,9 @@ class FleetObjectiveItem(ObjectiveItem):
     )
     over: Over = Field(
         default="sum",
-        description="whether the length of a plan is the sum over its routes or the longest route;"
-        " max for one objective at most",
+        json_schema_extra=without_default,
+        description="of costs: whether the length of a plan is the sum over its routes, as by"
+        " default, or the longest route; max for one objective at most",
     )
 
 

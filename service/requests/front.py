@@ -28,6 +28,7 @@ from service.requests.fields import (
     OneEach,
     PlanRequest,
     SomeItems,
+    one_of,
 )
 from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
@@ -62,7 +63,20 @@ Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRow
 
 
 class FrontRequest(DayFields, PlanRequest):
-    """Cities or stops under two to four objectives, and the options of their front."""
+    """Cities or stops under two to four objectives, and the options of their front.
+
+    It has exactly one of coordinates, matrices, and stops with objectives.
+    """
+
+    model_config = one_of(
+        "coordinates",
+        "matrices",
+        "stops+objectives",
+        stops={"required": ["objectives"]},
+        objectives={"required": ["stops"]},
+        departure={"required": ["stops"]},
+        clock={"required": ["stops"]},
+    )
 
     # A request is complete only after `parse_front_request` has checked it.
     # An empty default means that the field was not given: no caller can give an empty array.

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, JsonValue, Tag
 
 from service.errors import invalid
 from service.objectives import Objective
@@ -17,7 +17,9 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    one_of,
     optional,
+    without_default,
 )
 from service.requests.stops import (
     UNITS,
@@ -38,6 +40,7 @@ StopReference = Annotated[
 # In km/h. The least is a metre in an hour, which keeps times finite.
 Speed = Annotated[float, Field(ge=0.001, le=1000, allow_inf_nan=False)]
 Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
+OF_A_SPEED: JsonValue = {"required": ["from"], "properties": {"from": {"const": "great_circle"}}}
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 
 
@@ -51,7 +54,9 @@ class NamedStop(StrictModel):
 
 
 class ObjectiveItem(StrictModel):
-    """An objective by its name, and the source of its costs."""
+    """An objective by its name, and the source of its costs: matrix, coordinates or from."""
+
+    model_config = one_of("matrix", "coordinates", "from", speed=OF_A_SPEED)
 
     name: Text = Field(description="of the objective, in answers and charts")
     unit: Text | None = Field(default=None, description="of its costs, in answers and charts")
@@ -66,6 +71,7 @@ class ObjectiveItem(StrictModel):
     measure: Measure = Field(
         default="great_circle",
         alias="from",
+        json_schema_extra=without_default,
         description="the measure between the locations of stops: metres along a great circle, or"
         " seconds or metres by road",
     )

@@ -31,14 +31,14 @@ IN_PYTHON = """
 import sys
 from generated import Client
 from generated.api.fronts import get_tour, plan_front
-from generated.models import FrontAnswer, MatrixObjective, MeasuredObjective, TourAnswer
-from generated.models import MeasuredObjectiveFrom, StopItem, StopsRequest
+from generated.models import DayObjectiveItem, FrontAnswer, FrontRequest, StopItem, TourAnswer
+from generated.models import DayObjectiveItemFrom
 
 places = {"depot": [24.94, 60.17], "order-17": [24.95, 60.16], "order-18": [24.93, 60.18]}
 stops = [StopItem(id=name, location=place) for name, place in places.items()]
-way = MeasuredObjective(name="way", from_=MeasuredObjectiveFrom.GREAT_CIRCLE)
-risk = MatrixObjective(name="risk", unit="%", matrix=[[0, 1, 2], [1, 0, 3], [2, 3, 0]])
-request = StopsRequest(stops=stops, objectives=[way, risk], start="order-18")
+way = DayObjectiveItem(name="way", from_=DayObjectiveItemFrom.GREAT_CIRCLE)
+risk = DayObjectiveItem(name="risk", unit="%", matrix=[[0, 1, 2], [1, 0, 3], [2, 3, 0]])
+request = FrontRequest(stops=stops, objectives=[way, risk], start="order-18")
 client = Client(base_url=sys.argv[1])
 front = plan_front.sync(client=client, body=request)
 assert isinstance(front, FrontAnswer), front

@@ -78,7 +78,7 @@ def test_every_request_shown_is_answered_as_shown(address: str, operations: dict
 
 
 def test_a_schema_has_the_limits_of_the_service(document: dict[str, Any]) -> None:
-    fields = document["components"]["schemas"]["StopsRequest"]["properties"]
+    fields = document["components"]["schemas"]["FrontRequest"]["properties"]
     assert fields["stops"]["maxItems"] == LIMITS.cities
     assert fields["size"]["maximum"] == LIMITS.size
 
@@ -93,7 +93,7 @@ def test_every_body_refers_to_schemas_with_names(
         if "application/json" in operation.get("requestBody", {}).get("content", {})
     }
     assert bodies == {
-        "POST /front": ["CoordinatesRequest", "MatricesRequest", "StopsRequest"],
+        "POST /front": ["FrontRequest"],
         "POST /coverage": ["CoverageRequest"],
         "POST /front/{id}/replan": ["ReplanRequest", "ReplanFleetRequest"],
         "POST /fleet": ["FleetRequest"],

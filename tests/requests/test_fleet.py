@@ -180,13 +180,8 @@ def test_schemas_have_names_and_limits() -> None:
         "ShipmentItem",
         "BreakItem",
         "VehicleItem",
-        "FleetMatrixObjective",
-        "FleetPlaneObjective",
-        "FleetMeasuredObjective",
-        "PlanMeasureObjective",
-        "MatrixClock",
-        "PlaneClock",
-        "MeasuredClock",
+        "FleetObjectiveItem",
+        "ClockItem",
         "FleetRequest",
     }
     fields = schemas["FleetRequest"]["properties"]

@@ -1,111 +1,114 @@
-"""The schemas of front requests: one for each form, under the limits of the service."""
+"""The schemas of requests, as OpenAPI has them: which members go together, under which limits."""
 
 from dataclasses import replace
 from typing import Any
 
+import jsonschema_rs
 import pytest
 
-from service.requests.json_schemas import FILE_FORMS, JSON_FORMS, fleet_schemas, front_schemas
+from service.api.request_bodies import request_schemas
 from tests.helpers.serving import LIMITS
 
-SCHEMAS = front_schemas(LIMITS, ["pa-one"])
-CITIES = ("coordinates", "matrices", "stops", "objectives")
+SCHEMAS = request_schemas(LIMITS, ["pa-one"])
+WITH_TRAFFIC = request_schemas(replace(LIMITS, roads=True, traffic=True), ["pa-one"])
+CITIES = {"coordinates": [[0, 0, 0, 0]] * 2}
+MATRICES = {"matrices": [[[0, 1], [1, 0]]] * 2}
+WAY = {"name": "way", "from": "great_circle"}
+MATRIX = {"name": "risk", "matrix": [[0, 1], [1, 0]]}
+IN_A_FILE = {"name": "risk", "unit": "%"}
+STOPS = {"stops": [{"id": "a"}, {"id": "b"}], "objectives": [WAY, MATRIX]}
+ONLY_STOPS = {"stops": STOPS["stops"]}
+
+
+def fits(name: str, value: Any, schemas: dict[str, Any] = SCHEMAS) -> bool:
+    """Whether a value fits a component of the OpenAPI document."""
+    document = {"$ref": f"#/components/schemas/{name}", "components": {"schemas": schemas}}
+    return jsonschema_rs.is_valid(document, value)
+
+
+@pytest.mark.parametrize("request_", [CITIES, MATRICES, STOPS, {**STOPS, "departure": 0}])
+def test_a_request_has_one_form(request_: dict[str, Any]) -> None:
+    assert fits("FrontRequest", {**request_, "start": 1})
 
 
 @pytest.mark.parametrize(
-    ("form", "members"),
+    "request_",
     [
-        ("CoordinatesRequest", ["coordinates"]),
-        ("MatricesRequest", ["matrices"]),
-        ("StopsRequest", ["stops", "objectives"]),
-        ("MatricesFileRequest", []),
-        ("StopsFileRequest", ["stops", "objectives"]),
+        {},
+        {**CITIES, **MATRICES},
+        {**CITIES, **STOPS},
+        {**CITIES, **ONLY_STOPS},
+        {**CITIES, "objectives": [WAY, MATRIX]},
+        {**CITIES, "departure": 0},
+        {**MATRICES, **STOPS},
+        ONLY_STOPS,
+        {**CITIES, "unknown": 1},
     ],
 )
-def test_a_form_requires_what_it_is_of_and_has_no_other(form: str, members: list[str]) -> None:
-    schema = SCHEMAS[form]
-    assert schema["title"] == form
-    assert schema["required"] == members
-    assert [name for name in CITIES if name in schema["properties"]] == members
-    assert {"time_limit", "start", "seed"} < schema["properties"].keys()
-    assert schema["additionalProperties"] is False
+def test_a_request_of_no_form_or_two_does_not_fit(request_: dict[str, Any]) -> None:
+    assert not fits("FrontRequest", request_)
 
 
-def test_every_form_is_there_and_every_reference_leads_to_a_schema() -> None:
-    assert {*JSON_FORMS, *FILE_FORMS} < SCHEMAS.keys()
-    names = {reference.rsplit("/", 1)[-1] for reference in references(SCHEMAS)}
-    assert names == SCHEMAS.keys() - {*JSON_FORMS, *FILE_FORMS}
-
-
-def test_an_id_may_stand_for_an_index_among_stops_alone() -> None:
-    def types(form: str) -> list[Any]:
-        for end in ("start", "end"):
-            reference, null = SCHEMAS[form]["properties"][end]["anyOf"]
-            assert null == {"type": "null"}
-        return [each["type"] for each in reference.get("oneOf", [reference])]
-
-    assert types("StopsRequest") == types("StopsFileRequest") == ["integer", "string"]
-    assert types("CoordinatesRequest") == types("MatricesRequest") == ["integer"]
-
-
-def test_an_objective_has_one_source() -> None:
-    kinds = {"MatrixObjective": "matrix", "PlaneObjective": "coordinates"}
-    for name, source in {**kinds, "MeasuredObjective": "from"}.items():
-        assert SCHEMAS[name]["required"] == ["name", source]
-        speed = {"speed"} if source == "from" else set()
-        members = {"name", "unit", source, "over_the_day", *speed}
-        assert SCHEMAS[name]["properties"].keys() == members
-    assert SCHEMAS["NamedObjective"]["properties"].keys() == {"name", "unit", "over_the_day"}
-    assert SCHEMAS["SlicesObjective"]["properties"].keys() == {"name", "unit", "slices"}
-
-
-def test_the_schema_has_traffic_where_the_routing_engine_has() -> None:
-    limits = replace(LIMITS, roads=True, traffic=True)
-    schemas = front_schemas(limits, ["pa-one"])
-    measured = schemas["MeasuredObjective"]
-    reference, _ = measured["properties"]["traffic"]["anyOf"]
-    assert reference == {"$ref": "#/components/schemas/TrafficItem"}
-    assert measured["dependentSchemas"]["traffic"]["properties"]["from"] == {"const": "road_time"}
-    assert schemas["TrafficItem"]["required"] == ["date", "at"]
-    assert "traffic" not in schemas["MatrixObjective"]["properties"]
-    assert "traffic" not in schemas["SlicesObjective"]["properties"]
-
-
-def test_the_schema_says_which_speeds_there_are() -> None:
-    schemas = {**SCHEMAS, **fleet_schemas(LIMITS)}
-    for name in ("MeasuredObjective", "FleetMeasuredObjective"):
-        speed, _ = schemas[name]["properties"]["speed"]["anyOf"]
-        assert speed == {"type": "number", "minimum": 0.001, "maximum": 1000}
-        needs = schemas[name]["dependentSchemas"]["speed"]
-        assert needs == {"properties": {"from": {"const": "great_circle"}}}
-        assert "dependentSchemas" not in schemas[name.replace("Measured", "Matrix")]
+def test_beside_a_file_neither_requests_nor_objectives_have_costs() -> None:
+    named = {**ONLY_STOPS, "objectives": [IN_A_FILE, IN_A_FILE]}
+    assert fits("FrontFileRequest", {})
+    assert fits("FrontFileRequest", named)
+    for other in (CITIES, MATRICES, STOPS, ONLY_STOPS):
+        assert not fits("FrontFileRequest", other)
 
 
 @pytest.mark.parametrize(
-    ("roads", "measures"),
-    [(False, ["great_circle"]), (True, ["great_circle", "road_time", "road_distance"])],
+    ("name", "objective", "fit"),
+    [
+        ("DayObjectiveItem", MATRIX, True),
+        ("DayObjectiveItem", {"name": "x", "coordinates": [[0, 0]]}, True),
+        ("DayObjectiveItem", {**WAY, "speed": 5, "over_the_day": [[0, 1]]}, True),
+        ("DayObjectiveItem", {**WAY, "traffic": {"date": "2026-11-27", "at": [0]}}, False),
+        ("DayObjectiveItem", IN_A_FILE, False),
+        ("DayObjectiveItem", {**WAY, **MATRIX}, False),
+        ("DayObjectiveItem", {**MATRIX, "speed": 5}, False),
+        ("DayObjectiveItem", {"name": "x", "slices": [], "over_the_day": []}, False),
+        ("DayObjectiveItem", {"name": "x", "from": "road_time"}, False),
+        ("FleetObjectiveItem", {**WAY, "over": "max"}, True),
+        ("FleetObjectiveItem", {"name": "x", "measure": "vehicles"}, True),
+        ("FleetObjectiveItem", {"name": "x", "measure": "vehicles", "over": "max"}, False),
+        ("FleetObjectiveItem", {**WAY, "measure": "vehicles"}, False),
+        ("ClockItem", {"from": "great_circle"}, True),
+        ("ClockItem", {}, False),
+    ],
 )
-def test_roads_are_shown_where_there_is_a_routing_engine(roads: bool, measures: list[str]) -> None:
-    schemas = front_schemas(replace(LIMITS, roads=roads), ["pa-one"])
-    assert schemas["MeasuredObjective"]["properties"]["from"]["enum"] == measures
+def test_an_objective_has_one_source(name: str, objective: dict[str, Any], fit: bool) -> None:
+    assert fits(name, objective) == fit
+
+
+@pytest.mark.parametrize(
+    ("source", "fit"), [("road_time", True), ("road_distance", False), ("great_circle", False)]
+)
+def test_traffic_is_of_times_by_road(source: str, fit: bool) -> None:
+    objective = {"name": "x", "from": source}
+    assert fits("DayObjectiveItem", objective, WITH_TRAFFIC)
+    traffic = {"traffic": {"date": "2026-11-27", "at": [0]}}
+    assert fits("DayObjectiveItem", {**objective, **traffic}, WITH_TRAFFIC) == fit
+
+
+def test_every_reference_leads_to_a_schema_and_no_default_is_null() -> None:
+    def check(value: Any) -> None:
+        if isinstance(value, dict):
+            assert value.get("default", 0) is not None
+            if "$ref" in value:
+                assert value["$ref"].removeprefix("#/components/schemas/") in SCHEMAS
+        if isinstance(value, dict | list):
+            for each in value.values() if isinstance(value, dict) else value:
+                check(each)
+
+    check(SCHEMAS)
 
 
 def test_the_schemas_have_the_limits_and_the_actors() -> None:
-    for form, member in zip(JSON_FORMS, ("coordinates", "matrices", "stops"), strict=True):
-        fields = SCHEMAS[form]["properties"]
-        rows = fields[member]["items"] if member == "matrices" else fields[member]
+    fields = SCHEMAS["FrontRequest"]["properties"]
+    for rows in (fields["coordinates"], fields["matrices"]["items"], fields["stops"]):
         assert rows["maxItems"] == LIMITS.cities
-        assert fields["actor"]["enum"] == ["pa-one"]
-        assert fields["repairs"]["maximum"] == LIMITS.repairs
-        assert "default" not in fields["repairs"]  # it depends on the time limit
-        assert fields["augment"]["deprecated"] is True
-
-
-def references(value: Any) -> set[str]:
-    """All references in a schema."""
-    if isinstance(value, list):
-        return set().union(*map(references, value))
-    if not isinstance(value, dict):
-        return set()
-    own = {value["$ref"]} if "$ref" in value else set()
-    return own.union(*map(references, value.values()))
+    assert fields["actor"]["enum"] == ["pa-one"]
+    assert fields["repairs"]["maximum"] == LIMITS.repairs
+    assert "default" not in fields["repairs"]  # it depends on the time limit
+    assert fields["augment"]["deprecated"] is True

@@ -7,7 +7,7 @@ import pytest
 
 from service.errors import Refusal
 from service.requests.fields import PlanRequest
-from service.requests.json_schemas import limited_schema
+from service.requests.json_schemas import limited_schemas
 from service.requests.limits import check_limits, lower_defaults, within_network
 from tests.helpers.serving import LIMITS
 
@@ -123,7 +123,8 @@ def test_a_default_over_a_limit_is_lowered_and_what_was_asked_for_is_not() -> No
 
 
 def test_the_schema_has_the_limits_and_the_actors() -> None:
-    fields = limited_schema(PlanRequest, LIMITS, ["b", "a"])["properties"]
+    schemas = limited_schemas(PlanRequest, LIMITS, ["b", "a"])
+    fields = schemas["PlanRequest"]["properties"]
     assert fields["size"]["maximum"] == fields["size"]["default"] == LIMITS.size
     assert fields["time_limit"]["maximum"] == LIMITS.seconds
     for name in ("start", "end"):
