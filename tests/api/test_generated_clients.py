@@ -172,6 +172,7 @@ def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) ->
     content = json.loads(document.read_text())
     ids = [each["operationId"] for path in content["paths"].values() for each in path.values()]
     assert sorted(ids) == [
+        "ask_about_front",
         "check_live",
         "check_live_head",
         "check_ready",
