@@ -47,7 +47,9 @@ def client(engine: FakeOsrm) -> Iterator[httpx.Client]:
     settings = RouterSettings(
         url=engine.url, router="osrm", profile="driving", seconds=1.0, cache_bytes=0, legs=40
     )
-    app = app_of(edge=Edge(streets=RoadClient(settings)), limits=replace(LIMITS, roads=True))
+    app = app_of(
+        edge=Edge(streets=RoadClient(settings)), limits=replace(LIMITS, roads=True, seconds=5.0)
+    )
     with serving(app) as address, httpx.Client(base_url=address, timeout=30) as client:
         yield client
 
@@ -211,13 +213,15 @@ def test_without_an_engine_streets_are_refused_before_anything_is_planned() -> N
 
 
 def test_one_plan_of_a_fleet_is_drawn_alone(client: httpx.Client) -> None:
-    request = _request()
+    request = _request(time_limit=5)  # it ends once all plans are tried
     request["objectives"][1]["over"] = "max"
     request["vehicles"] = [{"id": "van", "count": 2, "start": "order-0", "end": "order-0"}]
     front = client.post("/fleet", json=request).json()
     assert len(front["front"]) > 1
     path = f"/front/{front['id']}"
-    drawn = client.get(path, params=ROADS, headers=ACCEPT).json()["features"]
+    answer = client.get(path, params=ROADS, headers=ACCEPT)
+    assert answer.status_code == 200, answer.text
+    drawn = answer.json()["features"]
     stops = [each for each in drawn if "stop" in each["properties"]]
     for plan in range(len(front["front"])):
         alone = client.get(path, params={"plan": plan, **ROADS}, headers=ACCEPT).json()
