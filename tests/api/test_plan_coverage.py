@@ -245,7 +245,7 @@ def test_without_an_actor_of_matrices_there_is_no_coverage() -> None:
 
 def test_before_the_ways_over_a_map_are_compiled_there_is_no_coverage(tmp_path: Path) -> None:
     warm = tmp_path / "warm"
-    app = app_of(workers=workers_of(runner_of(warm=warm)), edge=Edge(request_seconds=1))
+    app = app_of(workers=workers_of(runner_of(warm=warm)), edge=Edge(request_seconds=3))
     with serving(app, warm=False) as url:
         answer = httpx.post(f"{url}/coverage", json=changed(time_limit=0))
         problem(answer, 503, "warming-up")

@@ -34,7 +34,7 @@ def serve(request: pytest.FixtureRequest, actor: Shuffler) -> Iterator[Serve]:
 
 
 def test_who_waits_too_long_is_given_the_best_front_so_far(serve: Serve) -> None:
-    with serve(edge=Edge(request_seconds=1.0)) as served:
+    with serve(edge=Edge(request_seconds=3.0)) as served:
         answer = served.client.post("/front", json=LONG).json()
         assert (answer["status"], answer["terminated"]) == ("done", "time_limit")
         check(answer)

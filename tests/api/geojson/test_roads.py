@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -42,15 +43,22 @@ def engine() -> Iterator[FakeOsrm]:
         yield fake
 
 
-@pytest.fixture(scope="module")
-def client(engine: FakeOsrm) -> Iterator[httpx.Client]:
+@contextmanager
+def _client(engine: FakeOsrm, seconds: float) -> Iterator[httpx.Client]:
+    """Serve with an engine that must answer within some seconds."""
     settings = RouterSettings(
-        url=engine.url, router="osrm", profile="driving", seconds=1.0, cache_bytes=0, legs=40
+        url=engine.url, router="osrm", profile="driving", seconds=seconds, cache_bytes=0, legs=40
     )
     app = app_of(
         edge=Edge(streets=RoadClient(settings)), limits=replace(LIMITS, roads=True, seconds=5.0)
     )
     with serving(app) as address, httpx.Client(base_url=address, timeout=30) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def client(engine: FakeOsrm) -> Iterator[httpx.Client]:
+    with _client(engine, seconds=20.0) as client:
         yield client
 
 
@@ -127,13 +135,29 @@ def test_one_stop_is_a_line_of_two_positions(client: httpx.Client) -> None:
     [
         (replying(503), 503, "router-unavailable"),
         (replying(0), 503, "router-unavailable"),
-        (sleeping(1.5), 504, "router-too-slow"),
         (replying(200, b"<html>"), 502, "router-unusable"),
         (replying(200, b"[" * 10_000_000), 502, "router-unusable"),
         (replying(200, b'{"code": "Ok", "sources": [], "routes": []}'), 502, "router-unusable"),
     ],
 )
 def test_an_engine_that_fails_is_a_clear_problem(
+    client: httpx.Client,
+    misbehave: Callable[[Misbehaviour], None],
+    misbehaviour: Misbehaviour,
+    status: int,
+    code: str,
+) -> None:
+    _fails(client, misbehave, misbehaviour, status, code)
+
+
+def test_an_engine_that_is_too_slow_is_a_clear_problem(
+    engine: FakeOsrm, misbehave: Callable[[Misbehaviour], None]
+) -> None:
+    with _client(engine, seconds=0.2) as client:
+        _fails(client, misbehave, sleeping(0.5), 504, "router-too-slow")
+
+
+def _fails(
     client: httpx.Client,
     misbehave: Callable[[Misbehaviour], None],
     misbehaviour: Misbehaviour,
