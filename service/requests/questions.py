@@ -84,5 +84,5 @@ def _members_of_option(option: Option) -> dict[str, Any]:
     return {
         "point": option.point.tolist(),
         "best": option.best.tolist(),
-        "within_reach": len(option.within_reach),
+        "within_reach": option.within_reach,
     }

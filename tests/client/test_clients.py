@@ -100,6 +100,18 @@ def test_the_tour_at_an_angle_is_that_of_the_front(url: str, connect: Connect) -
         np.testing.assert_array_equal(asked.lengths, nearest.lengths)
 
 
+def test_the_service_asks_the_questions_that_the_front_asks(url: str, connect: Connect) -> None:
+    client = connect(url)
+    found = client.front(coordinates=CITIES)
+    first = client.ask(found.id, questions=1, options=4)
+    assert [each.point.tolist() for each in first.options] == [
+        each.point.tolist() for each in found.ask(questions=1, options=4).options
+    ]
+    end = client.ask(found.id, [2], questions=1, options=4)
+    assert end.chosen == found.ask([2], questions=1, options=4).chosen
+    assert end.document["tour"]["tour"] == found[end.chosen].tour.tolist()
+
+
 def test_a_front_of_stops_is_given_as_geojson(url: str, connect: Connect) -> None:
     client = connect(url)
     stops = [{"id": name, "location": [24.9 + k, 60.2]} for k, name in enumerate("ab")]

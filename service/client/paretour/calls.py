@@ -7,9 +7,7 @@ them.
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import wraps
-from inspect import Signature, signature
-from typing import Any, Literal, TypeVar, Unpack, cast
+from typing import Any, Literal, TypeVar, Unpack
 
 import httpx
 from paretour.actors import Actor, parse_actor
@@ -30,6 +28,7 @@ from paretour.members import (
     RobotsRequest,
 )
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
+from paretour.questions import OPTIONS, QUESTIONS, Question, parse_question
 from paretour.requests import (
     Instance,
     Plan,
@@ -41,17 +40,10 @@ from paretour.requests import (
     parts_of,
     replan_plan,
 )
-from paretour.values import (
-    FINAL_STATUSES,
-    Front,
-    Tour,
-    parse_front,
-    parse_tour,
-)
+from paretour.values import FINAL_STATUSES, Front, Tour, parse_front, parse_tour
 
 T = TypeVar("T")
 AnyFront = TypeVar("AnyFront", bound=FrontOfAnyKind)
-Method = TypeVar("Method", bound=Callable[..., Any])
 Parse = Callable[[Mapping[str, Any]], AnyFront]
 Submitted = tuple[str, Parse[AnyFront]]  # the id of a job's front, and the parser of that front
 Geometry = Literal["straight", "roads"]
@@ -259,6 +251,23 @@ class Calls:
         params = parameters({"angle": angle, **choice}, front)
         return parse_tour(_answer((yield from self._get("/tour", params))).document)
 
+    def ask(
+        self,
+        front: str,
+        picks: Sequence[int] = (),
+        *,
+        questions: int = QUESTIONS,
+        options: int = OPTIONS,
+    ) -> Call[Question]:
+        """Return the question about a front by its id that follows some picks, as `Front.ask` does.
+
+        At the end its `document` has the chosen tour or plan.
+        """
+        given = {"picks": ",".join(map(str, picks)), "questions": questions, "options": options}
+        return parse_question(
+            _answer((yield from self._get(f"{front_path(front)}/questions", given)))
+        )
+
     def geojson(
         self, front: str, geometry: Geometry = "straight", plan: int | None = None
     ) -> Call[dict[str, Any]]:
@@ -362,18 +371,6 @@ class Calls:
         content = {**body, "headers": {**body.get("headers", {}), **headers}}
         request = HttpRequest(method="POST", path=plan.path, content=content, timeout=timeout)
         return (yield from self._send(request))
-
-
-def described_as(call: Callable[..., Any]) -> Callable[[Method], Method]:
-    """Return a decorator that gives a client's method the name, help and parameters of a call."""
-
-    def decorate(method: Method) -> Method:
-        described = wraps(call)(method)
-        parameters = signature(call).replace(return_annotation=Signature.empty)
-        described.__signature__ = parameters  # type: ignore[attr-defined]
-        return cast(Method, described)
-
-    return decorate
 
 
 def address_of(url: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from paretour import display
 from paretour.choice import losses
+from paretour.questions import OPTIONS, QUESTIONS, Question, ask
 from paretour.text_sets import text_set
 
 Array = NDArray[np.float64]
@@ -111,6 +112,24 @@ class StoredFront(Generic[Item]):
         except IndexError:
             raise IndexError(f"there are {self._counted()}, got {index}") from None
         return self._item(number)
+
+    def ask(
+        self, picks: Sequence[int] = (), *, questions: int = QUESTIONS, options: int = OPTIONS
+    ) -> Question:
+        """Return the question about the front that follows some picks.
+
+        Its options are points, each as good as the one before or better in every objective. At the
+        end its `chosen` is the number of a tour or plan.
+
+        Args:
+            picks: For each question so far, the index of the option that was picked.
+            questions: How many questions there are, at most.
+            options: How many options each has, at most.
+
+        Raises:
+            ValueError: A pick is not the index of an option, or the front is empty.
+        """
+        return ask(self.lengths, picks, questions=questions, options=options)
 
     @property
     def F(self) -> Array:  # noqa: N802

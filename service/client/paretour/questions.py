@@ -9,12 +9,14 @@ Nothing is stored: a question follows from the front, the picks so far, and how 
 options there are.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import WrongChoice, losses
+from paretour.expect import Members, count, each, floats, members
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -32,12 +34,12 @@ class Option:
     Attributes:
         point: A length of each objective, shape (m,). At the last question it is a tour's.
         best: The least length of each objective, shape (m,), of all tours within reach.
-        within_reach: The indices of the tours none of whose lengths exceeds the point's.
+        within_reach: The number of tours none of whose lengths exceeds the point's.
     """
 
     point: Array
     best: Array
-    within_reach: Indices
+    within_reach: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +51,14 @@ class Question:
         left: How many questions are left, this one included; 0 at the end.
         options: The options by ascending first length; none at the end.
         chosen: The index of the chosen tour at the end; None before.
+        document: The service's whole answer, if it asked the question: at the end with the tour.
     """
 
     current: Option
     left: int
     options: tuple[Option, ...] = ()
     chosen: int | None = None
+    document: Mapping[str, Any] = field(default_factory=dict)
 
 
 def ask(
@@ -108,8 +112,8 @@ def ask(
 
 def _question(lengths: Array, current: Option, left: int, options: int) -> Question:
     """Return the question at a point, with this many left, or the end."""
-    found = representatives(lengths[current.within_reach], options if left else 1)
-    tours = current.within_reach[found]
+    inside = _inside(lengths, current.point)
+    tours = inside[representatives(lengths[inside], options if left else 1)]
     if len(tours) == 1:
         return Question(current, 0, chosen=int(tours[0]))
     points = [_towards(lengths[tour], current.point, left) for tour in tours]
@@ -123,8 +127,13 @@ def _towards(tour: Array, point: Array, left: int) -> Array:
 
 def _option(lengths: Array, point: Array) -> Option:
     """Return the option of standing on a point."""
-    within_reach = np.flatnonzero((lengths <= point).all(axis=1))
-    return Option(point, lengths[within_reach].min(axis=0), within_reach)
+    inside = _inside(lengths, point)
+    return Option(point, lengths[inside].min(axis=0), len(inside))
+
+
+def _inside(lengths: Array, point: Array) -> Indices:
+    """Return the indices of the tours none of whose lengths exceeds the point's."""
+    return np.flatnonzero((lengths <= point).all(axis=1))
 
 
 def representatives(lengths: Array, most: int) -> Indices:
@@ -175,6 +184,28 @@ def _middle_of(points: Array, members: NDArray[np.bool_]) -> int:
 def _distances(points: Array, others: Array) -> Array:
     """Return the squared distance of each point from each of the others."""
     return ((points[:, None] - others[None]) ** 2).sum(axis=2)
+
+
+def parse_question(answer: Members) -> Question:
+    """Return the question in a JSON answer of the service.
+
+    Raises:
+        UnexpectedAnswer: A member is missing or wrong.
+    """
+    return Question(
+        current=_parse_option(answer.document, answer.where),
+        left=answer.read("left", count),
+        options=answer.read("options", each(_parse_option)),
+        chosen=answer.maybe("number", count),
+        document=answer.document,
+    )
+
+
+def _parse_option(value: Any, where: str) -> Option:
+    option = members(value, where)
+    point = option.read("point", floats(None))
+    best = option.read("best", floats(len(point)))
+    return Option(point, best, option.read("within_reach", count))
 
 
 def _check(parameter: str, number: int, least: int, most: int) -> None:

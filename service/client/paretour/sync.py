@@ -14,9 +14,9 @@ from paretour.calls import (
     Submitted,
     address_of,
     client_headers,
-    described_as,
 )
 from paretour.events import JobEvents
+from paretour.explaining import described_as
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.values import Front, Progress, parse_front
@@ -94,6 +94,7 @@ class Client:
     plan_fleet = _result(Calls.plan_fleet)
     plan_robots = _result(Calls.plan_robots)
     tour = _result(Calls.tour)
+    ask = _result(Calls.ask)
     geojson = _result(Calls.geojson)
     read_files = _result(Calls.read_files)
     fronts = _result(Calls.fronts)
