@@ -58,6 +58,15 @@ class RemoteBackend:
         with self._client() as client:
             return _result(client.any_job(client.post(plan).id), plan, console)
 
+    def stored(self, front: str) -> FrontOfAnyKind:
+        """Return a front of any kind by its id, as it is now.
+
+        Raises:
+            Refused: The service does not have it.
+        """
+        with self._client() as client:
+            return client.any_job(front).front()
+
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""
         with self._client() as client:

@@ -109,6 +109,21 @@ def tour(  # noqa: PLR0913  a group of options, or one, each
 
 @app.command()
 @with_groups
+def ask(
+    front: options.AskedFront,
+    *,
+    asking: options.Asking,
+    as_json: options.AsJson = False,
+    service: options.Service,
+) -> None:
+    """Choose a tour or plan by a few questions: which of these is best?"""
+    from service.cli.ask import run_ask
+
+    run_ask(front, asking, as_json, service)
+
+
+@app.command()
+@with_groups
 def replan(
     front_id: options.FrontId,
     changes: options.Changes = None,

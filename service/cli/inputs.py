@@ -9,7 +9,9 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour import read_ros_map
+from paretour import FrontOfAnyKind, UnexpectedAnswer, read_ros_map
+from paretour.expect import parse_json
+from paretour.kinds import parse_any
 
 from service.cli.errors import UsageError
 from service.cli.notes import print_file_notes
@@ -114,6 +116,21 @@ def read_object(path: Path) -> Request:
         OSError: The file does not exist.
     """
     return object_in(Source(_content(path), _bounds()))
+
+
+def read_front(path: Path) -> FrontOfAnyKind:
+    """Return the front in a JSON file, or in standard input for a file named -.
+
+    Raises:
+        UsageError: The file is not an answer of the service; the message names it.
+        OSError: The file does not exist.
+    """
+    content = _content(path)
+    try:
+        return parse_any(parse_json(content.data, content.name).document)
+    except UnexpectedAnswer as error:
+        demand = f"{content.name} must be a front, as `paretour front FILE --json` prints it"
+        raise UsageError(f"{demand}: {error}") from None
 
 
 def read_layer(path: Path) -> Array:

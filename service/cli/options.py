@@ -122,6 +122,14 @@ Changes = Annotated[
         " - is standard input."
     ),
 ]
+AskedFront = Annotated[
+    str,
+    Argument(
+        metavar="FRONT",
+        help="A file with a front of any kind, as --json prints it; - is standard input. With"
+        " --url: the id of a front of the service.",
+    ),
+]
 ServiceUrl = Annotated[
     str, Option("--url", help="The URL of the service that has the front, such as localhost:8000.")
 ]
@@ -227,6 +235,22 @@ class OutputFormat:
 @_of_forms("TourQuery")
 class Ways:
     """The ways to choose a tour. Exactly one must be given."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asking:
+    """The picks so far, and how many questions and options there are."""
+
+    picks: Annotated[
+        str | None,
+        Option(help="For each question the number of an option, such as 0,2; the rest is asked."),
+    ] = None
+    questions: Annotated[
+        int, Option(help="How many questions there are, at most.", min=1, max=10)
+    ] = 3
+    options: Annotated[
+        int, Option(help="How many options each question has, at most.", min=2, max=6)
+    ] = 3
 
 
 @dataclass(frozen=True, kw_only=True)

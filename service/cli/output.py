@@ -74,15 +74,22 @@ def _cities(tour: NDArray[np.int64], ids: Ids | None) -> str:
     return csv_text([stops_of(tour, ids)], delimiter=" ")
 
 
-def plans_as_rows(front: FrontOfPlans, kind: Kind) -> Rows:
-    """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops."""
+def plans_as_rows(front: FrontOfPlans, kind: Kind, numbers: Iterable[int] | None = None) -> Rows:
+    """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops.
+
+    Args:
+        front: The front.
+        kind: Its kind.
+        numbers: Those of the plans to return; by default all.
+    """
     names = front.names
     of_routes = [f"route {name}" for name in names]
     flat = len(names) == OBJECTIVES
     standing = ("balance",) if flat else ()
     rows: Rows = [("plan", *standing, *names, kind.mover, *of_routes, kind.visits)]
     plans: Sequence[Any] = front.plans
-    for number, plan in enumerate(plans):
+    for number in range(len(plans)) if numbers is None else numbers:
+        plan = plans[number]
         for route, (mover, visits) in zip(plan.routes, kind.routes(plan), strict=True):
             lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
             text = csv_text([visits], delimiter=" ")
@@ -93,7 +100,7 @@ def plans_as_rows(front: FrontOfPlans, kind: Kind) -> Rows:
 def front_as_table(front: Front) -> Table:
     """Return a table with a row for each tour, without its cities."""
     rows = [_cells(front, index) for index in range(len(front.lengths))]
-    return _table((*_positions(front), *labels_of(front)), rows)
+    return table_of((*_positions(front), *labels_of(front)), rows)
 
 
 def named_tours(front: Front) -> Table:
@@ -102,7 +109,7 @@ def named_tours(front: Front) -> Table:
     labels = LABELS[: front.lengths.shape[1]]
     names = labels if named is None else [printable(each.name) for each in named]
     found = named_points(front.lengths, names).items()
-    table = _table(
+    table = table_of(
         ("tour", *_positions(front), *labels_of(front)),
         [(escape(name), *_cells(front, index)) for name, index in found],
     )
@@ -121,7 +128,7 @@ def plans_as_table(front: FrontOfPlans, kind: Kind) -> Table:
         balance = (f"{plan.balance:.3f}",) if flat else ()
         rows.append((str(number), *balance, *lengths, *counts))
     standing = ("balance",) if flat else ()
-    return _table(("plan", *standing, *labels_of(front), *kind.counts), rows)
+    return table_of(("plan", *standing, *labels_of(front), *kind.counts), rows)
 
 
 def actors_as_table(actors: Iterable[Actor]) -> Table:
@@ -133,7 +140,7 @@ def actors_as_table(actors: Iterable[Actor]) -> Table:
     return table
 
 
-def _table(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> Table:
+def table_of(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> Table:
     """Return a table of numbers."""
     table = Table()
     for heading in headings:
