@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from paretour.expect import anything, count, flag, members, text
+from paretour.expect import value_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,18 +35,4 @@ class Actor:
     most_objectives: int = 2
 
 
-def parse_actor(value: Any, where: str) -> Actor:
-    """Read an actor."""
-    actor = members(value, where)
-    return Actor(
-        name=actor.read("name", text),
-        digest=actor.read("digest", text),
-        inputs=actor.read("inputs", text),
-        commit=actor.read("commit", text),
-        sizes=actor.read("sizes", anything),
-        angles=actor.read("angles", anything),
-        config=actor.read("config", anything),
-        figures=actor.read("figures", anything),
-        repairs=actor.maybe("repairs", flag) or False,
-        most_objectives=actor.maybe("most_objectives", count) or 2,
-    )
+parse_actor = value_of(Actor)

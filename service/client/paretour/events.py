@@ -5,7 +5,7 @@ from typing import Any
 import httpx
 from paretour.bodies import Decoder
 from paretour.errors import RETRY_STATUSES, refused, retry_after
-from paretour.expect import parse_json, text
+from paretour.expect import parse_json, text, value_of
 from paretour.requests import front_path
 from paretour.server_sent_events import EventParser, ServerSentEvent
 from paretour.values import FINAL_STATUSES, Progress
@@ -84,7 +84,9 @@ class JobEvents:
             self._waited, self._last = 0.0, event
         if event.type == "status":
             self.ended = parse_json(event.data, "status").read("status", text) in FINAL_STATUSES
-        return Progress.of(parse_json(event.data, "progress")) if event.type == "progress" else None
+        if event.type != "progress":
+            return None
+        return value_of(Progress)(parse_json(event.data, "progress").document, "progress")
 
     def finish(self) -> None:
         """Check that a stream did not end before the job.

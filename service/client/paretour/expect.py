@@ -1,17 +1,21 @@
 """Read JSON answers member by member, each as the type that the client expects.
 
-A wrong member raises UnexpectedAnswer, with a sentence that names the member, what it must be, and
-what came. Other members are ignored, so a later service may have more of them.
+An object becomes a dataclass, by the types of its fields (`value_of`). A wrong member raises
+UnexpectedAnswer, with a sentence that names the member, what it must be, and what came. Other
+members are ignored, so a later service may have more of them.
 """
 
 import json
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import MISSING, Field, dataclass, fields
+from datetime import datetime
+from functools import cache
 from itertools import chain
 from reprlib import Repr
-from typing import Any, TypeVar
+from types import NoneType
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,6 +134,14 @@ def anything(value: Any, _where: str) -> Any:
     return value
 
 
+def time(value: Any, where: str) -> datetime:
+    """Read a time."""
+    try:
+        return datetime.fromisoformat(text(value, where))
+    except ValueError:
+        raise unexpected(where, "a time of RFC 3339", value) from None
+
+
 def each(read: Read[T], length: int | None = None) -> Read[tuple[T, ...]]:
     """Return a reader of lists whose items `read` reads; all of this length, if one is given."""
 
@@ -241,3 +253,69 @@ def read_only(array: AnyArray) -> AnyArray:
     """Make an array read-only, and return it."""
     array.setflags(write=False)
     return array
+
+
+def value_of(cls: type[T], **own: Read[Any]) -> Read[T]:
+    """Return a reader of objects as values of a dataclass, whose fields are named as the members.
+
+    A member may be missing where its field has a default or may be None. It is read by the type of
+    the field, or as the field's metadata say under `read`: a function from the fields before it to
+    a reader.
+
+    Args:
+        cls: The dataclass.
+        **own: Readers of fields that need others than these.
+    """
+
+    def read(value: Any, where: str) -> T:
+        found, known = members(value, where), dict[str, Any]()
+        for field, of in _fields(cls):
+            if _has_default(field) and found.document.get(field.name) is None:
+                continue
+            of_known = field.metadata.get("read")
+            by = own.get(field.name) or (of_known(known) if of_known else _reader(of))
+            may_be_none = NoneType in get_args(of)
+            known[field.name] = (found.maybe if may_be_none else found.read)(field.name, by)
+        return cls(**known)
+
+    return read
+
+
+@cache
+def _fields(cls: Any) -> list[tuple[Field[Any], Any]]:
+    """Return the fields of a dataclass, each with its type."""
+    types = get_type_hints(cls)
+    return [(field, types[field.name]) for field in fields(cls)]
+
+
+def _has_default(field: Field[Any]) -> bool:
+    return field.default is not MISSING or field.default_factory is not MISSING
+
+
+@cache
+def _reader(of: Any) -> Read[Any]:
+    """Return the reader of a type."""
+    if of in _OF_TYPES:
+        return _OF_TYPES[of]
+    [part, *more] = [part for part in get_args(of) if part is not NoneType] or [of]
+    if get_origin(of) is tuple:
+        return each(_reader(part), None if more == [Ellipsis] else 1 + len(more))
+    return value_of(of) if part is of else _reader(part)
+
+
+def _numbers(value: Any, where: str) -> dict[str, float]:
+    found = members(value, where)
+    return {name: found.read(name, number) for name in found.document}
+
+
+_OF_TYPES: Mapping[Any, Read[Any]] = {
+    str: text,
+    int: count,
+    float: number,
+    bool: flag,
+    datetime: time,
+    Any: anything,
+    Mapping[str, float]: _numbers,
+    NDArray[np.float64]: floats(None),
+    NDArray[np.int64]: indexes(None),
+}

@@ -2,12 +2,10 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
 
 import httpx
-from paretour.expect import count, each, members, number, text, unexpected
+from paretour.expect import unexpected, value_of
 from paretour.fronts import Objective
-from paretour.values import parse_objective
 
 PAGE = 100  # the most fronts that the service lists at once
 
@@ -37,19 +35,7 @@ class ListedFront:
     objectives: tuple[Objective, ...] | None
 
 
-def parse_listed(value: Any, where: str) -> ListedFront:
-    """Read one front of a list."""
-    item = members(value, where)
-    return ListedFront(
-        id=item.read("id", text),
-        status=item.read("status", text),
-        kind=item.read("kind", text),
-        stored_at=item.read("stored_at", _time),
-        cities=item.read("cities", count),
-        points=item.read("points", count),
-        hypervolume=item.read("hypervolume", number),
-        objectives=item.maybe("objectives", each(parse_objective)),
-    )
+parse_listed = value_of(ListedFront)
 
 
 def next_page(response: httpx.Response) -> str | None:
@@ -66,10 +52,3 @@ def next_page(response: httpx.Response) -> str | None:
     except (httpx.InvalidURL, KeyError):
         raise unexpected("header Link", "the address of the next page", link) from None
     return after
-
-
-def _time(value: Any, where: str) -> datetime:
-    try:
-        return datetime.fromisoformat(text(value, where))
-    except ValueError:
-        raise unexpected(where, "a time of RFC 3339", value) from None

@@ -1,26 +1,18 @@
 """Fronts of plans, for the vehicles of a fleet or for robots on a map, as immutable values."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
 from math import nan
-from typing import Any, Generic, TypeVar, Unpack
+from typing import Any, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import Choice, choose
 from paretour.display import counted, numbers
-from paretour.expect import Read, count, each, floats, indexes, members, number, text
-from paretour.fronts import Array, Item, StoredFront
+from paretour.expect import each, floats, indexes, members, value_of
+from paretour.fronts import Array, StoredFront
 from paretour.ros.paths import Path
-from paretour.values import (
-    PAIR,
-    Uncovered,
-    objectives_of,
-    parse_path,
-    parse_uncovered,
-    stored_members,
-)
+from paretour.values import PAIR, Uncovered, objectives_of, stored_members
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,7 +33,7 @@ class FleetRoute:
     vehicle: str
     stops: tuple[str, ...]
     lengths: Array
-    arrivals: Array | None
+    arrivals: Array | None = field(metadata={"read": lambda route: floats(len(route["stops"]))})
     breaks: tuple[float, ...] = ()
     shift: int | None = None
     route: int | None = None
@@ -65,7 +57,7 @@ class RobotRoute:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class _Plan(Generic[Item]):
+class _Plan:
     """A plan of a front: routes of the vehicles or robots used.
 
     Attributes:
@@ -75,9 +67,9 @@ class _Plan(Generic[Item]):
         routes: The routes of those that leave.
     """
 
-    balance: float
+    balance: float = nan
     lengths: Array
-    routes: tuple[Item, ...]
+    routes: tuple[Any, ...]
 
     def __repr__(self) -> str:
         routes = counted(len(self.routes), "route")
@@ -108,11 +100,11 @@ class LeftOut:
     stop: str
     plan: int | None
     price: Array | None
-    reasons: tuple[Reason, ...]
+    reasons: tuple[Reason, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class FleetPlan(_Plan[FleetRoute]):
+class FleetPlan(_Plan):
     """A plan for the vehicles of a fleet.
 
     Attributes:
@@ -125,15 +117,18 @@ class FleetPlan(_Plan[FleetRoute]):
             the same stops.
     """
 
+    routes: tuple[FleetRoute, ...]
     unassigned: tuple[str, ...]
-    measures: Mapping[str, float]
-    left_out: tuple[LeftOut, ...]
+    measures: Mapping[str, float] = field(default_factory=dict)
+    left_out: tuple[LeftOut, ...] = ()
     kept: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class RobotPlan(_Plan[RobotRoute]):
+class RobotPlan(_Plan):
     """A plan for several robots on a map."""
+
+    routes: tuple[RobotRoute, ...]
 
 
 Plan = TypeVar("Plan", FleetPlan, RobotPlan)
@@ -223,7 +218,7 @@ def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
     answer = members(document, "answer")
     return FleetFront(
         **stored_members(answer, answer.read("front", each(members))),
-        plans=answer.read("front", each(_parse_fleet_plan)),
+        plans=answer.read("front", each(value_of(FleetPlan))),
         objectives=objectives_of(answer) or (),
     )
 
@@ -232,78 +227,11 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
     """Return the front of plans for robots in a JSON answer."""
     answer = members(document, "answer")
     places = indexes(None, PAIR)(answer.document.get("places") or [], "answer/places")
-    route = partial(_parse_robot_route, places=len(places))
+    route = value_of(RobotRoute, tour=indexes(None, below=len(places)))
     return RobotFront(
         **stored_members(answer, answer.read("front", each(members))),
-        plans=answer.read("front", each(partial(_parse_robot_plan, route=route))),
+        plans=answer.read("front", each(value_of(RobotPlan, routes=each(route)))),
         objectives=objectives_of(answer) or (),
         places=places,
-        uncovered=answer.maybe("uncovered", parse_uncovered),
-    )
-
-
-def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
-    plan = members(value, where)
-    lengths = plan.read("lengths", floats(None))
-    return FleetPlan(
-        balance=plan.read("balance", number) if len(lengths) == PAIR else nan,
-        lengths=lengths,
-        routes=plan.read("routes", each(_parse_fleet_route)),
-        unassigned=plan.read("unassigned", each(text)),
-        measures=plan.maybe("measures", _measures) or {},
-        left_out=plan.maybe("left_out", each(_parse_left_out)) or (),
-        kept=plan.maybe("kept", number),
-    )
-
-
-def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
-    route = members(value, where)
-    stops = route.read("stops", each(text))
-    return FleetRoute(
-        vehicle=route.read("vehicle", text),
-        stops=stops,
-        lengths=route.read("lengths", floats(None)),
-        arrivals=route.maybe("arrivals", floats(len(stops))),
-        breaks=route.maybe("breaks", each(number)) or (),
-        shift=route.maybe("shift", count),
-        route=route.maybe("route", count),
-    )
-
-
-def _parse_left_out(value: Any, where: str) -> LeftOut:
-    left_out = members(value, where)
-    return LeftOut(
-        stop=left_out.read("stop", text),
-        plan=left_out.maybe("plan", count),
-        price=left_out.maybe("price", floats(None)),
-        reasons=left_out.maybe("reasons", each(_parse_reason)) or (),
-    )
-
-
-def _parse_reason(value: Any, where: str) -> Reason:
-    reason = members(value, where)
-    return Reason(**{name: reason.read(name, text) for name in ("vehicle", "rule", "detail")})
-
-
-def _measures(value: Any, where: str) -> dict[str, float]:
-    found = members(value, where)
-    return {name: found.read(name, number) for name in found.document}
-
-
-def _parse_robot_plan(value: Any, where: str, route: Read[RobotRoute]) -> RobotPlan:
-    plan = members(value, where)
-    return RobotPlan(
-        balance=plan.read("balance", number),
-        lengths=plan.read("lengths", floats(PAIR)),
-        routes=plan.read("routes", each(route)),
-    )
-
-
-def _parse_robot_route(value: Any, where: str, places: int) -> RobotRoute:
-    route = members(value, where)
-    return RobotRoute(
-        robot=route.read("robot", text),
-        tour=route.read("tour", indexes(None, below=places)),
-        lengths=route.read("lengths", floats(PAIR)),
-        path=route.maybe("path", parse_path),
+        uncovered=answer.maybe("uncovered", value_of(Uncovered)),
     )

@@ -1,9 +1,10 @@
 """Answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Self, TypeVar, Unpack
+from math import nan
+from typing import Any, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +23,13 @@ from paretour.expect import (
     read_only,
     rows,
     text,
+    value_of,
 )
 from paretour.fronts import Array, Objective, RequestNote, StoredFront
-from paretour.ros.paths import Path
+from paretour.ros.paths import PAIR, Path
 
 T = TypeVar("T")
 FINAL_STATUSES = ("done", "cancelled", "failed")
-PAIR = 2  # numbers: of a cell, a point or a length under two objectives
 MOST = 4  # objectives
 
 
@@ -39,15 +40,6 @@ class Progress:
     seconds: float
     hypervolume: float
     points: int
-
-    @classmethod
-    def of(cls, event: Members) -> Self:
-        """Return the progress in the data of an event."""
-        return cls(
-            seconds=event.read("seconds", number),
-            hypervolume=event.read("hypervolume", number),
-            points=event.read("points", count),
-        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,16 +93,22 @@ class Tour:
     """
 
     front: str
-    angle: float
-    balance: float
+    angle: float = nan
+    balance: float = nan
     lengths: Array
     tour: NDArray[np.int64]
-    arrivals: Array | None
+    arrivals: Array | None = field(
+        metadata={"read": lambda tour: floats(None, len(tour["lengths"]))}
+    )
     path: Path | None
-    stops: tuple[str, ...] | None = None
+    stops: tuple[str, ...] | None = field(
+        default=None, metadata={"read": lambda tour: each(text, len(tour["tour"]))}
+    )
     kept: float | None = None
     departure: float | None = None
-    times: Array | None = None
+    times: Array | None = field(
+        default=None, metadata={"read": lambda tour: floats(len(tour["tour"]) + 1)}
+    )
 
     def __repr__(self) -> str:
         return f"<Tour of {len(self.tour)} cities: lengths {numbers(self.lengths)}>"
@@ -228,12 +226,12 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         scale=answer.maybe("scale", floats(m)),
         actor=None if actor is None else actor.read("name", text),
         places=answer.maybe("places", indexes(cities, PAIR)),
-        paths=of_all(items, "path", parse_path),
+        paths=of_all(items, "path", value_of(Path)),
         stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
         objectives=objectives_of(answer),
         kept=column(items, "kept") if _have(items, "kept") else None,
         arrivals=of_all(items, "arrivals", floats(None, m)),
-        uncovered=answer.maybe("uncovered", parse_uncovered),
+        uncovered=answer.maybe("uncovered", value_of(Uncovered)),
         departures=column(items, "departure") if _have(items, "departure") else None,
         times=rows(items, "times", floats, cities + 1) if _have(items, "times") else None,
     )
@@ -241,22 +239,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
 
 def parse_tour(document: Mapping[str, Any]) -> Tour:
     """Return the tour in a JSON answer."""
-    answer = members(document, "answer")
-    tour = answer.read("tour", indexes(None))
-    m = _objective_count(answer, [answer])
-    return Tour(
-        front=answer.read("front", text),
-        angle=_of_two(answer, "angle", m),
-        balance=_of_two(answer, "balance", m),
-        lengths=answer.read("lengths", floats(m)),
-        tour=tour,
-        arrivals=answer.maybe("arrivals", floats(None, m)),
-        path=answer.maybe("path", parse_path),
-        stops=answer.maybe("stops", each(text, len(tour))),
-        kept=answer.maybe("kept", number),
-        departure=answer.maybe("departure", number),
-        times=answer.maybe("times", floats(len(tour) + 1)),
-    )
+    return value_of(Tour)(document, "answer")
 
 
 def _objective_count(answer: Members, items: Sequence[Members]) -> int:
@@ -266,16 +249,11 @@ def _objective_count(answer: Members, items: Sequence[Members]) -> int:
     return len(lengths) if few else PAIR
 
 
-def _of_two(item: Members, name: str, objectives: int) -> float:
-    """Return a number that a tour has under two objectives; NaN under more."""
-    return item.read(name, number) if objectives == PAIR else np.nan
-
-
 def _of_two_each(items: Sequence[Members], name: str, objectives: int) -> Array:
-    """Return that number of each tour, shape (k,)."""
+    """Return a number that tours have under two objectives, shape (k,); NaN under more."""
     if objectives == PAIR:
         return column(items, name)
-    return read_only(np.full(len(items), np.nan))
+    return read_only(np.full(len(items), nan))
 
 
 def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
@@ -286,25 +264,6 @@ def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] 
 def _have(items: Sequence[Members], name: str) -> bool:
     """Return whether the first item has a member."""
     return bool(items) and items[0].document.get(name) is not None
-
-
-def parse_uncovered(value: Any, where: str) -> Uncovered:
-    """Read the uncovered cells of a map."""
-    found = members(value, where)
-    return Uncovered(
-        cells=found.read("cells", count),
-        square_metres=found.read("square_metres", number),
-        regions=found.read("regions", each(_parse_region)),
-    )
-
-
-def _parse_region(value: Any, where: str) -> UncoveredRegion:
-    region = members(value, where)
-    row, column = region.read("cell", indexes(PAIR)).tolist()
-    first, last = region.read("box", indexes(PAIR, PAIR)).tolist()
-    return UncoveredRegion(
-        cells=region.read("cells", count), cell=(row, column), box=(tuple(first), tuple(last))
-    )
 
 
 def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
@@ -319,36 +278,10 @@ def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
         "reference_point": answer.maybe("reference_point", floats(m)),
         "terminated": answer.maybe("terminated", text),
         "document": answer.document,
-        "notes": answer.maybe("notes", each(_parse_note)) or (),
+        "notes": answer.maybe("notes", each(value_of(RequestNote))) or (),
     }
-
-
-def _parse_note(value: Any, where: str) -> RequestNote:
-    note = members(value, where)
-    return RequestNote(
-        note.read("code", text), note.read("text", text), note.maybe("pointer", text)
-    )
 
 
 def objectives_of(answer: Members) -> tuple[Objective, ...] | None:
     """Return the objectives of an answer, where the request named them."""
-    return answer.maybe("objectives", each(parse_objective))
-
-
-def parse_objective(value: Any, where: str) -> Objective:
-    """Read the name and the unit of an objective."""
-    objective = members(value, where)
-    return Objective(objective.read("name", text), objective.maybe("unit", text))
-
-
-def parse_path(value: Any, where: str) -> Path:
-    """Read the path of a tour or route."""
-    path = members(value, where)
-    cells = path.read("cells", indexes(None, PAIR))
-    return Path(
-        cells,
-        path.read("metres", number),
-        points=path.maybe("points", floats(len(cells), PAIR)),
-        yaws=path.maybe("yaws", floats(len(cells))),
-        visits=path.maybe("visits", indexes(None, PAIR)),
-    )
+    return answer.maybe("objectives", each(value_of(Objective)))

@@ -3,13 +3,16 @@
 import csv
 import io
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.expect import floats, indexes
 
 Array = NDArray[np.float64]
+PAIR = 2  # numbers: of a cell, a point or a length under two objectives
+_PAIRS = {"read": lambda _: indexes(None, PAIR)}
 _COLUMNS = ("x", "y", "yaw", "place")
 
 
@@ -29,11 +32,15 @@ class Path:
             order, back to the first if it is closed. All other cells are on the way.
     """
 
-    cells: NDArray[np.int64]
+    cells: NDArray[np.int64] = field(metadata=_PAIRS)
     metres: float
-    points: Array | None = None
-    yaws: Array | None = None
-    visits: NDArray[np.int64] | None = None
+    points: Array | None = field(
+        default=None, metadata={"read": lambda path: floats(len(path["cells"]), PAIR)}
+    )
+    yaws: Array | None = field(
+        default=None, metadata={"read": lambda path: floats(len(path["cells"]))}
+    )
+    visits: NDArray[np.int64] | None = field(default=None, metadata=_PAIRS)
 
     @property
     def poses(self) -> Array:
