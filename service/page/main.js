@@ -31,7 +31,7 @@ const element = (id) => document.getElementById(id);
 const { Result } = await import("./result/result.js");
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
-const result = new Result({
+const result = new Result(service, {
   onClick: (...place) => [placing, replanForm].forEach((each) => each.clicked(...place)),
   onMove(...moved) {
     input.moveCity(...moved);

@@ -1,6 +1,7 @@
 /** Show a front: chart, slider, figures and maps, which select a tour together. */
 
 import { FrontChart } from "../chart/chart.js";
+import { Asking } from "./asking.js";
 import { inFull, lessOf } from "../common/amounts.js";
 import { choiceKept, choiceOf } from "./choice.js";
 import { placeIn } from "./chosen.js";
@@ -35,6 +36,7 @@ export class Result {
   #slider;
   #several;
   #planView;
+  #asking;
   #asked = {}; // the request, as far as it is known
   #kind = kindOf({}); // of the front
   #front = [];
@@ -52,8 +54,11 @@ export class Result {
   #id = null; // the id of the front, once it is final
   #routed = null; // set if the service has a routing engine
 
-  /** @param {object} edited callbacks for clicks on the maps, for stops moved and deleted: see Maps; and `onServe`: see PlanView */
-  constructor(edited) {
+  /**
+   * @param {Service} service the service that asks which tour is best
+   * @param {object} edited callbacks for clicks on the maps, for stops moved and deleted: see Maps; and `onServe`: see PlanView
+   */
+  constructor(service, edited) {
     this.#planView = new PlanView((stop) => this.#maps.choose(stop), edited.onServe);
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps({ ...edited, onChoose: (stop) => this.#planView.choose(stop) });
@@ -63,6 +68,7 @@ export class Result {
     this.#several = new SeveralObjectives({ onSelect, onPreview });
     this.#growth = new Growth(element("growth"), element("growth-help"));
     this.#slider = new BalanceSlider(element("balance"), element("balance-shown"), onSelect);
+    this.#asking = new Asking(service, onSelect);
     element("pin").addEventListener("click", () => this.#pin());
     element("order").addEventListener("toggle", () => this.#order());
     this.clear({});
@@ -103,6 +109,7 @@ export class Result {
     this.#growth.show([]);
     this.#slider.show([], this.#kind.noun);
     this.#several.hide();
+    this.#asking.show(null);
     this.#drawPin();
     this.#draw();
     showFigures(element("figures"), null, null);
@@ -137,6 +144,8 @@ export class Result {
     showUnreached(answer.uncovered, this.#asked.cell_size);
     element("tour-title").textContent = this.#kind.movers ? "Selected plan" : "Tour";
     if (this.#front.length) this.#select(this.#wanted);
+    const isChoice = this.#id && this.#front.length > 1;
+    this.#asking.show(isChoice ? { id: this.#id, objectives: this.#objectives, noun: this.#kind.noun } : null);
     showFigures(element("figures"), alone, this.#kept ? null : answer);
   }
 
