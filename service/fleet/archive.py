@@ -1,7 +1,6 @@
 """The archive of a fleet's search: all nondominated solutions that PyVRP has visited."""
 
 from bisect import bisect_left
-from math import inf
 from operator import itemgetter
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Array
+from service.fleet.fleet_search import KEPT
 from service.fleet.goal import Goal
 from service.fleet.plans import Plan, kept_share
 from service.fleet.rules import Measure, Over
@@ -22,8 +22,6 @@ _ROUNDING = 1e-14  # relative error of a sum of doubles: equal plans differ by a
 _ROUNDED = 4  # units by which each visit is rounded: two legs, a service and a window
 _CROWDED = 2000  # solutions under three objectives, after which a new one must be apart from them
 _APART = 0.01  # in some objective by this share of the front
-_KEPT = 0.9  # share of the stops of a driven plan that a plan keeps which keeps most of it
-_LONGER = 0.05  # by how much each length of such a plan may exceed that of a plan of the front
 
 
 class SolutionArchive:
@@ -180,43 +178,24 @@ class KeptPlans:
     def __init__(self, translation: Translation, driven: Plan) -> None:
         self._translation = translation
         self._driven = driven
-        self._points: Array = np.empty((0, len(translation.fleet.rules.over)))
-        self._plans: list[Plan] = []
-
-    def keeps(self, plan: Plan) -> bool:
-        """Return whether a plan keeps most of the driven one."""
-        return kept_share(self._driven, plan) >= _KEPT
+        self.points: Array = np.empty((0, len(translation.fleet.rules.over)))
+        self.plans: list[Plan] = []
 
     def offer(self, solution: pyvrp.Solution) -> None:
         """Add the plan of a solution if it keeps most, breaks no rule, and is not dominated."""
         if not solution.is_complete() or solution.has_excess_load():
             return
         plan = self._translation.plan(solution)
-        if not self.keeps(plan):
+        if kept_share(self._driven, plan) < KEPT:
             return
         fleet = self._translation.fleet
         point = np.array(plan_lengths(fleet, plan))
-        if (self._points <= point).all(axis=1).any() or violations(fleet, plan):
+        if (self.points <= point).all(axis=1).any() or violations(fleet, plan):
             return
-        left = ~np.all(self._points >= point, axis=1)
-        self._points = np.vstack((self._points[left], point))
-        kept = (each for each, is_left in zip(self._plans, left, strict=True) if is_left)
-        self._plans = [*kept, plan]
-
-    def nearest(self, points: Array) -> Plan | None:
-        """Return the plan that is the least longer than a front; None if all are much longer.
-
-        Args:
-            points: The lengths of the plans of the front, shape (k, m).
-        """
-        if not self._plans:
-            return None
-        with np.errstate(divide="ignore", invalid="ignore"):
-            grown = self._points[:, np.newaxis] / points - 1
-        # Where a point of the front is 0 and the plan's length too, nothing has grown.
-        excess = np.nan_to_num(grown, posinf=inf).max(axis=2).min(axis=1)
-        best = int(excess.argmin())
-        return self._plans[best] if excess[best] <= _LONGER else None
+        left = ~np.all(self.points >= point, axis=1)
+        self.points = np.vstack((self.points[left], point))
+        kept = (each for each, is_left in zip(self.plans, left, strict=True) if is_left)
+        self.plans = [*kept, plan]
 
 
 def _of_costs(over: Over | Measure) -> bool:

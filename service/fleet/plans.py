@@ -32,11 +32,11 @@ def kept_share(driven: Plan, plan: Plan) -> float:
 
     A stop is kept if the same type of vehicles visits it after the same stop, or first as before.
     """
-    before, after = set(_steps(driven)), set(_steps(plan))
+    before, after = set(steps_of(driven)), set(steps_of(plan))
     return len(before & after) / len(before) if before else 1.0
 
 
-def _steps(plan: Plan) -> Iterator[tuple[int, int | None, int]]:
+def steps_of(plan: Plan) -> Iterator[tuple[int, int | None, int]]:
     """Yield the vehicle of each stop, the stop before it, and the stop."""
     for route in plan.routes:
         for before, stop in zip((None, *route.stops), route.stops, strict=False):

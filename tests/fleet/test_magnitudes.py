@@ -13,11 +13,12 @@ from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.necessary import check_necessary
 from service.fleet.planner import plan_fleet
-from service.fleet.plans import FleetFront, Plan, Route
+from service.fleet.plans import Plan, Route
 from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.fleet.test_outliers import AnyOrder
+from tests.helpers.fleets import share_of_front
 from tests.helpers.sampled import third
 
 BRIEF = FleetOptions(time_limit=inf, iterations=800)
@@ -39,17 +40,13 @@ def prized_fleet(over: tuple[Over, Over], huge: float, fixed: float) -> Fleet:
     return Fleet(rules=Rules(visits=visits, vehicles=vehicles, over=over), costs=costs)
 
 
-def plans_of(front: FleetFront) -> list[Plan]:
-    return list(front.plans)
-
-
 @pytest.mark.parametrize("huge", HUGE)
 @pytest.mark.parametrize("over", OVERS)
-def test_a_huge_prize_means_the_same_plans_as_a_moderate_one(
+def test_a_huge_prize_means_as_good_a_front_as_a_moderate_one(
     over: tuple[Over, Over], huge: float
 ) -> None:
     twin, found = (plan_fleet(prized_fleet(over, p, 0.0), BRIEF) for p in (MODERATE, huge))
-    assert plans_of(found) == plans_of(twin)
+    assert share_of_front(twin, found) == pytest.approx(1.0, abs=0.03)
 
 
 @pytest.mark.parametrize("huge", HUGE)
@@ -58,7 +55,7 @@ def test_a_vehicle_of_huge_fixed_cost_is_used_where_it_is_needed_alone(
     over: tuple[Over, Over], huge: float
 ) -> None:
     twin, found = (plan_fleet(prized_fleet(over, 0.0, f), BRIEF) for f in (MODERATE, huge))
-    assert plans_of(found) == plans_of(twin)
+    assert share_of_front(twin, found) == pytest.approx(1.0, abs=0.03)
     assert min(sum(r.vehicle for r in plan.routes) for plan in found.plans) == 1
 
 

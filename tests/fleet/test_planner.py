@@ -38,6 +38,7 @@ from tests.helpers.fleets import (
     hull_corners,
     mixed_fleet,
     random_fleet,
+    share_of_front,
 )
 from tests.helpers.sampled import third
 
@@ -226,8 +227,8 @@ def test_where_capacities_have_room_there_is_a_plan_in_any_time(over: tuple[Over
     vans = VehicleType(start=0, end=0, capacity=(30,), count=4)
     fleet = Fleet(rules=Rules(visits=visits, vehicles=(vans,), over=over), costs=costs)
     front = plan_fleet(fleet, FleetOptions(time_limit=1e-300))
-    assert len(front.plans) == 1
-    assert violations(fleet, front.plans[0]) == []
+    assert front.plans
+    assert all(violations(fleet, plan) == [] for plan in front.plans)
 
 
 @pytest.mark.parametrize("n", [20, 60, 150])
@@ -269,7 +270,7 @@ def test_where_no_rule_can_be_broken_there_is_a_plan_in_any_time(
 
 @pytest.mark.parametrize("units", [(1e-200, 1e-200), (1e-150, 1e-9), (1e9, 1e-9), (1e9, 1e150)])
 @pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
-def test_units_of_any_size_change_no_plan(
+def test_units_of_any_size_change_no_front(
     units: tuple[float, float], over: tuple[Over, Over]
 ) -> None:
     costs = np.random.default_rng(0).integers(1, 50, (2, 14, 14)).astype(float)
@@ -278,9 +279,7 @@ def test_units_of_any_size_change_no_plan(
     scaled = costs * np.array(units)[:, np.newaxis, np.newaxis]
     expected = plan_fleet(Fleet(rules=rules, costs=costs), options)
     front = plan_fleet(Fleet(rules=rules, costs=scaled), options)
-    assert [set(plan.routes) for plan in front.plans] == [
-        set(plan.routes) for plan in expected.plans
-    ]
+    assert share_of_front(expected, front) == pytest.approx(1.0, abs=0.005)
     assert len(front.plans) > 2
 
 

@@ -7,12 +7,12 @@ from math import inf
 
 import numpy as np
 
-from service.fleet.evaluation import plan_lengths, violations
+from service.fleet.evaluation import plan_lengths, points_of, violations
 from service.fleet.fleet import Fleet
-from service.fleet.plans import Plan, Route, path_of
+from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import ALWAYS, Break, Shipment, VehicleType, Visit
-from service.pareto import nondominated
+from service.pareto import hypervolume, nondominated
 
 Point = tuple[float, ...]
 Objectives = tuple[Over | Measure, ...]
@@ -293,3 +293,10 @@ def _released(rules: Rules, stops: Sequence[int], reload: Sequence[int]) -> floa
             break
         released = max(released, rules.visits[stop].release)
     return released
+
+
+def share_of_front(expected: FleetFront, found: FleetFront) -> float:
+    """Return the hypervolume of a front's plans, in the fleet and box of another, by its own."""
+    points = points_of(expected.fleet, found.plans)
+    box = 1.01 * expected.points.max(axis=0)
+    return hypervolume(points, box) / hypervolume(expected.points, box)

@@ -1,0 +1,285 @@
+"""Choose what the search of a fleet minimises next, and from which plan it starts.
+
+First each objective alone, then trade-offs. Under two objectives these are taken between two
+neighbours of the front, most often where the rectangle between them is large: a limit on the
+longest route or the number of vehicles, or the weights with which both neighbours are as good
+(Aneja and Nair, 1979). Under more, weights and limits are random. Each starts from the best plan
+found so far under it, and is annealed.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from service.fleet.fleet import Array, Fleet
+from service.fleet.search.problem import Direction
+from service.objectives import OBJECTIVES
+
+_FIRST_SHARE = 0.25  # of all rounds, for each objective alone
+_DEEP_SHARE = 0.45  # of all rounds, for evenly spread directions
+_DEEP = 12  # directions
+_SHALLOW = 20, 300  # the most and the least share of the rounds left, in each further direction
+_LEAST_ROUNDS = 2
+_LESSER = 1e-6  # weight of the other objectives beside one alone
+_STRICT = 100.0  # what a unit over a limit costs, in units of the first objective
+_DEAR = 10.0  # what a stop outside that must be visited costs at first, in the same
+_HOTTEST, _COLDEST = 0.1, 0.001  # temperatures, in the largest leg of each direction
+_HEAT, _POWER = 0.0015, 0.65  # the first temperature after one ruin per stop, and how it grows
+_UNLIMITED = 0.25  # share of the directions under three objectives that leave out a limit
+_BOUNDED = 0.5  # share of the further directions under two sums with a bound on one of them
+_UNLIMITED_AGAIN = 0.1  # share of the further directions under two objectives without a limit
+_ANY_START = 0.25  # share of those that start from a random plan
+
+_BELOW = 0.95  # how far below the least longest route limits go
+
+_OF_ROUTES = ("max", "imbalance")  # objectives that limits on routes lead to
+
+
+@dataclass(frozen=True)
+class Step:
+    """A search under one direction.
+
+    Args:
+        direction: What it minimises.
+        start: The place of the plan to start from, by ascending first length; None for none.
+        rounds: How long it lasts.
+        heat: Its first temperature.
+        cooled: Its last temperature.
+    """
+
+    direction: Direction
+    start: int | None
+    rounds: int
+    heat: float
+    cooled: float
+
+
+class Directions:
+    """Chooses the directions of a search, one after another.
+
+    Args:
+        fleet: The fleet.
+        random: Chooses weights and limits.
+        points: Returns the points of all plans so far, shape (k, m), by ascending first length.
+        left: Estimates the number of rounds for which there is time.
+        ruins: The number of ruins of a round.
+    """
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        random: np.random.Generator,
+        points: Callable[[], Array],
+        left: Callable[[], float],
+        ruins: int,
+    ) -> None:
+        self._rules = fleet.rules
+        self._over = fleet.rules.over
+        self._scale = fleet.scale
+        self._random = random
+        self._points = points
+        self._left = left
+        self._per_stop = ruins / max(1, len(fleet.rules.clients))
+        self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
+        self._bound = _least_longest(fleet)
+        self._by_limit = [o in _OF_ROUTES or o == "vehicles" for o in self._over]
+
+    def first(self) -> Step:
+        """Return a short search for the least first length."""
+        weights = np.full(len(self._over), _LESSER)
+        weights[0] = 1.0
+        return self._step(weights / self._scale, {}, _LEAST_ROUNDS)
+
+    def steps(self) -> Iterator[Step]:
+        """Yield the directions; each must be searched before the next is requested."""
+        alone = [index for index, over in enumerate(self._over) if not self._by_limit[index]]
+        rounds = self._share(_FIRST_SHARE / max(1, len(alone)))
+        for objective in alone or [0]:
+            weights = np.zeros(len(self._over))
+            weights[objective] = 1.0
+            yield self._step(weights / self._scale, {}, rounds)
+            while not len(self._points()):
+                yield self._step(weights / self._scale, {}, 2 * rounds)
+        rounds = self._share(_DEEP_SHARE / (1 - _FIRST_SHARE) / _DEEP)
+        for number in range(_DEEP):
+            yield self._between(number / (_DEEP - 1), rounds)
+        while True:
+            part = np.exp(self._random.uniform(*np.log(_SHALLOW)))
+            yield self._between(None, self._share(1 / part))
+
+    def _share(self, share: float) -> int:
+        """Return the rounds in a share of the time that is left."""
+        return max(_LEAST_ROUNDS, int(min(1e6, share * self._left())))
+
+    def _between(self, place: float | None, rounds: int) -> Step:
+        """Return a direction towards a place of the front, from 0 to 1, or a random one."""
+        points = self._points()
+        if len(self._over) > OBJECTIVES:
+            return self._random_step(points, rounds)
+        return self._of_two(points, place, rounds)
+
+    def _of_two(self, points: Array, place: float | None, rounds: int) -> Step:
+        """Return a direction between two neighbours of a front of two objectives."""
+        if any(self._by_limit):
+            return self._under_limit(points, place, rounds)
+        if len(points) == 1:
+            weights = self._random.uniform(0.0, 1.0, OBJECTIVES) / self._scale
+            return self._step(weights, {}, rounds)
+        widths = np.ptp(points, axis=0)
+        sides = np.abs(np.diff(points, axis=0)) / widths
+        if place is None:
+            areas = np.sqrt(sides.prod(axis=1)) + _LESSER
+            at = int(self._random.choice(len(areas), p=areas / areas.sum()))
+            if self._random.random() < _BOUNDED:
+                return self._bounded(points, at, rounds)
+            slope = sides[at]
+        else:
+            angle = (0.02 + 0.96 * place) * np.pi / 2
+            slope = np.array([np.sin(angle), np.cos(angle)])
+        # Sides are shares of the front's widths, so that no number is too small or too large.
+        weights = (slope[::-1] + _LESSER) / (widths / self._scale)
+        return self._step(weights / weights.max() / self._scale, {}, rounds)
+
+    def _bounded(self, points: Array, at: int, rounds: int) -> Step:
+        """Return the least length in one of two objectives between two neighbours of the front."""
+        objective = int(self._random.integers(OBJECTIVES))
+        weights = (points[at] - points[at + 1])[::-1] * (-1.0, 1.0)
+        weights[1 - objective] *= self._random.random()
+        bounds = np.full(OBJECTIVES, inf)
+        ends = np.sort(points[[at, at + 1], 1 - objective])
+        bounds[1 - objective] = self._random.uniform(*ends)
+        weights = np.abs(weights) / np.abs(weights).max()
+        return self._step(weights / self._scale, {}, rounds, bounds=bounds)
+
+    def _under_limit(self, points: Array, place: float | None, rounds: int) -> Step:
+        """Return the least first length under a limit on the other of two objectives."""
+        limited = self._by_limit.index(True)
+        lengths = np.sort(points[:, limited])[::-1]
+        greatest, least = lengths[0], lengths[-1]
+        if self._over[limited] == "vehicles":
+            limit = greatest if place is None else greatest - place * (greatest - least)
+            limit = self._random.integers(int(least) - 1, int(greatest) + 1)
+        elif place is not None:
+            limit = greatest - place * (greatest - self._lower(least))
+        elif self._random.random() < _UNLIMITED_AGAIN:
+            limit = inf
+        else:
+            lower = np.append(lengths[1:], self._lower(least))
+            at = int(self._random.choice(len(lengths), p=self._chances(points, lengths - lower)))
+            limit = self._random.uniform(lower[at], lengths[at])
+        weights = np.where(self._by_limit, _LESSER, 1.0) / self._scale
+        return self._step(weights, {limited: float(limit)}, rounds)
+
+    def _lower(self, least: float) -> float:
+        """Return a limit somewhat below the least length found, but not below what can be."""
+        return min(least, max(_BELOW * least, self._bound))
+
+    def _chances(self, points: Array, gaps: Array) -> Array:
+        """Return with which chance each gap below a limit is taken, in the order of the limits."""
+        limited = self._by_limit.index(True)
+        other = np.sort(points[:, 1 - limited])
+        sides = np.append(np.diff(other), np.ptp(other) / max(1, len(other) - 1))
+        chances: Array = np.sqrt(np.maximum(0.0, gaps * sides)) + 1e-300
+        return chances / chances.sum()
+
+    def _random_step(self, points: Array, rounds: int) -> Step:
+        """Return a random direction."""
+        widths = np.ptp(points, axis=0)
+        widths = np.where(widths > 0, widths, self._scale)
+        weights = self._random.exponential(size=len(self._over)) / widths
+        limits = {}
+        for index, by_limit in enumerate(self._by_limit):
+            if by_limit and self._random.random() >= _UNLIMITED:
+                some = points[self._random.integers(len(points)), index]
+                down = self._over[index] == "vehicles"
+                least = self._lower(points[:, index].min())
+                less = some - self._random.integers(2) if down else least
+                limits[index] = float(less if down else self._random.uniform(less, some))
+        return self._step(weights, limits, rounds, any_start=self._random.random() < _ANY_START)
+
+    def _step(
+        self,
+        weights: Array,
+        limits: dict[int, float],
+        rounds: int,
+        any_start: bool = False,
+        bounds: Array | None = None,
+    ) -> Step:
+        """Return a search with weights, shape (m,), and limits and bounds on some objectives.
+
+        Limits are on each route, and bounds, shape (m,), on all routes together.
+        """
+        bounds = np.full(len(self._over), inf) if bounds is None else bounds
+        unit = float((weights * self._scale).max())
+        points = self._points()
+        start = None
+        if len(points):
+            beyond = np.zeros(len(points))
+            for index, limit in limits.items():
+                beyond += np.maximum(0.0, points[:, index] - limit) / self._scale[index]
+            beyond += (np.maximum(0.0, points - bounds) / self._scale).sum(axis=1)
+            values = points @ weights + _STRICT * unit * beyond
+            start = int(values.argmin())
+        if any_start and len(points):
+            start = int(self._random.integers(len(points)))
+        ruins = max(1.0, rounds * self._per_stop)
+        heat = min(_HOTTEST, _HEAT * ruins**_POWER)
+        heat, cooled = unit * max(heat, 2 * _COLDEST), unit * _COLDEST
+        direction = self._direction(weights, limits, bounds, unit)
+        return Step(direction, start, rounds, heat, cooled)
+
+    def _direction(
+        self, weights: Array, limits: dict[int, float], bounds: Array, unit: float
+    ) -> Direction:
+        """Return a direction with weights, shape (m,), and limits and bounds."""
+        costs = np.zeros(OBJECTIVES)
+        by_measure = dict.fromkeys(self._over, 0.0)
+        longest, routes, penalty = inf, 2**31, 0.0
+        for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
+            if over == "sum":
+                costs[layer] += weights[index]
+            elif over in _OF_ROUTES:
+                # Where only the longest route counts, a plan of short routes is a good start.
+                costs[layer if over == "max" else self._rules.swept or 0] += (
+                    _LESSER * weights[index]
+                )
+                longest = limits.get(index, inf)
+                penalty = _STRICT * unit / self._scale[index]
+            elif over == "vehicles":
+                routes = int(limits.get(index, routes))
+            by_measure[over] = float(weights[index])
+        paid = self._over.index("unassigned") if "unassigned" in self._over else 0
+        return Direction(
+            costs=(float(costs[0]), float(costs[1])),
+            vehicle=by_measure.get("vehicles", 0.0),
+            fixed=float(weights[0]),
+            prize=float(weights[paid]),
+            overtime=by_measure.get("overtime", 0.0),
+            lateness=by_measure.get("lateness", 0.0),
+            load_distance=by_measure.get("load_distance", 0.0),
+            longest=longest,
+            shortest=-inf,
+            penalty=penalty,
+            required=_DEAR * unit + float(weights[0]) * self._most_fixed,
+            routes=routes,
+            bounds=bounds,
+            strict=_STRICT * unit / self._scale,
+        )
+
+
+def _least_longest(fleet: Fleet) -> float:
+    """Return a length in the swept costs that the longest route of each plan has at least."""
+    rules = fleet.rules
+    if rules.swept is None:
+        return 0.0
+    costs = fleet.costs[rules.swept]
+    nothing = np.zeros(rules.n)
+    ways = [
+        (nothing if each.start is None else costs[each.start])
+        + (nothing if each.end is None else costs[:, each.end])
+        for each in rules.vehicles
+    ]
+    required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
+    return float(np.min(ways, axis=0)[required].max(initial=0.0))

@@ -1,0 +1,144 @@
+"""A fleet as the arrays that the search reads, and what a direction of the search asks for."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.fleet.fleet import Array, Fleet
+from service.fleet.loads import loads_of
+
+Indices = NDArray[np.int64]
+Nodes = NDArray[np.int32]
+
+MEASURES = (
+    "sum",
+    "max",
+    "vehicles",
+    "unassigned",
+    "overtime",
+    "lateness",
+    "imbalance",
+    "load_distance",
+)
+SUM, MAX, VEHICLES, UNASSIGNED, OVERTIME, LATENESS, IMBALANCE, LOAD_DISTANCE = range(8)
+_NEAR = 100  # stops that are near a stop, at most
+_FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
+
+
+class Problem(NamedTuple):
+    """A fleet of n stops, v types of vehicles and d dimensions of loads, under m objectives.
+
+    A plan has at most r routes: a slot for each vehicle, in the order of the types. The ends of
+    slot i are the nodes n + 2 i and n + 2 i + 1; all other nodes are stops.
+    """
+
+    costs: Array  # (n, n, 2)
+    clock: int  # the number of the costs that are time; -1 for none
+    limited: int  # the number of the costs that `longest` bounds; -1 for none
+    swept: int  # the number of the costs by which the longest route counts; -1 if it does not
+    forbidden: float  # legs of this cost must not be taken
+    demand: Indices  # (n, d)
+    service: Array  # (n,)
+    release: Array  # (n,)
+    opens: Array  # (n,)
+    closes: Array  # (n,)
+    due: Array  # (n,)
+    prize: Array  # (n,), infinite where a stop must be visited
+    near: Nodes  # (n, k), the nearest stops of each stop to visit, from the nearest on
+    clients: Nodes  # (c,), the stops to visit
+    place: Nodes  # (n + 2 r,), the stop at which each node is; -1 for anywhere
+    kind: Indices  # (r,), the type of the vehicle of each slot
+    slots: Indices  # (v + 1,), the first slot of each type
+    capacity: Indices  # (v, d), without the initial load
+    initial: Indices  # (v,), the initial load in the first dimension
+    departs: Array  # (v,)
+    leaves_by: Array  # (v,)
+    returns: Array  # (v,), with overtime
+    shift_end: Array  # (v,)
+    longest: Array  # (v,)
+    fixed: Array  # (v,)
+    over: Indices  # (m,), by MEASURES
+    layer: Indices  # (m,)
+
+
+def problem_of(fleet: Fleet) -> Problem:
+    """Return the arrays of a fleet."""
+    rules, loads = fleet.rules, loads_of(fleet.rules)
+    visits, vehicles = rules.visits, rules.vehicles
+    clients = np.array(rules.clients, np.int32)
+    counts = [min(vehicle.count, len(clients)) for vehicle in vehicles]
+    kind = np.repeat(np.arange(len(vehicles)), counts)
+    ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in vehicles]
+    finite = np.where(np.isinf(fleet.costs), 0.0, fleet.costs)
+    forbidden = _FORBIDDEN * max(1.0, float(finite.max(initial=0.0))) * (rules.n + 1)
+    return Problem(
+        costs=np.ascontiguousarray(
+            np.moveaxis(np.where(np.isinf(fleet.costs), forbidden, fleet.costs), 0, -1)
+        ),
+        clock=-1 if rules.clock is None else rules.clock,
+        limited=-1 if rules.limited is None else rules.limited,
+        swept=-1 if rules.swept is None else rules.swept,
+        forbidden=forbidden,
+        demand=loads.demand,
+        service=np.array([visit.service for visit in visits]),
+        release=np.array([visit.release for visit in visits]),
+        opens=np.array([visit.windows[0][0] for visit in visits]),
+        closes=np.array([visit.windows[-1][1] for visit in visits]),
+        due=np.array([visit.due for visit in visits]),
+        prize=np.array([np.inf if visit.prize is None else visit.prize for visit in visits]),
+        near=_nearest(fleet, clients),
+        clients=clients,
+        place=np.concatenate((np.arange(rules.n), np.array(ends)[kind].ravel())).astype(np.int32),
+        kind=kind,
+        slots=np.concatenate(([0], np.cumsum(counts))),
+        capacity=loads.capacity - loads.initial,
+        initial=np.array([(each.initial_load or (0,))[0] for each in vehicles]),
+        departs=np.array([vehicle.way[0] for vehicle in vehicles]),
+        leaves_by=np.array([min(v.leaves_by, v.way[1]) for v in vehicles]),
+        returns=np.array([vehicle.way[1] for vehicle in vehicles]),
+        shift_end=np.array([vehicle.shift[1] for vehicle in vehicles]),
+        longest=np.array([vehicle.longest for vehicle in vehicles]),
+        fixed=np.array([vehicle.fixed for vehicle in vehicles]),
+        over=np.array([MEASURES.index(over) for over in rules.over]),
+        layer=np.array(rules.layers),
+    )
+
+
+def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
+    """Return the nearest stops to visit of each stop, shape (n, k), in both costs together."""
+    k = min(_NEAR, len(clients) - 1)
+    near = np.zeros((fleet.rules.n, k), np.int32)
+    units = np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
+    for stop in clients:
+        there = fleet.costs[:, stop, clients] / units[:, np.newaxis]
+        back = fleet.costs[:, clients, stop] / units[:, np.newaxis]
+        away = np.minimum(there, back).sum(axis=0)
+        away[clients == stop] = np.inf
+        first = np.argpartition(away, k - 1)[:k] if k else np.empty(0, int)
+        near[stop] = clients[first[np.argsort(away[first], kind="stable")]]
+    return near
+
+
+class Direction(NamedTuple):
+    """What the search minimises: a weighted sum over routes, with limits on routes and plans.
+
+    The weighted sum is that of legs or durations, vehicles, fixed costs, overtime, lateness and
+    load times distance, and of the prizes of stops outside. What exceeds a limit is multiplied by
+    `penalty`. A plan also pays for what its lengths exceed bounds by.
+    """
+
+    costs: tuple[float, float]
+    vehicle: float
+    fixed: float
+    prize: float
+    overtime: float
+    lateness: float
+    load_distance: float
+    longest: float  # limits on the length of a route in the swept costs
+    shortest: float
+    penalty: float
+    required: float  # price of a stop outside that must be visited, at first
+    routes: int  # at most
+    bounds: Array  # (m,), on the lengths of a plan
+    strict: Array  # (m,), what a unit beyond them costs

@@ -1,0 +1,354 @@
+"""Take strings of neighbouring stops out of a plan, and put them in again where they cost least.
+
+Christiaens and Vanden Berghe (2020), "Slack induction by string removals for vehicle routing
+problems".
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.fleet.search.insertion import best_place
+from service.fleet.search.problem import Direction, Nodes, Problem
+from service.fleet.search.working_plan import (
+    MISSING,
+    OUTSIDE,
+    REMOVED,
+    USED,
+    WorkingPlan,
+    begin_iteration,
+    leave_out,
+    link,
+    measure,
+    restore,
+    save_slot,
+    take_in,
+    total_cost,
+    unlink,
+    write_point,
+    write_row,
+)
+from service.jit import compiled, inlined
+from service.search.local_search import random_below
+from service.search.several.archive import BlockArchive, accepts, insert
+
+Array = NDArray[np.float64]
+
+_REMOVED = 10  # stops that an iteration takes out, on the mean
+_LONGEST_STRING = 10
+_SPLIT = 2  # one string in so many leaves stops in its middle
+_STAYING = 100  # one time in so many, more of them
+_MOST_OUTSIDE = 10  # stops outside that an iteration tries to put in
+_ORDERS = 11  # see _key()
+_LONGEST_FIRST = 4  # one ruin in so many begins in the longest route, where that counts
+
+
+@inlined
+def uniform(random: NDArray[np.int64]) -> float:
+    """Draw a number above 0 and below 1."""
+    return (random_below(random, 1 << 30) + 0.5) / (1 << 30)
+
+
+@compiled
+def remove(problem: Problem, plan: WorkingPlan, stop: int) -> None:
+    """Take a stop out of its route, to be inserted later. The route is not measured."""
+    unlink(plan, stop)
+    leave_out(problem, plan, stop)
+    plan.removed[plan.counts[REMOVED]] = stop
+    plan.counts[REMOVED] += 1
+
+
+@compiled
+def ruin(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+    """Take strings of stops out of some routes near a random stop."""
+    clients, used = len(problem.clients), plan.counts[USED]
+    if used == 0:
+        return
+    inside = clients - plan.counts[OUTSIDE]
+    longest = min(float(_LONGEST_STRING), inside / used)
+    most = 4.0 * _REMOVED / (1.0 + longest) - 1.0
+    strings = int(1 + uniform(plan.random) * max(0.0, most))
+    seed = _seed(problem, plan, direction)
+    left = strings
+    if plan.route[seed] >= 0:
+        _take_string(problem, plan, direction, seed, longest)
+        left -= 1
+    for number in range(problem.near.shape[1]):
+        if left <= 0:
+            return
+        stop = problem.near[seed, number]
+        slot = plan.route[stop]
+        if slot >= 0 and plan.touched[slot] != plan.counts[6]:
+            _take_string(problem, plan, direction, stop, longest)
+            left -= 1
+
+
+@inlined
+def _seed(problem: Problem, plan: WorkingPlan, direction: Direction) -> int:
+    """Return a random stop, sometimes one of the longest route where that is over its limit."""
+    if direction.longest < np.inf and random_below(plan.random, _LONGEST_FIRST) == 0:
+        longest, found = -1.0, plan.used[0]
+        for number in range(plan.counts[USED]):
+            length = plan.value[plan.used[number], problem.swept]
+            if length > longest:
+                longest, found = length, plan.used[number]
+        node = plan.next[len(problem.demand) + 2 * found]
+        for _ in range(random_below(plan.random, plan.size[found])):
+            node = plan.next[node]
+        return node
+    return problem.clients[random_below(plan.random, len(problem.clients))]
+
+
+@compiled
+def _take_string(
+    problem: Problem, plan: WorkingPlan, direction: Direction, stop: int, longest: float
+) -> None:
+    """Take a string of stops around a stop out of its route."""
+    slot = plan.route[stop]
+    save_slot(problem, plan, slot)
+    start = len(problem.demand) + 2 * slot
+    size, at = 0, 0
+    node = plan.next[start]
+    while node != start + 1:
+        if node == stop:
+            at = size
+        plan.buffer[size] = node
+        size += 1
+        node = plan.next[node]
+    length = int(1 + uniform(plan.random) * min(float(size), longest))
+    length = min(length, size)
+    staying = 0
+    if length > 1 and random_below(plan.random, _SPLIT) == 0:
+        staying = 1
+        while length + staying < size and random_below(plan.random, _STAYING) == 0:
+            staying += 1
+        staying = min(staying, size - length)
+    reach = length + staying
+    first = max(0, at - reach + 1)
+    first += random_below(plan.random, min(at, size - reach) - first + 1)
+    gap = first + 1 + random_below(plan.random, max(1, length - 1))
+    for place in range(first, first + reach):
+        if not gap <= place < gap + staying:
+            remove(problem, plan, plan.buffer[place])
+    if not measure(problem, plan, direction, slot):
+        _dissolve(problem, plan, direction, slot)
+
+
+@compiled
+def _dissolve(problem: Problem, plan: WorkingPlan, direction: Direction, slot: int) -> None:
+    """Take all stops out of a route."""
+    save_slot(problem, plan, slot)
+    start = len(problem.demand) + 2 * slot
+    while plan.next[start] != start + 1:
+        remove(problem, plan, plan.next[start])
+    measure(problem, plan, direction, slot)
+
+
+@compiled
+def recreate(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+    """Insert the removed stops, one after another, where each costs the least."""
+    _sort(problem, plan, random_below(plan.random, _ORDERS))
+    for number in range(plan.counts[REMOVED]):
+        stop = plan.removed[number]
+        place = best_place(problem, plan, direction, stop, plan.price[stop])
+        if place.slot < 0:
+            continue
+        save_slot(problem, plan, place.slot)
+        take_in(problem, plan, stop)
+        link(plan, place.slot, stop, place.before)
+        if not measure(problem, plan, direction, place.slot):
+            # A rounding apart from what was worked out before: a place like any other that is none.
+            unlink(plan, stop)
+            leave_out(problem, plan, stop)
+            measure(problem, plan, direction, place.slot)
+
+
+@compiled
+def _sort(problem: Problem, plan: WorkingPlan, order: int) -> None:
+    """Sort the removed stops by a random key; those that were outside before come first."""
+    count = plan.counts[REMOVED]
+    for place in range(count):
+        plan.key[place] = _key(problem, plan, plan.removed[place], order)
+    # Shell's sort.
+    gap = count // 2
+    while gap > 0:
+        for place in range(gap, count):
+            stop, key, to = plan.removed[place], plan.key[place], place
+            while to >= gap and plan.key[to - gap] > key:
+                plan.removed[to], plan.key[to] = plan.removed[to - gap], plan.key[to - gap]
+                to -= gap
+            plan.removed[to], plan.key[to] = stop, key
+        gap //= 2
+
+
+@inlined
+def _key(problem: Problem, plan: WorkingPlan, stop: int, order: int) -> float:
+    """Return by what a stop is sorted: at random, by load, far, near, or by its window."""
+    if order < 4:
+        return uniform(plan.random)
+    if order < 6 and problem.demand.shape[1] > 0:
+        return -float(problem.demand[stop, 0])
+    if order < 8:
+        there = problem.place[len(problem.demand)]
+        away = problem.costs[max(there, 0), stop, 0]
+        return -away if order < 7 else away
+    if order == 8:
+        return problem.closes[stop] - problem.opens[stop]
+    if order == 9:
+        return min(problem.closes[stop], problem.due[stop])
+    return problem.opens[stop]
+
+
+@compiled
+def _raise_prices(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+    """Raise the prices of the stops outside that must be visited."""
+    for place in range(plan.counts[OUTSIDE]):
+        stop = plan.outside[place]
+        if problem.prize[stop] == np.inf:
+            plan.price[stop] += direction.required
+
+
+@compiled
+def _try_outside(plan: WorkingPlan) -> None:
+    """Add some of the stops outside to those that are inserted."""
+    outside = plan.counts[OUTSIDE]
+    for number in range(min(outside, _MOST_OUTSIDE)):
+        place = number
+        if outside > _MOST_OUTSIDE:
+            place = random_below(plan.random, outside)
+        stop = plan.outside[place]
+        known = False
+        for other in range(plan.counts[REMOVED]):
+            known |= plan.removed[other] == stop
+        if not known:
+            plan.removed[plan.counts[REMOVED]] = stop
+            plan.counts[REMOVED] += 1
+
+
+@compiled
+def set_prices(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+    """Set what each stop costs outside, at first."""
+    for number in range(len(problem.clients)):
+        stop = problem.clients[number]
+        required = problem.prize[stop] == np.inf
+        plan.price[stop] = direction.required if required else direction.prize * problem.prize[stop]
+
+
+@compiled
+def insert_all(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+    """Insert all stops that are outside, if they fit."""
+    begin_iteration(plan)
+    for place in range(plan.counts[OUTSIDE]):
+        plan.removed[place] = plan.outside[place]
+    plan.counts[REMOVED] = plan.counts[OUTSIDE]
+    recreate(problem, plan, direction)
+
+
+class Driven(NamedTuple):
+    """A plan that is driven, by stop: its vehicle's type, and the stop before it, -1 for none.
+
+    A plan keeps most of it where it keeps at least `most` of these steps; -1 for no plan.
+    """
+
+    kind: Nodes  # (n,); -1 if it is not visited
+    before: Nodes  # (n,)
+    most: int
+
+
+class Found(NamedTuple):
+    """The nondominated plans, and those among the plans that keep most of the driven one."""
+
+    plans: BlockArchive
+    kept: BlockArchive
+    driven: Driven
+    point: Array  # (m,), scratch space
+    row: Nodes  # scratch space
+
+
+@compiled
+def anneal(
+    problem: Problem,
+    plan: WorkingPlan,
+    direction: Direction,
+    found: Found,
+    ruins: int,
+    heat: float,
+    cooling: float,
+) -> float:
+    """Ruin and recreate a plan so many times, and offer each plan that is made.
+
+    Args:
+        problem: The fleet.
+        plan: The plan to change.
+        direction: What counts.
+        found: Gets all plans that visit all required stops and are nondominated.
+        ruins: How often.
+        heat: The temperature at first.
+        cooling: The factor of the temperature in each iteration.
+
+    Returns:
+        The temperature at the end.
+    """
+    beyond = _beyond(problem, plan, direction, found)
+    for _ in range(ruins):
+        before = total_cost(plan) + beyond
+        begin_iteration(plan)
+        _try_outside(plan)
+        ruin(problem, plan, direction)
+        recreate(problem, plan, direction)
+        exceeding = _beyond(problem, plan, direction, found)
+        after = total_cost(plan) + exceeding
+        if plan.counts[MISSING] > 0:
+            _raise_prices(problem, plan, direction)
+        else:
+            offer(problem, plan, found)
+        if after > before - heat * math.log(uniform(plan.random)):
+            restore(problem, plan, direction)
+        else:
+            beyond = exceeding
+        heat *= cooling
+    return heat
+
+
+@inlined
+def _beyond(problem: Problem, plan: WorkingPlan, direction: Direction, found: Found) -> float:
+    """Write the point of a plan, and return what it costs that it is beyond bounds."""
+    if plan.counts[MISSING] > 0:
+        return 0.0
+    write_point(problem, plan, found.point)
+    cost = 0.0
+    for objective in range(len(direction.bounds)):
+        if found.point[objective] > direction.bounds[objective]:
+            excess = found.point[objective] - direction.bounds[objective]
+            cost += direction.strict[objective] * excess
+    return cost
+
+
+@compiled
+def offer(problem: Problem, plan: WorkingPlan, found: Found) -> None:
+    """Offer a plan that visits all required stops, with its point, to the archives."""
+    if accepts(found.plans, found.point):
+        write_row(problem, plan, found.row)
+        insert(found.plans, found.point, found.row)
+    if (
+        found.driven.most >= 0
+        and accepts(found.kept, found.point)
+        and _kept_steps(problem, plan, found.driven) >= found.driven.most
+    ):
+        write_row(problem, plan, found.row)
+        insert(found.kept, found.point, found.row)
+
+
+@compiled
+def _kept_steps(problem: Problem, plan: WorkingPlan, driven: Driven) -> int:
+    """Return how many steps of a driven plan are in a plan."""
+    kept, n = 0, len(problem.demand)
+    for number in range(len(problem.clients)):
+        stop = problem.clients[number]
+        slot = plan.route[stop]
+        if slot >= 0 and driven.kind[stop] == problem.kind[slot]:
+            before = plan.previous[stop]
+            kept += (before if before < n else -1) == driven.before[stop]
+    return kept

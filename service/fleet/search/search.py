@@ -1,0 +1,235 @@
+"""Search for the front of a fleet by ruin and recreate, from one direction to the next."""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet_search import KEPT, FleetSearch
+from service.fleet.fronts import FleetOptions
+from service.fleet.plans import FleetFront, Plan, Route, steps_of
+from service.fleet.rules import Rules
+from service.fleet.scales import Units
+from service.fleet.search.directions import Directions, Step
+from service.fleet.search.problem import Nodes, Problem, problem_of
+from service.fleet.search.ruin_and_recreate import (
+    Driven,
+    Found,
+    anneal,
+    insert_all,
+    offer,
+    set_prices,
+)
+from service.fleet.search.working_plan import (
+    MISSING,
+    clear,
+    load_row,
+    make_working_plan,
+    write_point,
+    write_row,
+)
+from service.front import Termination
+from service.search.several.archive import make_archive, rows_of
+from service.watch import Watch
+
+RUINS = 100  # in a round
+_CALL = 0.003  # seconds that compiled code may run before the time is checked
+_STILL = 0.1  # share of the rounds of a step at its end that accept nothing that is worse
+_FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
+_IDLE_STEPS = 72  # steps without a new plan, after which it ends
+
+
+def is_searched(rules: Rules) -> bool:
+    """Return whether the search knows all rules of a fleet."""
+    return not (
+        rules.shipments
+        or rules.reloads
+        or any(len(visit.windows) > 1 for visit in rules.visits)
+        or any(vehicle.breaks for vehicle in rules.vehicles)
+    )
+
+
+class RuinSearch(FleetSearch):
+    """A search by ruin and recreate, in all of whose directions one archive grows."""
+
+    def __init__(self, fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> None:
+        units = Units.of(fleet)
+        super().__init__(fleet, options, watch, units)
+        self._problem = problem_of(units.fleet)
+        self._working = make_working_plan(self._problem, options.seed)
+        objectives = len(fleet.rules.over)
+        width = _width(self._problem)
+        driven = _driven(self._problem, options.driven)
+        self._archives = Found(
+            plans=make_archive(width, objectives),
+            kept=make_archive(width, objectives, 16 if driven.most < 0 else 1000),
+            driven=driven,
+            point=np.zeros(objectives),
+            row=np.full(width, -1, np.int32),
+        )
+        self._directions = Directions(
+            units.fleet,
+            np.random.default_rng(options.seed),
+            lambda: self.points,
+            self._left,
+            RUINS,
+        )
+        self._rounds = 0
+        self._began = 0.0
+        self._sorted = 0, np.empty(0, np.int32)
+
+    @property
+    def points(self) -> Array:
+        """The lengths of all nondominated plans so far, shape (k, m), by ascending first length."""
+        points: Array = self._archives.plans.points[self._rows]
+        return points
+
+    @property
+    def _rows(self) -> Nodes:
+        """The rows of all points in the archive."""
+        inserted = int(self._archives.plans.counts[2])
+        if self._sorted[0] != inserted:
+            self._sorted = inserted, rows_of(self._archives.plans)
+        return self._sorted[1]
+
+    def __len__(self) -> int:
+        """Return the number of nondominated plans so far."""
+        return int(self._archives.plans.counts[0])
+
+    def plan_at(self, index: int) -> Plan:
+        """Return the plan of a point."""
+        return _plan_of(self._archives.plans.tours[self._rows[index]])
+
+    def _kept(self) -> tuple[Array, list[Plan]]:
+        kept = self._archives.kept
+        rows = rows_of(kept)
+        return kept.points[rows], [_plan_of(kept.tours[row]) for row in rows]
+
+    def _fewest_left_out(self) -> int:
+        if not len(self) or not np.isfinite(self._problem.prize).any():
+            return 0
+        visited = (self._archives.plans.tours[self._rows] >= 0).sum(axis=1).max()
+        return len(self._problem.clients) - int(visited)
+
+    def begin_with(self, plan: Plan) -> None:
+        """Start from a plan that keeps every rule."""
+        step = self._directions.first()
+        load_row(self._problem, self._working, step.direction, self._row_of(plan))
+        self._offer()
+
+    def _row_of(self, plan: Plan) -> Nodes:
+        row = np.full(_width(self._problem), -1, np.int32)
+        written = [stop for r in plan.routes for stop in (-2 - r.vehicle, *r.stops)]
+        row[: len(written)] = written
+        return row
+
+    def run(self) -> Termination:
+        """Search until nothing is left to do, the time is over, or the watch says to stop."""
+        self._began = self._watch.spent
+        if self._watch.stopped():
+            self._cancelled = True
+            return "cancelled"
+        if not len(self):
+            self._insert_all()
+        for step in self._steps():
+            if self._search(step):
+                return "cancelled" if self._cancelled else "time_limit"
+        return "converged"
+
+    def _insert_all(self) -> None:
+        """Make a first plan, which may leave out stops."""
+        problem, working, direction = (
+            self._problem,
+            self._working,
+            self._directions.first().direction,
+        )
+        clear(problem, working, direction)
+        set_prices(problem, working, direction)
+        insert_all(problem, working, direction)
+        if working.counts[MISSING] == 0:
+            self._offer()
+
+    def _offer(self) -> None:
+        write_point(self._problem, self._working, self._archives.point)
+        offer(self._problem, self._working, self._archives)
+
+    def _steps(self) -> Iterator[Step]:
+        """Yield the directions; for few stops, until they lead to nothing new."""
+        yield self._directions.first()
+        idle, inserted = 0, -1
+        for step in self._directions.steps():
+            yield step
+            now = int(self._archives.plans.counts[2])
+            idle = idle + 1 if now == inserted else 0
+            inserted = now
+            few = len(self._problem.clients) <= _FEW_STOPS
+            if few and len(self) and idle >= _IDLE_STEPS:
+                return
+
+    def _search(self, step: Step) -> bool:
+        """Search in a direction, and return whether to end."""
+        problem, working = self._problem, self._working
+        if step.start is not None:
+            row = self._archives.plans.tours[self._rows[step.start]].copy()
+            load_row(problem, working, step.direction, row)
+        else:
+            write_row(problem, working, self._archives.row)
+            load_row(problem, working, step.direction, self._archives.row)
+        set_prices(problem, working, step.direction)
+        heat = step.heat
+        left, still = step.rounds, max(1, int(_STILL * step.rounds))
+        cooling = (step.cooled / step.heat) ** (1 / (step.rounds * RUINS))
+        while left > 0:
+            if self._rounds >= self._options.iterations or self._ended():
+                return True
+            most = left if left <= still else left - still
+            rounds = min(most, self._options.iterations - self._rounds, self._at_once())
+            heat = heat if left > still else 0.0
+            heat = anneal(
+                problem, working, step.direction, self._archives, rounds * RUINS, heat, cooling
+            )
+            self._rounds += rounds
+            left -= rounds
+        return False
+
+    def _at_once(self) -> int:
+        """Return for how many rounds there is time before the time is checked."""
+        spent = self._watch.spent - self._began
+        return max(1, int(_CALL * self._rounds / spent)) if spent > 0 else 1
+
+    def _left(self) -> float:
+        """Return the number of rounds left, estimated from the time of earlier ones."""
+        most = self._options.iterations - self._rounds
+        if self._watch.seconds == math.inf or not self._rounds:
+            return most
+        spent = self._watch.spent - self._began
+        return min(most, max(0.0, self._watch.left) * self._rounds / max(spent, 1e-6))
+
+
+def _width(problem: Problem) -> int:
+    """Return the most numbers of a plan's row: its stops, a type for each route, and an end."""
+    clients = len(problem.clients)
+    return clients + min(len(problem.kind), clients) + 1
+
+
+def _plan_of(row: Nodes) -> Plan:
+    """Return the plan of a row, as write_row() writes it."""
+    numbers = row[row != -1].tolist()
+    begins = [place for place, number in enumerate(numbers) if number < 0]
+    bounds = pairwise([*begins, len(numbers)])
+    return Plan(
+        tuple(Route(-2 - numbers[begin], tuple(numbers[begin + 1 : end])) for begin, end in bounds)
+    )
+
+
+def _driven(problem: Problem, plan: Plan | None) -> Driven:
+    """Return a plan that is driven as arrays."""
+    n = len(problem.demand)
+    kind, before = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
+    steps = set() if plan is None else set(steps_of(plan))
+    for vehicle, previous, stop in steps:
+        kind[stop] = vehicle
+        before[stop] = -1 if previous is None else previous
+    return Driven(kind, before, -1 if plan is None else math.ceil(KEPT * len(steps)))

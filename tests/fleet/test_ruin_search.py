@@ -1,0 +1,56 @@
+"""The search by ruin and recreate against brute force, in small fleets of all rules it knows."""
+
+from collections.abc import Callable
+from math import inf
+from operator import le
+
+import numpy as np
+import pytest
+
+from service.fleet.evaluation import plan_lengths, points_of, violations
+from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.plans import FleetFront
+from service.fleet.rules import Rules
+from service.fleet.search.search import RuinSearch, is_searched
+from service.fleet.vehicles import VehicleType, Visit
+from service.watch import Watch
+from tests.helpers.fleets import (
+    bounded_fleet,
+    exact_front,
+    mixed_fleet,
+    random_fleet,
+)
+from tests.helpers.sampled import third
+
+
+def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
+    search = RuinSearch(
+        fleet, FleetOptions(time_limit=inf, iterations=rounds), Watch[FleetFront]()
+    )
+    search.run()
+    return search
+
+
+@pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet, mixed_fleet])
+def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
+    fleet_of: Callable[[int], Fleet],
+) -> None:
+    tried = same = 0
+    for seed in range(third(90)):
+        fleet = fleet_of(seed)
+        if not is_searched(fleet.rules):
+            continue
+        expected = exact_front(fleet)
+        search = searched(fleet)
+        plans = [search.plan_at(index) for index in range(len(search))]
+        assert [violations(fleet, plan) for plan in plans] == [[]] * len(plans)
+        points = [plan_lengths(fleet, plan) for plan in plans]
+        np.testing.assert_allclose(search.points, points_of(fleet, plans), rtol=1e-12, atol=1e-12)
+        better = [p for p in points if not any(all(map(le, np.multiply(e, 1 - 1e-12), p)) for e in expected)]
+        assert better == []
+        tried += 1
+        same += len(expected) == len(points) and np.allclose(sorted(points), expected)
+        if not (len(expected) == len(points) and np.allclose(sorted(points), expected)):
+            print(fleet_of.__name__, seed, fleet.rules.over, len(expected), len(points))
+    assert same >= 0.95 * tried > 5
