@@ -189,6 +189,8 @@ class Directions:
         widths = np.ptp(points, axis=0)
         widths = np.where(widths > 0, widths, self._scale)
         weights = self._random.exponential(size=len(self._over)) / widths
+        if self._random.random() < _BOUNDED:
+            return self._below_a_point(points, weights, rounds)
         limits = {}
         for index, by_limit in enumerate(self._by_limit):
             if by_limit and self._random.random() >= _UNLIMITED:
@@ -198,6 +200,23 @@ class Directions:
                 less = some - self._random.integers(2) if down else least
                 limits[index] = float(less if down else self._random.uniform(less, some))
         return self._step(weights, limits, rounds, any_start=self._random.random() < _ANY_START)
+
+    def _below_a_point(self, points: Array, weights: Array, rounds: int) -> Step:
+        """Return a random weighted sum, where some lengths are bounded by those of a plan."""
+        point = points[self._random.integers(len(points))]
+        bounds = np.where(self._random.random(len(point)) < _BOUNDED, point, inf)
+        lower = self._random.integers(len(point))
+        less = points[points[:, lower] < point[lower], lower]
+        bounds[lower] = less.max() if len(less) else point[lower]
+        weights = np.where(np.isfinite(bounds), _LESSER * weights, weights)
+        if not np.isinf(bounds).any():
+            weights[lower] /= _LESSER
+        limits = {
+            index: float(bound)
+            for index, bound in enumerate(bounds)
+            if self._by_limit[index] and np.isfinite(bound)
+        }
+        return self._step(weights, limits, rounds, bounds=bounds)
 
     def _step(
         self,

@@ -7,6 +7,7 @@ import numpy as np
 from service.fleet.rounding import is_over
 from service.fleet.search.problem import Direction, Problem
 from service.fleet.search.working_plan import (
+    BLINKS,
     FIRST,
     LATE,
     LOADED,
@@ -30,7 +31,6 @@ _is_over = inlined(is_over)
 
 _NEIGHBOURS = 40  # beside which a stop is tried
 _FEW = 8  # of them that are in routes: then all routes are tried
-_BLINKS = 100  # one place in so many is passed by
 
 
 class Place(NamedTuple):
@@ -47,7 +47,7 @@ def best_place(
 ) -> Place:
     """Return the cheapest place for a stop that costs less than `most`; slot -1 if there is none.
 
-    Some places are passed by at random.
+    One place in `counts[BLINKS]` is passed by at random.
     """
     best = Place(most, -1, -1)
     tried = 0
@@ -112,7 +112,7 @@ def _better(
     best: Place,
 ) -> Place:
     """Return the better of two places: the best so far, and that after a node."""
-    if random_below(plan.random, _BLINKS) == 0:
+    if random_below(plan.random, plan.counts[BLINKS]) == 0:
         return best
     cost = insertion_cost(problem, plan, direction, stop, slot, before, best.cost)
     return Place(cost, slot, before) if cost < best.cost else best

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from service.fleet.search.insertion import best_place
 from service.fleet.search.problem import Direction, Nodes, Problem
 from service.fleet.search.working_plan import (
+    BLINKS,
     MISSING,
     OUTSIDE,
     REMOVED,
+    STAMP,
     USED,
     WorkingPlan,
     begin_iteration,
@@ -42,6 +44,9 @@ _SPLIT = 2  # one string in so many leaves stops in its middle
 _STAYING = 100  # one time in so many, more of them
 _MOST_OUTSIDE = 10  # stops outside that an iteration tries to put in
 _ORDERS = 11  # see _key()
+_FEW_BLINKS, _MANY_BLINKS = 100, 4  # one place in so many for a stop is passed by
+_CHANCES = 20  # see _most()
+_OFTEN = 10  # one iteration in so many passes by many places
 _LONGEST_FIRST = 4  # one ruin in so many begins in the longest route, where that counts
 
 
@@ -80,7 +85,7 @@ def ruin(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
             return
         stop = problem.near[seed, number]
         slot = plan.route[stop]
-        if slot >= 0 and plan.touched[slot] != plan.counts[6]:
+        if slot >= 0 and plan.touched[slot] != plan.counts[STAMP]:
             _take_string(problem, plan, direction, stop, longest)
             left -= 1
 
@@ -149,10 +154,12 @@ def _dissolve(problem: Problem, plan: WorkingPlan, direction: Direction, slot: i
 @compiled
 def recreate(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
     """Insert the removed stops, one after another, where each costs the least."""
+    often = random_below(plan.random, _OFTEN) == 0
+    plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
     _sort(problem, plan, random_below(plan.random, _ORDERS))
     for number in range(plan.counts[REMOVED]):
         stop = plan.removed[number]
-        place = best_place(problem, plan, direction, stop, plan.price[stop])
+        place = best_place(problem, plan, direction, stop, _most(problem, plan, stop))
         if place.slot < 0:
             continue
         save_slot(problem, plan, place.slot)
@@ -163,6 +170,21 @@ def recreate(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
             unlink(plan, stop)
             leave_out(problem, plan, stop)
             measure(problem, plan, direction, place.slot)
+
+
+@inlined
+def _most(problem: Problem, plan: WorkingPlan, stop: int) -> float:
+    """Return what a stop may cost: its price, or at times anything or nothing if it is optional.
+
+    Two optional stops may pay together where neither does alone.
+    """
+    if problem.prize[stop] < np.inf:
+        chance = random_below(plan.random, _CHANCES)
+        if chance == 0:
+            return np.inf
+        if chance == 1:
+            return -np.inf
+    return plan.price[stop]
 
 
 @compiled

@@ -14,7 +14,7 @@ _is_over = inlined(is_over)
 # Columns of the values of a route.
 FIRST, SECOND, OVER_TIME, LATE, LOADED, RELEASED = range(6)
 # Places of the counts.
-USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
+USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED, BLINKS = range(9)
 
 
 class WorkingPlan(NamedTuple):
@@ -46,7 +46,7 @@ class WorkingPlan(NamedTuple):
     saved_stops: Nodes  # (n,)
     saved_outside: Nodes  # (n,)
     touched: Indices  # (r,), by slot: the iteration that changed it last
-    counts: Indices  # (8,)
+    counts: Indices  # (9,)
     random: Indices  # (1,)
 
 
@@ -82,7 +82,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved_stops=of_stops(),
         saved_outside=of_stops(),
         touched=np.zeros(r, np.int64),
-        counts=np.zeros(8, np.int64),
+        counts=np.zeros(9, np.int64),
         random=np.array([_mixed(seed)], np.int64),
     )
     for stop in problem.clients.tolist():
@@ -196,15 +196,15 @@ def measure(problem: Problem, plan: WorkingPlan, direction: Direction, slot: int
         return True
     _mark_used(plan, slot)
     fits = _gather(problem, plan, slot, start, end)
-    legs, in_time = _forward(problem, plan, slot, start, end)
+    legs, duration, in_time = _forward(problem, plan, slot, start, end)
     if problem.clock >= 0:
         _backward(problem, plan, start, end, kind)
         fits &= in_time
     first, second = legs
     if problem.clock == 0:
-        first = plan.head[end, 0]
+        first = duration
     if problem.clock == 1:
-        second = plan.head[end, 0]
+        second = duration
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     length = first if problem.limited == 0 else second
     reach = plan.ready[end] if problem.clock >= 0 else 0.0
@@ -291,18 +291,20 @@ def _gather(problem: Problem, plan: WorkingPlan, slot: int, start: int, end: int
 @inlined
 def _forward(
     problem: Problem, plan: WorkingPlan, slot: int, start: int, end: int
-) -> tuple[tuple[float, float], bool]:
+) -> tuple[tuple[float, float], float, bool]:
     """Write what is known up to each node of a route.
 
     Returns:
-        The sums of both costs of its legs, and whether it keeps all windows.
+        The sums of both costs of its legs; the time from the departure to the end, where the
+        vehicle leaves as late as makes neither the end later nor a visit later than due; and
+        whether it keeps all windows.
     """
     kind = problem.kind[slot]
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     span = Span(0.0, departs, problem.leaves_by[kind])
     in_time = not _is_over(departs, problem.leaves_by[kind])
     _set_span(plan.head, start, span)
-    ready, late = departs, 0.0
+    ready, late, waiting, slack = departs, 0.0, 0.0, np.inf
     plan.ready[start], plan.late[start], plan.along[start] = ready, late, 0.0
     first, second, loaded = 0.0, 0.0, 0.0
     at, node = problem.place[start], plan.next[start]
@@ -320,6 +322,9 @@ def _forward(
             if node != end:
                 visit = stay(problem, node)
                 begin = max(ready + way, problem.opens[node])
+                waiting += begin - (ready + way)
+                until = min(problem.closes[node], max(problem.due[node], begin))
+                slack = min(slack, until - begin + waiting)
                 if _is_over(begin, problem.due[node]):
                     late += begin - problem.due[node]
                 ready = begin + problem.service[node]
@@ -334,7 +339,8 @@ def _forward(
             break
         node = plan.next[node]
     plan.value[slot, LOADED] = loaded
-    return (first, second), in_time
+    slack = min(slack, problem.returns[kind] - ready + waiting, problem.leaves_by[kind] - departs)
+    return (first, second), ready - departs - max(0.0, min(waiting, slack)), in_time
 
 
 @inlined
