@@ -93,16 +93,7 @@ def _completed(fleet: Fleet, plan: Plan) -> Plan | None:
 
 def _searched(fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> FleetFront:
     """Return the front that a search finds; if it found none, a front of one plain plan."""
-    driven = None if options.driven is None else _completed(fleet, options.driven)
-    search: FleetSearch
-    if is_searched(fleet.rules):
-        search = RuinSearch(fleet, options, watch)
-    else:
-        search = PyvrpSearch(fleet, options, watch)
-    if driven is not None:
-        search.begin_with(driven)
-    if isinstance(search, PyvrpSearch):
-        search.begin_plainly()
+    search = _search_of(fleet, options, watch)
     terminated = search.run()
     plans: Iterable[Plan] = ()
     if not len(search) and terminated != "cancelled" and fleet.rules.has_bounds:
@@ -116,6 +107,15 @@ def _searched(fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> 
             if not violations(fleet, plan):
                 return front_of(fleet, options, [plan], terminated, watch)
     return search.front(options.size, terminated)
+
+
+def _search_of(fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> FleetSearch:
+    """Return the search for the rules of a fleet, which starts from a driven plan if one is."""
+    search = (RuinSearch if is_searched(fleet.rules) else PyvrpSearch)(fleet, options, watch)
+    driven = None if options.driven is None else _completed(fleet, options.driven)
+    if driven is not None:
+        search.begin_with(driven)
+    return search
 
 
 def _tried(fleet: Fleet, watch: Watch[FleetFront]) -> Plan | None:

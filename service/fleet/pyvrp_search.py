@@ -81,7 +81,7 @@ class PyvrpSearch(FleetSearch):
         """Whether the time is over before PyVRP has its first solution."""
         return self._watch.left < _FIRST * self._fleet.rules.n**2
 
-    def begin_plainly(self) -> None:
+    def _begin_plainly(self) -> None:
         """Put a simple plan into an empty archive, if one breaks no rule and time is short."""
         if len(self) or not self._is_short:
             return
@@ -101,6 +101,7 @@ class PyvrpSearch(FleetSearch):
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or the watch says to stop."""
+        self._begin_plainly()
         options, archive = self._options, self._archive
         solver = Solver(self._translation, options.seed, self._offer, self._ended, self._watch)
         random = np.random.default_rng(options.seed)

@@ -34,7 +34,7 @@ _ANY_START = 0.25  # share of those that start from a random plan
 
 _BELOW = 0.95  # how far below the least longest route limits go
 
-_OF_ROUTES = ("max", "imbalance")  # objectives that limits on routes lead to
+_LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Directions:
         self._per_stop = ruins / max(1, len(fleet.rules.clients))
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
         self._bound = _least_longest(fleet)
-        self._by_limit = [o in _OF_ROUTES or o == "vehicles" for o in self._over]
+        self._by_limit = [over in _LIMITED for over in self._over]
 
     def first(self) -> Step:
         """Return a short search for the least first length."""
@@ -231,6 +231,9 @@ class Directions:
         Limits are on each route, and bounds, shape (m,), on all routes together.
         """
         bounds = np.full(len(self._over), inf) if bounds is None else bounds
+        if "imbalance" in self._over:
+            index = self._over.index("imbalance")
+            bounds[index] = min(bounds[index], limits.get(index, inf))
         unit = float((weights * self._scale).max())
         points = self._points()
         start = None
@@ -259,11 +262,9 @@ class Directions:
         for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
             if over == "sum":
                 costs[layer] += weights[index]
-            elif over in _OF_ROUTES:
+            elif over == "max":
                 # Where only the longest route counts, a plan of short routes is a good start.
-                costs[layer if over == "max" else self._rules.swept or 0] += (
-                    _LESSER * weights[index]
-                )
+                costs[layer] += _LESSER * weights[index]
                 longest = limits.get(index, inf)
                 penalty = _STRICT * unit / self._scale[index]
             elif over == "vehicles":
@@ -279,7 +280,6 @@ class Directions:
             lateness=by_measure.get("lateness", 0.0),
             load_distance=by_measure.get("load_distance", 0.0),
             longest=longest,
-            shortest=-inf,
             penalty=penalty,
             required=_DEAR * unit + float(weights[0]) * self._most_fixed,
             routes=routes,

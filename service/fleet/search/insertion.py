@@ -5,24 +5,29 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.problem import Direction, Problem
-from service.fleet.search.working_plan import (
-    BLINKS,
+from service.fleet.search.problem import (
     FIRST,
-    LATE,
+    LATENESS,
     LOADED,
     RELEASED,
     SECOND,
-    USED,
-    Span,
-    WorkingPlan,
-    free_slot,
+    Problem,
+)
+from service.fleet.search.route import (
+    Values,
     head_at,
     joined,
-    leg,
     route_cost,
     stay,
     tail_at,
+)
+from service.fleet.search.working_plan import (
+    BLINKS,
+    USED,
+    State,
+    WorkingPlan,
+    free_slot,
+    leg,
 )
 from service.jit import compiled, inlined
 from service.search.local_search import random_below
@@ -42,13 +47,12 @@ class Place(NamedTuple):
 
 
 @compiled
-def best_place(
-    problem: Problem, plan: WorkingPlan, direction: Direction, stop: int, most: float
-) -> Place:
+def best_place(state: State, stop: int, most: float) -> Place:
     """Return the cheapest place for a stop that costs less than `most`; slot -1 if there is none.
 
     One place in `counts[BLINKS]` is passed by at random.
     """
+    problem, plan, direction = state
     best = Place(most, -1, -1)
     tried = 0
     neighbours = min(_NEIGHBOURS, problem.near.shape[1])
@@ -60,24 +64,23 @@ def best_place(
         tried += 1
         if not has_room(problem, plan, stop, slot):
             continue
-        best = _better(problem, plan, direction, stop, slot, beside, best)
-        best = _better(problem, plan, direction, stop, slot, plan.previous[beside], best)
+        best = _better(state, stop, slot, beside, best)
+        best = _better(state, stop, slot, plan.previous[beside], best)
     if tried < _FEW or best.slot < 0:
-        best = _anywhere(problem, plan, direction, stop, best)
+        best = _anywhere(state, stop, best)
     if plan.counts[USED] < direction.routes:
         for kind in range(len(problem.capacity)):
             slot = free_slot(problem, plan, kind)
             if slot >= 0 and has_room(problem, plan, stop, slot):
                 start = len(problem.demand) + 2 * slot
-                best = _better(problem, plan, direction, stop, slot, start, best)
+                best = _better(state, stop, slot, start, best)
     return best
 
 
 @inlined
-def _anywhere(
-    problem: Problem, plan: WorkingPlan, direction: Direction, stop: int, best: Place
-) -> Place:
+def _anywhere(state: State, stop: int, best: Place) -> Place:
     """Return the cheapest place in all routes."""
+    problem, plan, _ = state
     n = len(problem.demand)
     for number in range(plan.counts[USED]):
         slot = plan.used[number]
@@ -85,7 +88,7 @@ def _anywhere(
             continue
         node = n + 2 * slot
         while node != n + 2 * slot + 1:
-            best = _better(problem, plan, direction, stop, slot, node, best)
+            best = _better(state, stop, slot, node, best)
             node = plan.next[node]
     return best
 
@@ -103,79 +106,83 @@ def has_room(problem: Problem, plan: WorkingPlan, stop: int, slot: int) -> bool:
 
 @inlined
 def _better(
-    problem: Problem,
-    plan: WorkingPlan,
-    direction: Direction,
+    state: State,
     stop: int,
     slot: int,
     before: int,
     best: Place,
 ) -> Place:
     """Return the better of two places: the best so far, and that after a node."""
+    plan = state.plan
     if random_below(plan.random, plan.counts[BLINKS]) == 0:
         return best
-    cost = insertion_cost(problem, plan, direction, stop, slot, before, best.cost)
+    cost = insertion_cost(state, stop, slot, before, best.cost)
     return Place(cost, slot, before) if cost < best.cost else best
 
 
 @compiled
-def insertion_cost(
-    problem: Problem,
-    plan: WorkingPlan,
-    direction: Direction,
-    stop: int,
-    slot: int,
-    before: int,
-    most: float,
-) -> float:
+def insertion_cost(state: State, stop: int, slot: int, before: int, most: float) -> float:
     """Return what the cost of a route grows by with a stop after a node; inf if a rule forbids it.
 
-    What costs at least `most` may be told as more.
+    What costs at least `most` may be told as more. If a visit is due, a route may turn out longer:
+    then its vehicle cannot leave as late as is assumed here.
     """
-    kind = problem.kind[slot]
-    after = plan.next[before]
-    a, b = problem.place[before], problem.place[after]
-    to = leg(problem, a, stop, 0)
-    first = to + leg(problem, stop, b, 0) - leg(problem, a, b, 0)
-    second = leg(problem, a, stop, 1) + leg(problem, stop, b, 1) - leg(problem, a, b, 1)
+    problem, plan, direction = state
+    a, b = problem.place[before], problem.place[plan.next[before]]
+    first = leg(problem, a, stop, 0) + leg(problem, stop, b, 0) - leg(problem, a, b, 0)
     if first >= 0.5 * problem.forbidden:
         return np.inf
+    second = leg(problem, a, stop, 1) + leg(problem, stop, b, 1) - leg(problem, a, b, 1)
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0:
-        brought = problem.demand[stop, 0]
-        loaded += brought * (plan.along[before] + to) + plan.ahead[after] * first
-    overtime = 0.0
-    if problem.clock < 0:
-        first += plan.value[slot, FIRST]
-        second += plan.value[slot, SECOND]
-        length = first if problem.limited == 0 else second
-        if _is_over(length, problem.longest[kind]):
+        loaded += _loaded(problem, plan, stop, before, first)
+    first += plan.value[slot, FIRST]
+    second += plan.value[slot, SECOND]
+    kind, end = problem.kind[slot], 0.0
+    if problem.clock >= 0:
+        time, end = _timed(problem, plan, stop, slot, before)
+        if time == np.inf:
             return np.inf
-    else:
-        there = leg(problem, a, stop, problem.clock)
-        onward = leg(problem, stop, b, problem.clock)
-        span, kept = joined(head_at(plan, before), there, stay(problem, stop))
-        if not kept:
-            return np.inf
-        span, kept = joined(span, onward, tail_at(plan, after))
-        departs = max(span.early, problem.release[stop], plan.value[slot, RELEASED])
-        if not kept or _is_over(departs, span.late, departs + span.time):
-            return np.inf
-        end = departs + span.time
-        first = span.time if problem.clock == 0 else first + plan.value[slot, FIRST]
-        second = span.time if problem.clock == 1 else second + plan.value[slot, SECOND]
-        length = first if problem.limited == 0 else second
-        if _is_over(length, problem.longest[kind], end):
-            return np.inf
-        overtime = max(0.0, end - problem.shift_end[kind])
-    late = plan.value[slot, LATE]
-    cost = route_cost(problem, direction, kind, first, second, overtime, late, loaded)
+        first = time if problem.clock == 0 else first
+        second = time if problem.clock == 1 else second
+    if _is_over(first if problem.limited == 0 else second, problem.longest[kind], end):
+        return np.inf
+    overtime = max(0.0, end - problem.shift_end[kind])
+    late = plan.value[slot, LATENESS]
+    cost = route_cost(state, kind, Values(first, second, overtime, late, loaded))
     cost -= plan.cost[slot]
     if cost < most and direction.lateness > 0:
-        late = _lateness(problem, plan, slot, stop, before)
-        cost = route_cost(problem, direction, kind, first, second, overtime, late, loaded)
-        cost -= plan.cost[slot]
+        cost += direction.lateness * (_lateness(problem, plan, slot, stop, before) - late)
     return cost
+
+
+@inlined
+def _loaded(problem: Problem, plan: WorkingPlan, stop: int, before: int, detour: float) -> float:
+    """Return what loads times distances grow by with a stop after a node."""
+    to = plan.along[before] + leg(problem, problem.place[before], stop, 0)
+    return problem.demand[stop, 0] * to + plan.ahead[plan.next[before]] * detour
+
+
+@inlined
+def _timed(
+    problem: Problem, plan: WorkingPlan, stop: int, slot: int, before: int
+) -> tuple[float, float]:
+    """Return the time that a route takes with a stop after a node, and when it ends.
+
+    The time is infinite where a window is missed.
+    """
+    after = plan.next[before]
+    there = leg(problem, problem.place[before], stop, problem.clock)
+    span, kept = joined(head_at(plan, before), there, stay(problem, stop))
+    if not kept:
+        return np.inf, 0.0
+    onward = leg(problem, stop, problem.place[after], problem.clock)
+    span, kept = joined(span, onward, tail_at(plan, after))
+    departs = max(span.early, problem.release[stop], plan.value[slot, RELEASED])
+    end = departs + span.time
+    if not kept or _is_over(departs, span.late, end):
+        return np.inf, 0.0
+    return span.time, end
 
 
 @inlined

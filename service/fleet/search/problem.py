@@ -5,9 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
+from service.fleet.rules import Rules
 
+Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Nodes = NDArray[np.int32]
 
@@ -21,7 +23,11 @@ MEASURES = (
     "imbalance",
     "load_distance",
 )
-SUM, MAX, VEHICLES, UNASSIGNED, OVERTIME, LATENESS, IMBALANCE, LOAD_DISTANCE = range(8)
+MAX, VEHICLES, UNASSIGNED, IMBALANCE = map(
+    MEASURES.index, ("max", "vehicles", "unassigned", "imbalance")
+)
+# The columns of the values of a route.
+FIRST, SECOND, OVERTIME, LATENESS, LOADED, RELEASED = range(6)
 _NEAR = 100  # stops that are near a stop, at most
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
@@ -59,7 +65,7 @@ class Problem(NamedTuple):
     longest: Array  # (v,)
     fixed: Array  # (v,)
     over: Indices  # (m,), by MEASURES
-    layer: Indices  # (m,)
+    column: Indices  # (m,), of the values of a route
 
 
 def problem_of(fleet: Fleet) -> Problem:
@@ -101,8 +107,18 @@ def problem_of(fleet: Fleet) -> Problem:
         longest=np.array([vehicle.longest for vehicle in vehicles]),
         fixed=np.array([vehicle.fixed for vehicle in vehicles]),
         over=np.array([MEASURES.index(over) for over in rules.over]),
-        layer=np.array(rules.layers),
+        column=np.array([_column(rules, index) for index in range(len(rules.over))]),
     )
+
+
+def _column(rules: Rules, objective: int) -> int:
+    """Return the column of the values of a route that an objective is of."""
+    over = rules.over[objective]
+    columns = {"overtime": OVERTIME, "lateness": LATENESS, "load_distance": LOADED}
+    if over == "imbalance":
+        assert rules.swept is not None
+        return rules.swept
+    return columns.get(over, rules.layers[objective])
 
 
 def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
@@ -135,8 +151,7 @@ class Direction(NamedTuple):
     overtime: float
     lateness: float
     load_distance: float
-    longest: float  # limits on the length of a route in the swept costs
-    shortest: float
+    longest: float  # the limit on the length of a route in the swept costs
     penalty: float
     required: float  # price of a stop outside that must be visited, at first
     routes: int  # at most

@@ -10,8 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from service.fleet.search.changes import begin_iteration, restore, save_slot
 from service.fleet.search.insertion import best_place
-from service.fleet.search.problem import Direction, Nodes, Problem
+from service.fleet.search.problem import Nodes, Problem
+from service.fleet.search.route import measure
+from service.fleet.search.rows import write_point, write_row
 from service.fleet.search.working_plan import (
     BLINKS,
     MISSING,
@@ -19,18 +22,13 @@ from service.fleet.search.working_plan import (
     REMOVED,
     STAMP,
     USED,
+    State,
     WorkingPlan,
-    begin_iteration,
     leave_out,
     link,
-    measure,
-    restore,
-    save_slot,
     take_in,
     total_cost,
     unlink,
-    write_point,
-    write_row,
 )
 from service.jit import compiled, inlined
 from service.search.local_search import random_below
@@ -43,7 +41,11 @@ _LONGEST_STRING = 10
 _SPLIT = 2  # one string in so many leaves stops in its middle
 _STAYING = 100  # one time in so many, more of them
 _MOST_OUTSIDE = 10  # stops outside that an iteration tries to put in
-_ORDERS = 11  # see _key()
+# How stops are sorted before they are inserted: at random, the largest first, the farthest or the
+# nearest from where the first vehicle starts, or by their windows. Those that work best are drawn
+# most often.
+RANDOM, LARGE, FAR, NEAR, NARROW, SOON, OPENING = 0, 4, 6, 7, 8, 9, 10
+ORDERS = 11
 _FEW_BLINKS, _MANY_BLINKS = 100, 4  # one place in so many for a stop is passed by
 _CHANCES = 20  # see _most()
 _OFTEN = 10  # one iteration in so many passes by many places
@@ -66,8 +68,9 @@ def remove(problem: Problem, plan: WorkingPlan, stop: int) -> None:
 
 
 @compiled
-def ruin(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+def ruin(state: State) -> None:
     """Take strings of stops out of some routes near a random stop."""
+    problem, plan, _ = state
     clients, used = len(problem.clients), plan.counts[USED]
     if used == 0:
         return
@@ -75,10 +78,10 @@ def ruin(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
     longest = min(float(_LONGEST_STRING), inside / used)
     most = 4.0 * _REMOVED / (1.0 + longest) - 1.0
     strings = int(1 + uniform(plan.random) * max(0.0, most))
-    seed = _seed(problem, plan, direction)
+    seed = _seed(state)
     left = strings
     if plan.route[seed] >= 0:
-        _take_string(problem, plan, direction, seed, longest)
+        _take_string(state, seed, longest)
         left -= 1
     for number in range(problem.near.shape[1]):
         if left <= 0:
@@ -86,13 +89,14 @@ def ruin(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
         stop = problem.near[seed, number]
         slot = plan.route[stop]
         if slot >= 0 and plan.touched[slot] != plan.counts[STAMP]:
-            _take_string(problem, plan, direction, stop, longest)
+            _take_string(state, stop, longest)
             left -= 1
 
 
 @inlined
-def _seed(problem: Problem, plan: WorkingPlan, direction: Direction) -> int:
+def _seed(state: State) -> int:
     """Return a random stop, sometimes one of the longest route where that is over its limit."""
+    problem, plan, direction = state
     if direction.longest < np.inf and random_below(plan.random, _LONGEST_FIRST) == 0:
         longest, found = -1.0, plan.used[0]
         for number in range(plan.counts[USED]):
@@ -107,10 +111,9 @@ def _seed(problem: Problem, plan: WorkingPlan, direction: Direction) -> int:
 
 
 @compiled
-def _take_string(
-    problem: Problem, plan: WorkingPlan, direction: Direction, stop: int, longest: float
-) -> None:
+def _take_string(state: State, stop: int, longest: float) -> None:
     """Take a string of stops around a stop out of its route."""
+    problem, plan, _ = state
     slot = plan.route[stop]
     save_slot(problem, plan, slot)
     start = len(problem.demand) + 2 * slot
@@ -137,39 +140,41 @@ def _take_string(
     for place in range(first, first + reach):
         if not gap <= place < gap + staying:
             remove(problem, plan, plan.buffer[place])
-    if not measure(problem, plan, direction, slot):
-        _dissolve(problem, plan, direction, slot)
+    if not measure(state, slot):
+        _dissolve(state, slot)
 
 
 @compiled
-def _dissolve(problem: Problem, plan: WorkingPlan, direction: Direction, slot: int) -> None:
+def _dissolve(state: State, slot: int) -> None:
     """Take all stops out of a route."""
+    problem, plan, _ = state
     save_slot(problem, plan, slot)
     start = len(problem.demand) + 2 * slot
     while plan.next[start] != start + 1:
         remove(problem, plan, plan.next[start])
-    measure(problem, plan, direction, slot)
+    measure(state, slot)
 
 
 @compiled
-def recreate(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
-    """Insert the removed stops, one after another, where each costs the least."""
+def recreate(state: State, order: int) -> None:
+    """Insert the removed stops, sorted in an order, where each costs the least."""
+    problem, plan, _ = state
     often = random_below(plan.random, _OFTEN) == 0
     plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
-    _sort(problem, plan, random_below(plan.random, _ORDERS))
+    _sort(problem, plan, order)
     for number in range(plan.counts[REMOVED]):
         stop = plan.removed[number]
-        place = best_place(problem, plan, direction, stop, _most(problem, plan, stop))
+        place = best_place(state, stop, _most(problem, plan, stop))
         if place.slot < 0:
             continue
         save_slot(problem, plan, place.slot)
         take_in(problem, plan, stop)
         link(plan, place.slot, stop, place.before)
-        if not measure(problem, plan, direction, place.slot):
+        if not measure(state, place.slot):
             # A rounding apart from what was worked out before: a place like any other that is none.
             unlink(plan, stop)
             leave_out(problem, plan, stop)
-            measure(problem, plan, direction, place.slot)
+            measure(state, place.slot)
 
 
 @inlined
@@ -207,25 +212,26 @@ def _sort(problem: Problem, plan: WorkingPlan, order: int) -> None:
 
 @inlined
 def _key(problem: Problem, plan: WorkingPlan, stop: int, order: int) -> float:
-    """Return by what a stop is sorted: at random, by load, far, near, or by its window."""
-    if order < 4:
-        return uniform(plan.random)
-    if order < 6 and problem.demand.shape[1] > 0:
-        return -float(problem.demand[stop, 0])
-    if order < 8:
+    """Return by what a stop is sorted."""
+    if order == OPENING:
+        return problem.opens[stop]
+    if order == SOON:
+        return min(problem.closes[stop], problem.due[stop])
+    if order == NARROW:
+        return problem.closes[stop] - problem.opens[stop]
+    if order >= FAR:
         there = problem.place[len(problem.demand)]
         away = problem.costs[max(there, 0), stop, 0]
-        return -away if order < 7 else away
-    if order == 8:
-        return problem.closes[stop] - problem.opens[stop]
-    if order == 9:
-        return min(problem.closes[stop], problem.due[stop])
-    return problem.opens[stop]
+        return away if order == NEAR else -away
+    if order >= LARGE and problem.demand.shape[1] > 0:
+        return -float(problem.demand[stop, 0])
+    return uniform(plan.random)
 
 
 @compiled
-def _raise_prices(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+def _raise_prices(state: State) -> None:
     """Raise the prices of the stops outside that must be visited."""
+    problem, plan, direction = state
     for place in range(plan.counts[OUTSIDE]):
         stop = plan.outside[place]
         if problem.prize[stop] == np.inf:
@@ -250,8 +256,9 @@ def _try_outside(plan: WorkingPlan) -> None:
 
 
 @compiled
-def set_prices(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
+def set_prices(state: State) -> None:
     """Set what each stop costs outside, at first."""
+    problem, plan, direction = state
     for number in range(len(problem.clients)):
         stop = problem.clients[number]
         required = problem.prize[stop] == np.inf
@@ -259,13 +266,14 @@ def set_prices(problem: Problem, plan: WorkingPlan, direction: Direction) -> Non
 
 
 @compiled
-def insert_all(problem: Problem, plan: WorkingPlan, direction: Direction) -> None:
-    """Insert all stops that are outside, if they fit."""
+def insert_all(state: State, order: int) -> None:
+    """Insert all stops that are outside, in an order, if they fit."""
+    plan = state.plan
     begin_iteration(plan)
     for place in range(plan.counts[OUTSIDE]):
         plan.removed[place] = plan.outside[place]
     plan.counts[REMOVED] = plan.counts[OUTSIDE]
-    recreate(problem, plan, direction)
+    recreate(state, order)
 
 
 class Driven(NamedTuple):
@@ -291,9 +299,7 @@ class Found(NamedTuple):
 
 @compiled
 def anneal(
-    problem: Problem,
-    plan: WorkingPlan,
-    direction: Direction,
+    state: State,
     found: Found,
     ruins: int,
     heat: float,
@@ -302,9 +308,7 @@ def anneal(
     """Ruin and recreate a plan so many times, and offer each plan that is made.
 
     Args:
-        problem: The fleet.
-        plan: The plan to change.
-        direction: What counts.
+        state: The fleet, the plan to change, and what counts.
         found: Gets all plans that visit all required stops and are nondominated.
         ruins: How often.
         heat: The temperature at first.
@@ -313,21 +317,22 @@ def anneal(
     Returns:
         The temperature at the end.
     """
-    beyond = _beyond(problem, plan, direction, found)
+    problem, plan, _ = state
+    beyond = _beyond(state, found)
     for _ in range(ruins):
         before = total_cost(plan) + beyond
         begin_iteration(plan)
         _try_outside(plan)
-        ruin(problem, plan, direction)
-        recreate(problem, plan, direction)
-        exceeding = _beyond(problem, plan, direction, found)
+        ruin(state)
+        recreate(state, random_below(plan.random, ORDERS))
+        exceeding = _beyond(state, found)
         after = total_cost(plan) + exceeding
         if plan.counts[MISSING] > 0:
-            _raise_prices(problem, plan, direction)
+            _raise_prices(state)
         else:
             offer(problem, plan, found)
         if after > before - heat * math.log(uniform(plan.random)):
-            restore(problem, plan, direction)
+            restore(state)
         else:
             beyond = exceeding
         heat *= cooling
@@ -335,8 +340,9 @@ def anneal(
 
 
 @inlined
-def _beyond(problem: Problem, plan: WorkingPlan, direction: Direction, found: Found) -> float:
+def _beyond(state: State, found: Found) -> float:
     """Write the point of a plan, and return what it costs that it is beyond bounds."""
+    problem, plan, direction = state
     if plan.counts[MISSING] > 0:
         return 0.0
     write_point(problem, plan, found.point)

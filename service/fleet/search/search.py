@@ -14,7 +14,12 @@ from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.search.directions import Directions, Step
 from service.fleet.search.problem import Nodes, Problem, problem_of
+from service.fleet.search.rows import clear, load_row, write_point, write_row
 from service.fleet.search.ruin_and_recreate import (
+    FAR,
+    NEAR,
+    RANDOM,
+    SOON,
     Driven,
     Found,
     anneal,
@@ -22,14 +27,7 @@ from service.fleet.search.ruin_and_recreate import (
     offer,
     set_prices,
 )
-from service.fleet.search.working_plan import (
-    MISSING,
-    clear,
-    load_row,
-    make_working_plan,
-    write_point,
-    write_row,
-)
+from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
 from service.front import Termination
 from service.search.several.archive import make_archive, rows_of
 from service.watch import Watch
@@ -37,6 +35,7 @@ from service.watch import Watch
 RUINS = 100  # in a round
 _CALL = 0.003  # seconds that compiled code may run before the time is checked
 _STILL = 0.1  # share of the rounds of a step at its end that accept nothing that is worse
+_FIRST_ORDERS = NEAR, FAR, SOON, RANDOM  # in which the stops of a first plan are inserted
 _FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
 _IDLE_STEPS = 72  # steps without a new plan, after which it ends
 
@@ -115,8 +114,7 @@ class RuinSearch(FleetSearch):
 
     def begin_with(self, plan: Plan) -> None:
         """Start from a plan that keeps every rule."""
-        step = self._directions.first()
-        load_row(self._problem, self._working, step.direction, self._row_of(plan))
+        load_row(self._state_of(self._directions.first()), self._row_of(plan))
         self._offer()
 
     def _row_of(self, plan: Plan) -> Nodes:
@@ -138,17 +136,23 @@ class RuinSearch(FleetSearch):
                 return "cancelled" if self._cancelled else "time_limit"
         return "converged"
 
+    def _state_of(self, step: Step) -> State:
+        return State(self._problem, self._working, step.direction)
+
     def _insert_all(self) -> None:
-        """Make a first plan, which may leave out stops."""
-        problem, working, direction = (
-            self._problem,
-            self._working,
-            self._directions.first().direction,
-        )
-        clear(problem, working, direction)
-        set_prices(problem, working, direction)
-        insert_all(problem, working, direction)
-        if working.counts[MISSING] == 0:
+        """Make a first plan, which may leave out stops: the best of some orders of insertion."""
+        state, row = self._state_of(self._directions.first()), self._archives.row
+        best, least = row.copy(), math.inf
+        for order in _FIRST_ORDERS:
+            clear(state)
+            set_prices(state)
+            insert_all(state, order)
+            if (cost := total_cost(self._working)) < least:
+                least = cost
+                write_row(self._problem, self._working, row)
+                best[:] = row
+        load_row(state, best)
+        if self._working.counts[MISSING] == 0:
             self._offer()
 
     def _offer(self) -> None:
@@ -170,14 +174,13 @@ class RuinSearch(FleetSearch):
 
     def _search(self, step: Step) -> bool:
         """Search in a direction, and return whether to end."""
-        problem, working = self._problem, self._working
-        if step.start is not None:
-            row = self._archives.plans.tours[self._rows[step.start]].copy()
-            load_row(problem, working, step.direction, row)
+        state, row = self._state_of(step), self._archives.row
+        if step.start is None:
+            write_row(self._problem, self._working, row)
         else:
-            write_row(problem, working, self._archives.row)
-            load_row(problem, working, step.direction, self._archives.row)
-        set_prices(problem, working, step.direction)
+            row[:] = self._archives.plans.tours[self._rows[step.start]]
+        load_row(state, row)
+        set_prices(state)
         heat = step.heat
         left, still = step.rounds, max(1, int(_STILL * step.rounds))
         cooling = (step.cooled / step.heat) ** (1 / (step.rounds * RUINS))
@@ -187,9 +190,7 @@ class RuinSearch(FleetSearch):
             most = left if left <= still else left - still
             rounds = min(most, self._options.iterations - self._rounds, self._at_once())
             heat = heat if left > still else 0.0
-            heat = anneal(
-                problem, working, step.direction, self._archives, rounds * RUINS, heat, cooling
-            )
+            heat = anneal(state, self._archives, rounds * RUINS, heat, cooling)
             self._rounds += rounds
             left -= rounds
         return False

@@ -1,0 +1,72 @@
+"""Note what an iteration changes in a plan, so that it can be undone."""
+
+from service.fleet.search.problem import Problem
+from service.fleet.search.route import measure
+from service.fleet.search.working_plan import (
+    OUTSIDE,
+    REMOVED,
+    SAVED,
+    SAVED_OUTSIDE,
+    SAVED_STOPS,
+    STAMP,
+    State,
+    WorkingPlan,
+    leave_out,
+    take_in,
+)
+from service.jit import compiled
+
+
+@compiled
+def save_slot(problem: Problem, plan: WorkingPlan, slot: int) -> None:
+    """Keep the stops of a route as they were before this iteration, if that is not done yet."""
+    counts = plan.counts
+    if plan.touched[slot] == counts[STAMP]:
+        return
+    plan.touched[slot] = counts[STAMP]
+    start = len(problem.demand) + 2 * slot
+    node, size = plan.next[start], 0
+    while node != start + 1:
+        plan.saved_stops[counts[SAVED_STOPS]] = node
+        counts[SAVED_STOPS] += 1
+        size += 1
+        node = plan.next[node]
+    plan.saved[counts[SAVED]] = slot
+    plan.saved_size[counts[SAVED]] = size
+    counts[SAVED] += 1
+
+
+@compiled
+def begin_iteration(plan: WorkingPlan) -> None:
+    """Note what restore() returns to."""
+    counts = plan.counts
+    counts[STAMP] += 1
+    counts[SAVED] = counts[SAVED_STOPS] = counts[REMOVED] = 0
+    counts[SAVED_OUTSIDE] = counts[OUTSIDE]
+    for place in range(counts[OUTSIDE]):
+        plan.saved_outside[place] = plan.outside[place]
+
+
+@compiled
+def restore(state: State) -> None:
+    """Return to the plan before this iteration."""
+    problem, plan, _ = state
+    counts, n = plan.counts, len(problem.demand)
+    while counts[OUTSIDE] > 0:
+        take_in(problem, plan, plan.outside[counts[OUTSIDE] - 1])
+    for place in range(counts[SAVED_OUTSIDE]):
+        leave_out(problem, plan, plan.saved_outside[place])
+        plan.route[plan.saved_outside[place]] = -1
+    first = 0
+    for number in range(counts[SAVED]):
+        slot = plan.saved[number]
+        start, end = n + 2 * slot, n + 2 * slot + 1
+        before = start
+        for place in range(first, first + plan.saved_size[number]):
+            stop = plan.saved_stops[place]
+            plan.next[before], plan.previous[stop] = stop, before
+            plan.route[stop] = slot
+            before = stop
+        plan.next[before], plan.previous[end] = end, before
+        first += plan.saved_size[number]
+        measure(state, slot)

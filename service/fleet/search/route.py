@@ -1,0 +1,271 @@
+"""What is known along a route, and what it costs."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from service.fleet.rounding import is_over
+from service.fleet.search.problem import (
+    FIRST,
+    LATENESS,
+    LOADED,
+    OVERTIME,
+    RELEASED,
+    SECOND,
+    Array,
+    Problem,
+)
+from service.fleet.search.working_plan import (
+    USED,
+    State,
+    WorkingPlan,
+    leg,
+    mark_used,
+)
+from service.jit import compiled, inlined
+
+_is_over = inlined(is_over)
+
+
+class Span(NamedTuple):
+    """A part of a route: the least time it takes, and the departures that take only this time.
+
+    Attributes:
+        time: The least time, with waiting.
+        early: The first such departure. Leaving before only adds waiting.
+        late: The last departure that keeps all windows.
+    """
+
+    time: float
+    early: float
+    late: float
+
+
+@inlined
+def joined(a: Span, way: float, b: Span) -> tuple[Span, bool]:
+    """Return two parts of a route with a leg between them, and whether they keep all windows.
+
+    Vidal et al. (2013), time-window segments.
+    """
+    until = a.time + way
+    waiting = max(0.0, b.early - until - a.late)
+    span = Span(
+        until + waiting + b.time,
+        max(a.early, b.early - until) - waiting,
+        min(a.late, b.late - until),
+    )
+    return span, not _is_over(a.early + until, b.late)
+
+
+@inlined
+def stay(problem: Problem, stop: int) -> Span:
+    """Return the visit of a stop as a part of a route."""
+    return Span(problem.service[stop], problem.opens[stop], problem.closes[stop])
+
+
+@inlined
+def head_at(plan: WorkingPlan, node: int) -> Span:
+    """Return the route up to a node."""
+    return Span(plan.head[node, 0], plan.head[node, 1], plan.head[node, 2])
+
+
+@inlined
+def tail_at(plan: WorkingPlan, node: int) -> Span:
+    """Return the route from a node on."""
+    return Span(plan.tail[node, 0], plan.tail[node, 1], plan.tail[node, 2])
+
+
+@inlined
+def _set_span(rows: Array, node: int, span: Span) -> None:
+    rows[node, 0], rows[node, 1], rows[node, 2] = span.time, span.early, span.late
+
+
+class Values(NamedTuple):
+    """The values of a route: its length in both costs, and what else an objective may measure."""
+
+    first: float
+    second: float
+    overtime: float
+    lateness: float
+    loaded: float  # loads times distances
+
+
+@inlined
+def route_cost(state: State, kind: int, values: Values) -> float:
+    """Return the cost of a route that visits a stop, by a type of vehicles."""
+    problem, _, direction = state
+    cost = (
+        direction.costs[0] * values.first
+        + direction.costs[1] * values.second
+        + direction.vehicle
+        + direction.fixed * problem.fixed[kind]
+        + direction.overtime * values.overtime
+        + direction.lateness * values.lateness
+        + direction.load_distance * values.loaded
+    )
+    length = values.first if problem.swept == 0 else values.second
+    return cost + direction.penalty * max(0.0, length - direction.longest)
+
+
+@compiled
+def measure(state: State, slot: int) -> bool:
+    """Work out what is known along a route and its cost; return whether it keeps all rules."""
+    problem, plan, _ = state
+    start = len(problem.demand) + 2 * slot
+    if plan.next[start] == start + 1:
+        _set_empty(problem, plan, slot, start)
+        return True
+    mark_used(plan, slot)
+    fits = _gather(problem, plan, slot, start)
+    first, second = _sum_legs(problem, plan, slot, start)
+    fits &= first < problem.forbidden
+    if problem.clock >= 0:
+        duration, in_time = _forward(problem, plan, slot, start)
+        _backward(problem, plan, start, problem.kind[slot])
+        fits &= in_time
+        first = duration if problem.clock == 0 else first
+        second = duration if problem.clock == 1 else second
+    plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
+    return _set_cost(state, slot, start + 1) and fits
+
+
+@inlined
+def _set_cost(state: State, slot: int, end: int) -> bool:
+    """Write the cost of a route whose lengths are known; return whether it is short enough."""
+    problem, plan, _ = state
+    kind = problem.kind[slot]
+    reach = overtime = 0.0
+    if problem.clock >= 0:
+        reach = plan.ready[end]
+        overtime = max(0.0, reach - problem.shift_end[kind])
+    plan.value[slot, OVERTIME], plan.value[slot, LATENESS] = overtime, plan.late[end]
+    first, second = plan.value[slot, FIRST], plan.value[slot, SECOND]
+    values = Values(first, second, overtime, plan.late[end], plan.value[slot, LOADED])
+    plan.cost[slot] = route_cost(state, kind, values)
+    length = first if problem.limited == 0 else second
+    return not _is_over(length, problem.longest[kind], reach)
+
+
+@inlined
+def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> None:
+    """Set what is known of a route without stops."""
+    end = start + 1
+    place = plan.use[slot]
+    if place >= 0:
+        plan.counts[USED] -= 1
+        last = plan.used[plan.counts[USED]]
+        plan.used[place] = last
+        plan.use[last] = place
+        plan.use[slot] = -1
+    plan.size[slot] = 0
+    plan.cost[slot] = 0.0
+    for dimension in range(plan.load.shape[1]):
+        plan.load[slot, dimension] = 0
+    for column in range(plan.value.shape[1]):
+        plan.value[slot, column] = 0.0
+    kind = problem.kind[slot]
+    _set_span(plan.head, start, Span(0.0, problem.departs[kind], problem.leaves_by[kind]))
+    _set_span(plan.tail, end, Span(0.0, 0.0, problem.returns[kind]))
+    plan.ready[start] = problem.departs[kind]
+    plan.late[start] = 0.0
+    plan.along[start] = 0.0
+    plan.ahead[end] = problem.initial[kind]
+
+
+@inlined
+def _gather(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> bool:
+    """Sum what a route carries, from its end on; return whether its vehicle can."""
+    kind = problem.kind[slot]
+    for dimension in range(plan.load.shape[1]):
+        plan.load[slot, dimension] = 0
+    size, released = 0, 0.0
+    ahead = problem.initial[kind]
+    plan.ahead[start + 1] = ahead
+    node = plan.previous[start + 1]
+    while node != start:
+        for dimension in range(plan.load.shape[1]):
+            plan.load[slot, dimension] += problem.demand[node, dimension]
+        if plan.load.shape[1] > 0:
+            ahead += problem.demand[node, 0]
+        plan.ahead[node] = ahead
+        released = max(released, problem.release[node])
+        size += 1
+        node = plan.previous[node]
+    plan.size[slot] = size
+    plan.value[slot, RELEASED] = released
+    fits = True
+    for dimension in range(plan.load.shape[1]):
+        fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]
+    return fits
+
+
+@inlined
+def _sum_legs(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tuple[float, float]:
+    """Return the sums of both costs of the legs; write what is known of the first up to each."""
+    first = second = loaded = 0.0
+    plan.along[start] = 0.0
+    at, node = problem.place[start], start
+    while node != start + 1:
+        node = plan.next[node]
+        there = problem.place[node]
+        way = leg(problem, at, there, 0)
+        if plan.load.shape[1] > 0:
+            loaded += way * plan.ahead[node]
+        first += way
+        second += leg(problem, at, there, 1)
+        plan.along[node] = first
+        at = there
+    plan.value[slot, LOADED] = loaded
+    return first, second
+
+
+@inlined
+def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tuple[float, bool]:
+    """Write the times up to each node of a route.
+
+    Returns:
+        The time from the departure to the end, where the vehicle leaves as late as makes neither
+        the end later nor a visit later than due; and whether the route keeps all windows.
+    """
+    kind, end = problem.kind[slot], start + 1
+    departs = max(problem.departs[kind], plan.value[slot, RELEASED])
+    span = Span(0.0, departs, problem.leaves_by[kind])
+    in_time = not _is_over(departs, problem.leaves_by[kind])
+    _set_span(plan.head, start, span)
+    ready, late, waiting, slack = departs, 0.0, 0.0, np.inf
+    plan.ready[start], plan.late[start] = ready, late
+    at, node = problem.place[start], plan.next[start]
+    while node != end:
+        way = leg(problem, at, problem.place[node], problem.clock)
+        begin = max(ready + way, problem.opens[node])
+        waiting += begin - (ready + way)
+        until = min(problem.closes[node], max(problem.due[node], begin))
+        slack = min(slack, until - begin + waiting)
+        if _is_over(begin, problem.due[node]):
+            late += begin - problem.due[node]
+        ready = begin + problem.service[node]
+        span, kept = joined(span, way, stay(problem, node))
+        in_time &= kept
+        _set_span(plan.head, node, span)
+        plan.ready[node], plan.late[node] = ready, late
+        at, node = problem.place[node], plan.next[node]
+    way = leg(problem, at, problem.place[end], problem.clock)
+    ready += way
+    _, kept = joined(span, way, Span(0.0, 0.0, problem.returns[kind]))
+    plan.ready[end], plan.late[end] = ready, late
+    slack = min(slack, problem.returns[kind] - ready + waiting, problem.leaves_by[kind] - departs)
+    return ready - departs - max(0.0, min(waiting, slack)), in_time and kept
+
+
+@inlined
+def _backward(problem: Problem, plan: WorkingPlan, start: int, kind: int) -> None:
+    """Write what is known from each node of a route on."""
+    span, end = Span(0.0, 0.0, problem.returns[kind]), start + 1
+    _set_span(plan.tail, end, span)
+    at, node = problem.place[end], plan.previous[end]
+    while node != start:
+        way = leg(problem, problem.place[node], at, problem.clock)
+        span, _ = joined(stay(problem, node), way, span)
+        _set_span(plan.tail, node, span)
+        at = problem.place[node]
+        node = plan.previous[node]

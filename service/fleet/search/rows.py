@@ -1,0 +1,120 @@
+"""Plans as rows of numbers, as archives keep them, and the points of plans."""
+
+import numpy as np
+
+from service.fleet.search.problem import (
+    IMBALANCE,
+    MAX,
+    UNASSIGNED,
+    VEHICLES,
+    Array,
+    Nodes,
+    Problem,
+)
+from service.fleet.search.route import measure
+from service.fleet.search.working_plan import (
+    OUTSIDE,
+    USED,
+    State,
+    WorkingPlan,
+    free_slot,
+    leave_out,
+    link,
+    mark_used,
+    take_in,
+)
+from service.jit import compiled, inlined
+
+
+@compiled
+def write_row(problem: Problem, plan: WorkingPlan, row: Nodes) -> None:
+    """Write a plan as a row: for each route the type of its vehicle as -2 - type, and its stops."""
+    n, place = len(problem.demand), 0
+    for number in range(plan.counts[USED]):
+        slot = plan.used[number]
+        row[place] = -2 - problem.kind[slot]
+        place += 1
+        node = plan.next[n + 2 * slot]
+        while node < n:
+            row[place] = node
+            place += 1
+            node = plan.next[node]
+    while place < len(row):
+        row[place] = -1
+        place += 1
+
+
+@compiled
+def load_row(state: State, row: Nodes) -> None:
+    """Make the plan that of a row, as write_row() writes it."""
+    problem, plan, _ = state
+    n = len(problem.demand)
+    clear(state)
+    for slot in range(len(problem.kind)):
+        plan.touched[slot] = 0
+    slot, before = -1, -1
+    for place in range(len(row)):
+        stop = row[place]
+        if stop == -1:
+            break
+        if stop < -1:
+            if slot >= 0:
+                measure(state, slot)
+            slot = free_slot(problem, plan, -2 - stop)
+            before = n + 2 * slot
+            mark_used(plan, slot)
+        else:
+            take_in(problem, plan, stop)
+            link(plan, slot, stop, before)
+            before = stop
+    if slot >= 0:
+        measure(state, slot)
+
+
+@compiled
+def clear(state: State) -> None:
+    """Put all stops outside."""
+    problem, plan, _ = state
+    n = len(problem.demand)
+    for slot in range(len(problem.kind)):
+        start, end = n + 2 * slot, n + 2 * slot + 1
+        plan.next[start], plan.previous[end] = end, start
+        measure(state, slot)
+    for number in range(len(problem.clients)):
+        stop = problem.clients[number]
+        plan.route[stop] = -1
+        if plan.out[stop] < 0:
+            leave_out(problem, plan, stop)
+
+
+@compiled
+def write_point(problem: Problem, plan: WorkingPlan, point: Array) -> None:
+    """Write the lengths of a plan, shape (m,)."""
+    paid = 0
+    for objective in range(len(problem.over)):
+        if problem.over[objective] == UNASSIGNED:
+            paid = objective
+        point[objective] = _joined_value(problem, plan, problem.over[objective], objective)
+    for number in range(plan.counts[USED]):
+        point[0] += problem.fixed[problem.kind[plan.used[number]]]
+    for number in range(plan.counts[OUTSIDE]):
+        point[paid] += problem.prize[plan.outside[number]]
+
+
+@inlined
+def _joined_value(problem: Problem, plan: WorkingPlan, over: int, objective: int) -> float:
+    """Return the length of a plan in an objective, without prizes and fixed costs."""
+    used = plan.counts[USED]
+    if over == VEHICLES:
+        return float(used)
+    if over == UNASSIGNED or used == 0:
+        return 0.0
+    column = problem.column[objective]
+    total, longest, shortest = 0.0, 0.0, np.inf
+    for number in range(used):
+        value = float(plan.value[plan.used[number], column])
+        total += value
+        longest, shortest = max(longest, value), min(shortest, value)
+    if over == MAX:
+        return longest
+    return longest - shortest if over == IMBALANCE else total
