@@ -47,7 +47,7 @@ WORK: Mapping[Part, Work] = {
     Part.MORE_CITIES: Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
     Part.MAPS: Work(_maps, (detours.warm_up,), 2),
     Part.CHANGES: Work(insertion.warm_up, (insertion.warm_up,), 1),
-    Part.FLEETS: Work(fleet.warm_up, (fleet.warm_up,), 2),
+    Part.FLEETS: Work(fleet.warm_up, (fleet.warm_up,), 11),
     Part.SEVERAL_OBJECTIVES: Work(
         several.warm_up, (several.local_search, several.beside_local_search), 9
     ),

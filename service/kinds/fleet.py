@@ -97,11 +97,13 @@ def plan_front(
 
 
 def warm_up() -> None:
-    """Import PyVRP, which takes some tenths of a second, and compile the optimal split."""
+    """Import PyVRP, which takes some tenths of a second, and compile what plans fleets."""
     import service.fleet.planner  # noqa: F401
     from service.fleet import first_plans
+    from service.fleet.search import search
 
     first_plans.warm_up()
+    search.warm_up()
 
 
 def document_of_plans(

@@ -87,12 +87,12 @@ def problem_of(fleet: Fleet) -> Problem:
         swept=-1 if rules.swept is None else rules.swept,
         forbidden=forbidden,
         demand=loads.demand,
-        service=np.array([visit.service for visit in visits]),
-        release=np.array([visit.release for visit in visits]),
-        opens=np.array([visit.windows[0][0] for visit in visits]),
-        closes=np.array([visit.windows[-1][1] for visit in visits]),
-        due=np.array([visit.due for visit in visits]),
-        prize=np.array([np.inf if visit.prize is None else visit.prize for visit in visits]),
+        service=_floats([visit.service for visit in visits]),
+        release=_floats([visit.release for visit in visits]),
+        opens=_floats([visit.windows[0][0] for visit in visits]),
+        closes=_floats([visit.windows[-1][1] for visit in visits]),
+        due=_floats([visit.due for visit in visits]),
+        prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
         near=_nearest(fleet, clients),
         clients=clients,
         place=np.concatenate((np.arange(rules.n), np.array(ends)[kind].ravel())).astype(np.int32),
@@ -100,15 +100,19 @@ def problem_of(fleet: Fleet) -> Problem:
         slots=np.concatenate(([0], np.cumsum(counts))),
         capacity=loads.capacity - loads.initial,
         initial=np.array([(each.initial_load or (0,))[0] for each in vehicles]),
-        departs=np.array([vehicle.way[0] for vehicle in vehicles]),
-        leaves_by=np.array([min(v.leaves_by, v.way[1]) for v in vehicles]),
-        returns=np.array([vehicle.way[1] for vehicle in vehicles]),
-        shift_end=np.array([vehicle.shift[1] for vehicle in vehicles]),
-        longest=np.array([vehicle.longest for vehicle in vehicles]),
-        fixed=np.array([vehicle.fixed for vehicle in vehicles]),
+        departs=_floats([vehicle.way[0] for vehicle in vehicles]),
+        leaves_by=_floats([min(v.leaves_by, v.way[1]) for v in vehicles]),
+        returns=_floats([vehicle.way[1] for vehicle in vehicles]),
+        shift_end=_floats([vehicle.shift[1] for vehicle in vehicles]),
+        longest=_floats([vehicle.longest for vehicle in vehicles]),
+        fixed=_floats([vehicle.fixed for vehicle in vehicles]),
         over=np.array([MEASURES.index(over) for over in rules.over]),
         column=np.array([_column(rules, index) for index in range(len(rules.over))]),
     )
+
+
+def _floats(values: list[float]) -> Array:
+    return np.array(values, np.float64)
 
 
 def _column(rules: Rules, objective: int) -> int:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.fleet_search import KEPT, FleetSearch
 from service.fleet.fronts import FleetOptions
 from service.fleet.plans import FleetFront, Plan, Route, steps_of
@@ -28,6 +28,7 @@ from service.fleet.search.ruin_and_recreate import (
     set_prices,
 )
 from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
+from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
 from service.search.several.archive import make_archive, rows_of
 from service.watch import Watch
@@ -234,3 +235,14 @@ def _driven(problem: Problem, plan: Plan | None) -> Driven:
         kind[stop] = vehicle
         before[stop] = -1 if previous is None else previous
     return Driven(kind, before, -1 if plan is None else math.ceil(KEPT * len(steps)))
+
+
+def warm_up() -> None:
+    """Compile the search, or load it from the cache."""
+    rules = Rules(
+        visits=(Visit(),) * 4,
+        vehicles=(VehicleType(start=0, end=0, count=2),),
+        over=("sum", "max"),
+    )
+    fleet = Fleet(rules=rules, costs=np.ones((LAYERS, rules.n, rules.n)))
+    RuinSearch(fleet, FleetOptions(time_limit=math.inf, iterations=3), Watch()).run()
