@@ -220,7 +220,7 @@ class Settings(BaseSettings):
     """the most cities where costs are matrices"""
     max_network_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = 5000
     """the most cities for which a network builds tours"""
-    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = 500
+    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = 1000
     """the most stops of a fleet, and places that several robots share"""
     max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = 2**20
     """the most cells of a map"""

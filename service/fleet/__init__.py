@@ -1,1 +1,1 @@
-"""Plan fleets: fronts of plans for several vehicles, found with PyVRP."""
+"""Plan fleets: fronts of plans for several vehicles."""

@@ -48,7 +48,7 @@ class Limits:
     network_cities: int = 5000
     path_cells: int = 2**21
     survey_seconds: float = 10.0
-    fleet_stops: int = 500
+    fleet_stops: int = 1000
     repairs: int = 200
     roads: bool = False
     traffic: bool = False

@@ -1,4 +1,4 @@
-"""Where a stop costs the least: in the routes of its neighbours, or in one of its own."""
+"""Find where a stop costs the least: in the routes of its neighbours, or in one of its own."""
 
 from typing import NamedTuple
 
@@ -34,7 +34,7 @@ from service.search.local_search import random_below
 
 _is_over = inlined(is_over)
 
-_NEIGHBOURS = 40  # beside which a stop is tried
+_NEIGHBOURS = 30  # beside which a stop is tried
 _FEW = 8  # of them that are in routes: then all routes are tried
 
 
@@ -128,11 +128,12 @@ def insertion_cost(state: State, stop: int, slot: int, before: int, most: float)
     then its vehicle cannot leave as late as is assumed here.
     """
     problem, plan, direction = state
-    a, b = problem.place[before], problem.place[plan.next[before]]
-    first = leg(problem, a, stop, 0) + leg(problem, stop, b, 0) - leg(problem, a, b, 0)
+    after = plan.next[before]
+    a, b = problem.place[before], problem.place[after]
+    first = leg(problem, a, stop, 0) + leg(problem, stop, b, 0) - plan.step[after, 0]
     if first >= 0.5 * problem.forbidden:
         return np.inf
-    second = leg(problem, a, stop, 1) + leg(problem, stop, b, 1) - leg(problem, a, b, 1)
+    second = leg(problem, a, stop, 1) + leg(problem, stop, b, 1) - plan.step[after, 1]
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0:
         loaded += _loaded(problem, plan, stop, before, first)

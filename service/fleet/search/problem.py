@@ -78,10 +78,9 @@ def problem_of(fleet: Fleet) -> Problem:
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in vehicles]
     finite = np.where(np.isinf(fleet.costs), 0.0, fleet.costs)
     forbidden = _FORBIDDEN * max(1.0, float(finite.max(initial=0.0))) * (rules.n + 1)
+    costs = np.moveaxis(np.where(np.isinf(fleet.costs), forbidden, fleet.costs), 0, -1)
     return Problem(
-        costs=np.ascontiguousarray(
-            np.moveaxis(np.where(np.isinf(fleet.costs), forbidden, fleet.costs), 0, -1)
-        ),
+        costs=np.ascontiguousarray(costs),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
         swept=-1 if rules.swept is None else rules.swept,

@@ -1,4 +1,4 @@
-"""What is known along a route, and what it costs."""
+"""Measure a route: what is known up to each stop and from it on, and what it costs."""
 
 from typing import NamedTuple
 
@@ -170,6 +170,8 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     plan.late[start] = 0.0
     plan.along[start] = 0.0
     plan.ahead[end] = problem.initial[kind]
+    for layer in range(plan.step.shape[1]):
+        plan.step[end, layer] = leg(problem, problem.place[start], problem.place[end], layer)
 
 
 @inlined
@@ -211,9 +213,11 @@ def _sum_legs(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tup
         way = leg(problem, at, there, 0)
         if plan.load.shape[1] > 0:
             loaded += way * plan.ahead[node]
+        plan.step[node, 0] = way
         first += way
-        second += leg(problem, at, there, 1)
         plan.along[node] = first
+        plan.step[node, 1] = leg(problem, at, there, 1)
+        second += plan.step[node, 1]
         at = there
     plan.value[slot, LOADED] = loaded
     return first, second
@@ -234,9 +238,9 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     _set_span(plan.head, start, span)
     ready, late, waiting, slack = departs, 0.0, 0.0, np.inf
     plan.ready[start], plan.late[start] = ready, late
-    at, node = problem.place[start], plan.next[start]
+    node = plan.next[start]
     while node != end:
-        way = leg(problem, at, problem.place[node], problem.clock)
+        way = plan.step[node, problem.clock]
         begin = max(ready + way, problem.opens[node])
         waiting += begin - (ready + way)
         until = min(problem.closes[node], max(problem.due[node], begin))
@@ -248,8 +252,8 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
         in_time &= kept
         _set_span(plan.head, node, span)
         plan.ready[node], plan.late[node] = ready, late
-        at, node = problem.place[node], plan.next[node]
-    way = leg(problem, at, problem.place[end], problem.clock)
+        node = plan.next[node]
+    way = plan.step[end, problem.clock]
     ready += way
     _, kept = joined(span, way, Span(0.0, 0.0, problem.returns[kind]))
     plan.ready[end], plan.late[end] = ready, late
@@ -262,10 +266,9 @@ def _backward(problem: Problem, plan: WorkingPlan, start: int, kind: int) -> Non
     """Write what is known from each node of a route on."""
     span, end = Span(0.0, 0.0, problem.returns[kind]), start + 1
     _set_span(plan.tail, end, span)
-    at, node = problem.place[end], plan.previous[end]
+    node = plan.previous[end]
     while node != start:
-        way = leg(problem, problem.place[node], at, problem.clock)
+        way = plan.step[plan.next[node], problem.clock]
         span, _ = joined(stay(problem, node), way, span)
         _set_span(plan.tail, node, span)
-        at = problem.place[node]
         node = plan.previous[node]

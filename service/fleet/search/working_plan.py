@@ -17,6 +17,7 @@ class WorkingPlan(NamedTuple):
     next: Nodes  # (n + 2 r,), by node
     previous: Nodes
     route: Nodes  # (n,), the slot whose route visits a stop; -1 if none does
+    step: Array  # (n + 2 r, 2), by node: both costs of the leg to it
     along: Array  # (n + 2 r,), by node: the first costs since the start
     ahead: Indices  # (n + 2 r,), the load in the first dimension that is brought from here on
     ready: Array  # (n + 2 r,), when the visit ends at the earliest
@@ -60,6 +61,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         next=np.arange(1, nodes + 1, dtype=np.int32),
         previous=np.arange(-1, nodes - 1, dtype=np.int32),
         route=_nothing(n),
+        step=np.zeros((nodes, 2)),
         along=np.zeros(nodes),
         ahead=np.zeros(nodes, np.int64),
         ready=np.zeros(nodes),
