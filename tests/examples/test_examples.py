@@ -89,7 +89,7 @@ def test_three_robots_share_the_warehouse_in_several_ways() -> None:
     robots = [{robot for robot, _ in fleet.routes(plan)} for plan in front.plans]
     assert len(robots) > 1
     assert robots[-1] == set(range(len(DOCKS)))
-    assert front.points[-1, 1] < front.points[0, 1] / 1.5
+    assert front.points[-1, 1] < front.points[0, 1] / 1.3
 
 
 def test_the_script_makes_the_examples(tmp_path: Path, valhalla: RunningValhalla) -> None:
