@@ -109,10 +109,10 @@ def record_columns(record: Record) -> dict[str, Any]:
 def front_columns(front: FrontDocument) -> dict[str, bytes]:
     """Return a front as columns."""
     return {
-        "members": to_json(front.members()),
+        "members": front.stored(),
         "tours": zlib.compress(front.tours, _LEVEL if len(front.tours) > SHORT else 0),
         "ends": front.ends,
-        "angles": front.angles,
+        "angles": front.directions.tobytes(),  # for the version before
     }
 
 
@@ -188,7 +188,6 @@ def _decode(columns: Mapping[str, Any]) -> Record:
             json.loads(columns["members"]),
             tours=zlib.decompress(columns["tours"]),
             ends=columns["ends"],
-            angles=columns["angles"],
         ),
         source=source_from(columns) if kind else None,
     )
@@ -208,8 +207,8 @@ def _check(record: Record) -> None:
         raise ValueError(f"kind is {source.kind!r}")
     if not isinstance(record.problem, dict | None):
         raise ValueError("problem is not an object")
-    if len(front.angles) != len(front.ends):
-        raise ValueError("angles and ends differ in number")
+    if len(front.lengths) != len(ends):
+        raise ValueError("lengths and ends differ in number")
     if (int(ends[-1]) if len(ends) else 0) != len(front.tours) or (np.diff(ends) < 1).any():
         raise ValueError("ends are not those of the tours")
 

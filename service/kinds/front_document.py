@@ -8,14 +8,14 @@ default.
 
 from array import array
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from itertools import accumulate, islice
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import balances
-from pydantic_core import to_json
+from pydantic_core import from_json, to_json
 
 from service.coverage.frame import CoveragePath
 from service.fleet.plans import FleetFront
@@ -25,8 +25,6 @@ from service.preferences import angles
 from service.requests.notes.note import Note
 from service.requests.task import KindName
 
-_HEAD = 100  # the first bytes of a tour, which contain its first members
-_POSITIONS = (b'"balance":', b'"losses":')  # of a tour in its front: members that it has
 PATH_PART = 2**14  # cells of a path that are written at once
 
 
@@ -51,8 +49,7 @@ class FrontDocument:
         notes: What is likely to be a mistake in the request; None where nothing is.
         tours: The JSON of all tours, separated by commas, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
-        angles: The direction of each tour in degrees, as m native floats of 8 bytes; of more than
-            two objectives NaN.
+        lengths: The lengths of each of m tours, shape (m, k).
         gained: The hypervolume that the search added, for the metrics.
     """
 
@@ -74,7 +71,7 @@ class FrontDocument:
     notes: list[dict[str, str]] | None = None
     tours: bytes = b""
     ends: bytes = b""
-    angles: bytes = b""
+    lengths: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, OBJECTIVES)))
     gained: float | None = None
 
     @classmethod
@@ -87,20 +84,22 @@ class FrontDocument:
             scale=front.scale.tolist(),
             timings_ms=front.timings,
             terminated=front.terminated,
-            angles=_angles(front).tobytes(),
+            lengths=front.points,
             **members,
         )
 
     @classmethod
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
-        """Return the document of parsed members, with the other fields as given.
+        """Return the document of the members that a store has, with the other fields as given.
 
-        Members that this release does not know are dropped. Tours that were stored without balances
-        get them.
+        Members that this release does not know are dropped.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         known.setdefault("kind", _kind_of_earlier_version(members))
-        return cls(**known, **encoded).with_balances()
+        document = cls(**known, **encoded)
+        if "lengths" not in members:
+            return document._of_earlier_version()
+        return replace(document, lengths=_as_array(members["lengths"]))
 
     def with_notes(self, notes: Iterable[Note]) -> Self:
         """Return the front with notes on its request, if there are any."""
@@ -110,15 +109,21 @@ class FrontDocument:
         ]
         return replace(self, notes=members) if members else self
 
-    def with_balances(self) -> Self:
-        """Return the front with the balance of each tour, computed where it is missing."""
-        if not self.tours or any(name in self.tours[:_HEAD] for name in _POSITIONS):
-            return self
+    def _of_earlier_version(self) -> Self:
+        """Return a front that was stored without lengths, with them and with balances."""
+        items = [from_json(tour) for tour in self.split()]
+        front = replace(self, lengths=_as_array([item["lengths"] for item in items]))
+        if not items or {"balance", "losses"} & items[0].keys():
+            return front
         tours, ends = joined(
-            tour.replace(b',"lengths":', b',"balance":' + to_json(balance) + b',"lengths":', 1)
-            for tour, balance in zip(self.split(), balances(self.lengths).tolist(), strict=True)
+            to_json({"angle": tour.pop("angle"), "balance": balance, **tour})
+            for tour, balance in zip(items, balances(front.lengths).tolist(), strict=True)
         )
-        return replace(self, tours=tours, ends=ends)
+        return replace(front, tours=tours, ends=ends)
+
+    def stored(self) -> bytes:
+        """Return the members of the answer but the tours, and the lengths of these, as JSON."""
+        return to_json({**self.members(), "lengths": self.lengths.tolist()})
 
     def members(self) -> dict[str, Any]:
         """Return the members of the answer but the tours, ready for JSON."""
@@ -138,42 +143,31 @@ class FrontDocument:
 
     @property
     def directions(self) -> NDArray[np.float64]:
-        """The direction of each tour in degrees, shape (m,)."""
-        return np.frombuffer(self.angles)
-
-    @property
-    def lengths(self) -> NDArray[np.float64]:
-        """The lengths of each of k tours, shape (k, m)."""
-        texts = [_between(self.tours, b'"lengths":[', b"]", begin) for begin in self._begins]
-        if not texts:
-            return np.empty((0, OBJECTIVES))
-        return np.fromstring(b",".join(texts), sep=",").reshape(len(texts), -1)
+        """The direction of each tour in degrees, shape (m,); of more than two objectives NaN."""
+        if not len(self.lengths) or self.lengths.shape[1] > OBJECTIVES:
+            return np.full(len(self.lengths), np.nan)
+        return angles(self.lengths, np.array(self.scale))
 
     @property
     def orders(self) -> NDArray[np.int64]:
         """The stops of each tour in order, shape (m, n); not for plans, which have routes."""
-        texts = [_between(self.tours, b'"tour":[', b"]", begin) for begin in self._begins]
-        # This takes a fifth of the time of parsing lists in JSON.
+        texts = [_between(tour, b'"tour":[', b"]") for tour in self.split()]
+        # This takes a fifth of the time of parsing JSON, and paths over a map are not parsed.
         stops = np.fromstring(b",".join(texts), np.int64, sep=",")
         return stops.reshape(len(texts), -1) if texts else np.empty((0, 0), np.int64)
 
-    @property
-    def _begins(self) -> list[int]:
-        """The place where each tour begins, shape (m,)."""
-        return [0, *(np.frombuffer(self.ends, np.int64)[:-1] + 1).tolist()] if self.ends else []
-
     def split(self) -> list[bytes]:
         """Return the JSON of each tour."""
-        lasts = np.frombuffer(self.ends, np.int64).tolist()
-        return [self.tours[begin:last] for begin, last in zip(self._begins, lasts, strict=True)]
+        return [self.tour(index) for index in range(len(np.frombuffer(self.ends, np.int64)))]
 
     def tour(self, index: int) -> bytes:
         """Return the JSON of one tour."""
-        return self.split()[index]
+        ends = np.frombuffer(self.ends, np.int64)
+        return self.tours[ends[index - 1] + 1 if index else 0 : ends[index]]
 
     def without_tours(self) -> Self:
         """Return the front without its tours."""
-        return replace(self, tours=b"", ends=b"", angles=b"")
+        return replace(self, tours=b"", ends=b"", lengths=self.lengths[:0])
 
     def ended(self, seconds: float, *, late: bool) -> Self:
         """Return the front with its timings at the end.
@@ -190,17 +184,14 @@ class FrontDocument:
         return replace(self, timings_ms=timings, terminated=terminated)
 
 
-_ENCODED = ("tours", "ends", "angles", "gained")
+_ENCODED = ("tours", "ends", "lengths", "gained")
 _MEMBER_FIELDS = [field for field in fields(FrontDocument) if field.name not in _ENCODED]
 _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
-def _angles(front: Front | FleetFront) -> NDArray[np.float64]:
-    """Return the direction of each tour in degrees; of more than two objectives NaN."""
-    if front.points.shape[1] > OBJECTIVES:
-        return np.full(len(front.points), np.nan)
-    return angles(front.points, front.scale)
+def _as_array(lengths: list[list[float]]) -> NDArray[np.float64]:
+    return np.array(lengths or np.empty((0, OBJECTIVES)), np.float64)
 
 
 def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:
@@ -211,9 +202,9 @@ def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:
     return "coverage" if on_map else "front"
 
 
-def _between(text: bytes, before: bytes, after: bytes, begin: int) -> bytes:
-    """Return the text between two parts: the first ones at or after a byte."""
-    at = text.index(before, begin) + len(before)
+def _between(text: bytes, before: bytes, after: bytes) -> bytes:
+    """Return the text between the first of two parts, and the next of the other."""
+    at = text.index(before) + len(before)
     return text[at : text.index(after, at)]
 
 

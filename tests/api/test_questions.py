@@ -33,15 +33,16 @@ def stored(kind: KindName, objectives: int) -> Record:
     directions = np.abs(np.random.default_rng(objectives).normal(size=(30, objectives)))
     lengths = 1 - directions / np.linalg.norm(directions, axis=1, keepdims=True)
     routes = [{"lengths": [0.0] * objectives}]
+    lengths = np.array(sorted(lengths.tolist()))
     items = [
         {"lengths": row, **({"tour": [0, 1]} if KINDS[kind] == "tour" else {"routes": routes})}
-        for row in sorted(lengths.tolist())
+        for row in lengths.tolist()
     ]
     tours, ends = joined(to_json({"losses": [0.0], **item}) for item in items)
     names = [{"name": f"objective {i}", "unit": None} for i in range(objectives)]
     made = record(f"{kind}-{objectives}", caller="anonymous")
     front = replace(
-        made.front, kind=kind, tours=tours, ends=ends, angles=bytes(8 * 30), objectives=names
+        made.front, kind=kind, tours=tours, ends=ends, lengths=lengths, objectives=names
     )
     return replace(made, front=front)
 

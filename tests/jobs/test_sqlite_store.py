@@ -128,7 +128,7 @@ def test_a_file_of_the_last_release_is_read(tmp_path: Path) -> None:
         "members = '[]'",
         "tours = x'00'",
         "ends = x'00'",
-        "angles = x''",
+        "members = json_set(CAST(members AS TEXT), '$.lengths', json('[]'))",
         "problem = x'ff'",
         "status = 'lost'",
         "kind = 'front', body = NULL, members = NULL",

@@ -173,7 +173,7 @@ def _fault(request: Request, code: str, said: str = "", **values: str) -> Fault:
 
 def _check_plan(request: Request, record: Record, plan: int) -> None:
     """Raise a refusal unless the front has a plan of this number, if one is asked for."""
-    plans = len(record.front.split())
+    plans = len(record.front.lengths)
     if not accepts_geojson(request):
         fault = _of_plan("needs-geojson", accept=GEOJSON)
     elif not KINDS[record.front.kind].mover:
