@@ -28,6 +28,7 @@ _NAMES = (
     "deadlines",
     "detours",
     "fleet",
+    "fleets",
     "fronts",
     "growth",
     "kro",
