@@ -14,10 +14,10 @@ from service.fleet.search.working_plan import (
     leave_out,
     take_in,
 )
-from service.jit import compiled
+from service.jit import inlined
 
 
-@compiled
+@inlined
 def save_slot(problem: Problem, plan: WorkingPlan, slot: int) -> None:
     """Keep the stops of a route as they were before this iteration, if that is not done yet."""
     counts = plan.counts
@@ -36,7 +36,7 @@ def save_slot(problem: Problem, plan: WorkingPlan, slot: int) -> None:
     counts[SAVED] += 1
 
 
-@compiled
+@inlined
 def begin_iteration(plan: WorkingPlan) -> None:
     """Note what restore() returns to."""
     counts = plan.counts
@@ -47,7 +47,16 @@ def begin_iteration(plan: WorkingPlan) -> None:
         plan.saved_outside[place] = plan.outside[place]
 
 
-@compiled
+@inlined
+def measure_changed(state: State) -> None:
+    """Measure the routes that this iteration changed: sums of changes are inexact."""
+    problem, plan, direction = state
+    if problem.clock < 0 and direction.load_distance == 0:
+        for number in range(plan.counts[SAVED]):
+            measure(state, plan.saved[number])
+
+
+@inlined
 def restore(state: State) -> None:
     """Return to the plan before this iteration."""
     problem, plan, _ = state

@@ -23,6 +23,8 @@ from service.fleet.search.route import (
 )
 from service.fleet.search.working_plan import (
     BLINKS,
+    TRY,
+    UNTIL_BLINK,
     USED,
     State,
     WorkingPlan,
@@ -46,14 +48,15 @@ class Place(NamedTuple):
     before: int
 
 
-@compiled
+@inlined
 def best_place(state: State, stop: int, most: float) -> Place:
     """Return the cheapest place for a stop that costs less than `most`; slot -1 if there is none.
 
-    One place in `counts[BLINKS]` is passed by at random.
+    One place in `counts[BLINKS]` is passed by, on the mean.
     """
     problem, plan, direction = state
     best = Place(most, -1, -1)
+    plan.counts[TRY] += 1
     tried = 0
     neighbours = min(_NEIGHBOURS, problem.near.shape[1])
     for number in range(neighbours):
@@ -114,7 +117,12 @@ def _better(
 ) -> Place:
     """Return the better of two places: the best so far, and that after a node."""
     plan = state.plan
-    if random_below(plan.random, plan.counts[BLINKS]) == 0:
+    if plan.tried[before] == plan.counts[TRY]:
+        return best
+    plan.tried[before] = plan.counts[TRY]
+    plan.counts[UNTIL_BLINK] -= 1
+    if plan.counts[UNTIL_BLINK] <= 0:
+        plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
         return best
     cost = insertion_cost(state, stop, slot, before, best.cost)
     return Place(cost, slot, before) if cost < best.cost else best

@@ -130,6 +130,33 @@ def measure(state: State, slot: int) -> bool:
 
 
 @inlined
+def measure_with(state: State, slot: int, stop: int) -> bool:
+    """Work out the cost of a route that has got a stop; return whether it keeps all rules.
+
+    Without times and loads on the way, lengths change by three legs. Sums are then a few roundings
+    apart from those of measure(), which is due when the plan is kept.
+    """
+    problem, plan, direction = state
+    if problem.clock >= 0 or direction.load_distance > 0:
+        return measure(state, slot)
+    mark_used(plan, slot)
+    before, after = plan.previous[stop], plan.next[stop]
+    fits = True
+    for layer in range(plan.step.shape[1]):
+        plan.value[slot, layer] -= plan.step[after, layer]
+        plan.step[stop, layer] = leg(problem, problem.place[before], stop, layer)
+        plan.step[after, layer] = leg(problem, stop, problem.place[after], layer)
+        plan.value[slot, layer] += plan.step[stop, layer] + plan.step[after, layer]
+    for dimension in range(plan.load.shape[1]):
+        plan.load[slot, dimension] += problem.demand[stop, dimension]
+        capacity = problem.capacity[problem.kind[slot], dimension]
+        fits &= plan.load[slot, dimension] <= capacity
+    plan.size[slot] += 1
+    fits &= plan.value[slot, FIRST] < problem.forbidden
+    return _set_cost(state, slot, len(problem.demand) + 2 * slot + 1) and fits
+
+
+@inlined
 def _set_cost(state: State, slot: int, end: int) -> bool:
     """Write the cost of a route whose lengths are known; return whether it is short enough."""
     problem, plan, _ = state

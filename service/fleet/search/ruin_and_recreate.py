@@ -10,10 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.fleet.search.changes import begin_iteration, restore, save_slot
+from service.fleet.search.changes import (
+    begin_iteration,
+    measure_changed,
+    restore,
+    save_slot,
+)
 from service.fleet.search.insertion import best_place
 from service.fleet.search.problem import Nodes, Problem
-from service.fleet.search.route import measure
+from service.fleet.search.route import measure, measure_with
 from service.fleet.search.rows import write_point, write_row
 from service.fleet.search.working_plan import (
     BLINKS,
@@ -21,6 +26,7 @@ from service.fleet.search.working_plan import (
     OUTSIDE,
     REMOVED,
     STAMP,
+    UNTIL_BLINK,
     USED,
     State,
     WorkingPlan,
@@ -58,7 +64,7 @@ def uniform(random: NDArray[np.int64]) -> float:
     return (random_below(random, 1 << 30) + 0.5) / (1 << 30)
 
 
-@compiled
+@inlined
 def remove(problem: Problem, plan: WorkingPlan, stop: int) -> None:
     """Take a stop out of its route, to be inserted later. The route is not measured."""
     unlink(plan, stop)
@@ -67,7 +73,7 @@ def remove(problem: Problem, plan: WorkingPlan, stop: int) -> None:
     plan.counts[REMOVED] += 1
 
 
-@compiled
+@inlined
 def ruin(state: State) -> None:
     """Take strings of stops out of some routes near a random stop."""
     problem, plan, _ = state
@@ -155,12 +161,13 @@ def _dissolve(state: State, slot: int) -> None:
     measure(state, slot)
 
 
-@compiled
+@inlined
 def recreate(state: State, order: int) -> None:
     """Insert the removed stops, sorted in an order, where each costs the least."""
     problem, plan, _ = state
     often = random_below(plan.random, _OFTEN) == 0
     plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
+    plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
     _sort(problem, plan, order)
     for number in range(plan.counts[REMOVED]):
         stop = plan.removed[number]
@@ -170,7 +177,7 @@ def recreate(state: State, order: int) -> None:
         save_slot(problem, plan, place.slot)
         take_in(problem, plan, stop)
         link(plan, place.slot, stop, place.before)
-        if not measure(state, place.slot):
+        if not measure_with(state, place.slot, stop):
             # A rounding apart from what was worked out before: a place like any other that is none.
             unlink(plan, stop)
             leave_out(problem, plan, stop)
@@ -192,7 +199,7 @@ def _most(problem: Problem, plan: WorkingPlan, stop: int) -> float:
     return plan.price[stop]
 
 
-@compiled
+@inlined
 def _sort(problem: Problem, plan: WorkingPlan, order: int) -> None:
     """Sort the removed stops by a random key; those that were outside before come first."""
     count = plan.counts[REMOVED]
@@ -228,7 +235,7 @@ def _key(problem: Problem, plan: WorkingPlan, stop: int, order: int) -> float:
     return uniform(plan.random)
 
 
-@compiled
+@inlined
 def _raise_prices(state: State) -> None:
     """Raise the prices of the stops outside that must be visited."""
     problem, plan, direction = state
@@ -238,7 +245,7 @@ def _raise_prices(state: State) -> None:
             plan.price[stop] += direction.required
 
 
-@compiled
+@inlined
 def _try_outside(plan: WorkingPlan) -> None:
     """Add some of the stops outside to those that are inserted."""
     outside = plan.counts[OUTSIDE]
@@ -335,6 +342,7 @@ def anneal(
             restore(state)
         else:
             beyond = exceeding
+            measure_changed(state)
         heat *= cooling
     return heat
 

@@ -7,8 +7,11 @@ import numpy as np
 from service.fleet.search.problem import Array, Direction, Indices, Nodes, Problem
 from service.jit import compiled, inlined
 
-# Places of the counts.
-USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED, BLINKS = range(9)
+# Places of the counts: slots with stops; stops outside, and those of them that must be visited;
+# what is saved; the number of the iteration; stops to insert; in how many places one is passed by,
+# and how many come before the next; and the number of the stop that is inserted, of all so far.
+USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
+BLINKS, UNTIL_BLINK, TRY = 8, 9, 10
 
 
 class WorkingPlan(NamedTuple):
@@ -24,6 +27,7 @@ class WorkingPlan(NamedTuple):
     late: Array  # (n + 2 r,), the lateness up to here
     head: Array  # (n + 2 r, 3), the route up to here: see joined()
     tail: Array  # (n + 2 r, 3), and from here on
+    tried: Indices  # (n + 2 r,), by node: the latest stop that was tried after it
     size: Nodes  # (r,), by slot: stops
     load: Indices  # (r, d)
     value: Array  # (r, 6): length in both costs, overtime, lateness, load times distance, release
@@ -41,7 +45,7 @@ class WorkingPlan(NamedTuple):
     saved_stops: Nodes  # (n,)
     saved_outside: Nodes  # (n,)
     touched: Indices  # (r,), by slot: the iteration that changed it last
-    counts: Indices  # (9,)
+    counts: Indices  # (11,)
     random: Indices  # (1,)
 
 
@@ -68,6 +72,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         late=np.zeros(nodes),
         head=np.zeros((nodes, 3)),
         tail=np.zeros((nodes, 3)),
+        tried=np.zeros(nodes, np.int64),
         size=np.zeros(r, np.int32),
         load=np.zeros((r, problem.demand.shape[1]), np.int64),
         value=np.zeros((r, 6)),
@@ -85,7 +90,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved_stops=_nothing(n),
         saved_outside=_nothing(n),
         touched=np.zeros(r, np.int64),
-        counts=np.zeros(9, np.int64),
+        counts=np.zeros(11, np.int64),
         random=np.array([_mixed(seed)], np.int64),
     )
     for stop in problem.clients.tolist():
