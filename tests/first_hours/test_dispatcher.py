@@ -9,6 +9,7 @@ from playwright.sync_api import Page, expect
 
 from tests.first_hours.steps import says
 from tests.helpers.browsing import (
+    FEW_THREADS,
     chromium,
     needs_chromium,
     open_page,
@@ -64,7 +65,7 @@ def test_forty_orders_become_a_list_for_each_driver(released: str, tmp_path: Pat
     orders, vans = tmp_path / "orders.csv", tmp_path / "vans.csv"
     asked = write_orders(orders)
     vans.write_text(VANS)
-    with chromium() as browser, open_page(browser, released) as page:
+    with chromium(*FEW_THREADS) as browser, open_page(browser, released) as page:
         says("use-the-page", "Open a file, drop it on the page, or paste its text")
         says("use-the-page", "Tables with demands or windows are fleets.")
         opened(page, orders)

@@ -7,6 +7,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
     DESK,
+    FEW_THREADS,
     chromium,
     copied,
     open_page,
@@ -20,7 +21,7 @@ from tests.helpers.node import Node, node_process
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Chromium, which ends with these tests, since others run event loops of their own."""
-    with chromium() as browser:
+    with chromium(*FEW_THREADS) as browser:
         yield browser
 
 

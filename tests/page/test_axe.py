@@ -15,11 +15,11 @@ from tests.helpers.browsing import (
     open_files,
     open_page,
     plan_city_deliveries,
+    wait_for_next_frame,
     wait_until_planned,
 )
 
 TABLET, WIDE = 768, 1920
-SETTLED = 500  # ms after a change of the scheme
 Scheme = Literal["light", "dark"]
 
 # One layout is that of phones and tablets, and one that of desks: each is shown in both schemes.
@@ -127,7 +127,7 @@ def findings(
     for width, scheme in looks:
         page.set_viewport_size({"width": width, "height": 900})
         page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(SETTLED)  # colours fade into one another
+        wait_for_next_frame(page)
         for rule in violations(page, part=part):
             where = rule["nodes"][0]["target"]
             found.append((rule["impact"], rule["id"], where, width, scheme))
