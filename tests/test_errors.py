@@ -11,6 +11,7 @@ import pytest
 
 from service.errors import PROBLEMS, Fault, InvalidCoverage, Refusal, TooManyPlaces, WorkerLost
 from service.errors.faults import SENTENCES
+from service.errors.printable import printable, printable_lines
 
 SERVICE = Path(__file__).parents[1] / "service"
 MAKERS = {
@@ -188,3 +189,23 @@ def test_the_fault_of_a_refusal_has_its_code_and_values() -> None:
         "demand": "must be at most 9, got 10",
         "values": {"limit": 9, "actual": 10, "name": "size"},
     }
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("Café 東京, 3 m²", "Café 東京, 3 m²"),
+        ("a\x1b[2Jb\x07", "a?[2Jb?"),
+        ("a\nb\tc\u00a0d\u2028e", "a b c d e"),
+        ("\u202etxt.exe\u2066", "?txt.exe?"),
+        ("a\x00b\x1cc\x9bd", "a?b?c?d"),
+    ],
+)
+def test_what_would_move_a_cursor_or_turn_a_text_round_is_not_printed(
+    text: str, shown: str
+) -> None:
+    assert printable(text) == shown
+
+
+def test_a_text_of_several_lines_keeps_them() -> None:
+    assert printable_lines("a\x1b[2J\r\nb") == "a?[2J \nb"

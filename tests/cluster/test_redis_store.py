@@ -101,6 +101,27 @@ def test_a_record_that_cannot_be_read_is_dropped_and_logged_once(
     assert len(said) == len(dropped)
 
 
+def test_a_list_leaves_out_what_cannot_be_read_and_drops_it(
+    redis: Redis, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def test() -> None:
+        async with redis_store(redis.url, entries=9, max_age=60) as store, asyncio.timeout(60):
+            for id_ in "abc":
+                await store.put(record(id_))
+            connection = AsyncRedis.from_url(redis.url)
+            await connection.hset("paretour:front:b", "members", b"{")
+            await connection.aclose()
+            for _ in range(2):
+                listed = await store.fronts("us", "us", below=2**53, most=9)
+                assert [each.id for each in listed] == ["c", "a"]
+            with pytest.raises(Expired):
+                await store.get("us", "b")
+
+    asyncio.run(test())
+    [said] = [entry.getMessage() for entry in caplog.records]
+    assert said.startswith("front b cannot be read and is dropped")
+
+
 def test_a_worker_drops_a_record_that_it_cannot_read_and_whoever_waits_is_told(
     redis: Redis, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -119,7 +140,7 @@ def test_a_worker_drops_a_record_that_it_cannot_read_and_whoever_waits_is_told(
         for id_ in "ab":
             assert worker.begin(id_, known_lost=False) is None
             assert worker.begin(id_, known_lost=True) is None
-        told = [channel.get_message(timeout=1)["data"] for _ in range(4)]
+        told = [channel.get_message(timeout=60)["data"] for _ in range(4)]
     assert told == [b"a:running", b"a:failed", b"b:running", b"b:failed"]
     assert connection.zcard("paretour:unfinished") == 0
     assert len(caplog.records) == 2
