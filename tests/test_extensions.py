@@ -202,9 +202,9 @@ def test_what_a_search_returns_is_checked(
     assert fault in str(refused.value)
 
 
-def test_the_service_says_whose_fault_it_is(packages: Path) -> None:
+def test_the_service_says_whose_fault_it_is(packages: Path, quick_actors: dict[str, str]) -> None:
     own(packages, "own_fault", "None")
-    settings = {"PARETOUR_WORKERS": "1", "PARETOUR_CONSTRUCTORS": "own_fault"}
+    settings = {"PARETOUR_WORKERS": "1", "PARETOUR_CONSTRUCTORS": "own_fault", **quick_actors}
     with serve_process(settings) as service:
         request = {**REQUEST, "actor": "own_fault", "time_limit": 0}
         refused = httpx.post(f"{service.url}/front", json=request, timeout=60)
@@ -229,7 +229,7 @@ def test_a_service_does_not_start_with_what_cannot_be_loaded(
     install(packages, "own_x", code, {CONSTRUCTORS: points})
     environment = {**os.environ, "PARETOUR_CONSTRUCTORS": "own_x"}
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
-    ended = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
     assert ended.returncode == 2
     assert sentence in ended.stderr
 

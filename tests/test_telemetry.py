@@ -19,8 +19,10 @@ from tests.helpers.http_handler import serving_handler
 from tests.helpers.processes import serve_process
 
 
-def test_every_line_of_the_log_is_an_object_and_each_request_has_one() -> None:
-    with serve_process({"PARETOUR_WORKERS": "1"}) as service:
+def test_every_line_of_the_log_is_an_object_and_each_request_has_one(
+    quick_actors: dict[str, str],
+) -> None:
+    with serve_process({"PARETOUR_WORKERS": "1", **quick_actors}) as service:
         httpx.get(f"{service.url}/front/none?secret=1", headers={"X-Request-ID": "the-one"})
     lines = [json.loads(line) for line in service.log.splitlines()]
     assert {"time", "level", "logger", "message"} <= set.intersection(*map(set, lines))
@@ -70,11 +72,10 @@ def collector() -> Iterator[tuple[str, list[ExportTraceServiceRequest]]]:
         yield url, received
 
 
-def test_each_request_is_a_span_at_the_collector() -> None:
+def test_each_request_is_a_span_at_the_collector(quick_actors: dict[str, str]) -> None:
     with collector() as (endpoint, received):
-        with serve_process(
-            {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint, "PARETOUR_WORKERS": "1"}
-        ) as service:
+        settings = {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint, "PARETOUR_WORKERS": "1"}
+        with serve_process({**settings, **quick_actors}) as service:
             httpx.get(f"{service.url}/front/none")
         resources = [each for request in received for each in request.resource_spans]
     named = {

@@ -169,11 +169,14 @@ def test_an_address_of_ipv6_is_the_network_that_a_client_has(
     assert [answer.status_code for answer in answers] == allowed
 
 
-def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
+def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing(
+    quick_actors: dict[str, str],
+) -> None:
     settings = {
         "PARETOUR_RATE": "2/hour",
         "FORWARDED_ALLOW_IPS": "192.0.2.1",
         "PARETOUR_WORKERS": "1",
+        **quick_actors,
     }
     with serve_process(settings) as service:
         answers = [
@@ -203,11 +206,12 @@ def test_a_hash_is_read_as_it_is_written() -> None:
     assert KeyHash.read(f"lab:{LAB_HASH}") == HASHES[2]
 
 
-def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
+def test_the_command_makes_a_key_that_its_entry_lets_in(quick_actors: dict[str, str]) -> None:
     made = paretour("key", "dispatch")
     key, entry = made.stdout.splitlines()
     keys = f" {entry} , lab:{LAB_HASH}"
-    with serve_process({"PARETOUR_API_KEYS": keys, "PARETOUR_WORKERS": "1"}) as service:
+    settings = {"PARETOUR_API_KEYS": keys, "PARETOUR_WORKERS": "1", **quick_actors}
+    with serve_process(settings) as service:
         for shown in (key, LAB):
             assert httpx.get(f"{service.url}/actors", headers=bearing(shown)).status_code == 200
         assert httpx.get(f"{service.url}/actors").status_code == 401

@@ -61,8 +61,8 @@ def test_the_document_names_the_path_as_its_server(url: str) -> None:
         assert "servers" not in httpx.get(f"{other}/openapi.json").json()
 
 
-def test_the_command_serves_under_the_path_of_its_setting() -> None:
-    settings = {"PARETOUR_ROOT_PATH": "/set", "PARETOUR_WORKERS": "1"}
+def test_the_command_serves_under_the_path_of_its_setting(quick_actors: dict[str, str]) -> None:
+    settings = {"PARETOUR_ROOT_PATH": "/set", "PARETOUR_WORKERS": "1", **quick_actors}
     with serve_process(settings) as service:
         problem(httpx.get(f"{service.url}/none"), 404, "no-such-path", "/set")
 
