@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 import torch
 
+from models import repair_steps
 from models.checkpoint import new_run
 from models.config import NAMES, NetworkConfig, TrainingConfig
 from models.data.dataset import Labels
 from models.networks.pa_one import OneActor
-from models.repair_steps import repair_step
 from models.steps import imitation_step, policy_gradient_step
 from tests.helpers.small_runs import small_config
 from tests.helpers.type_checks import unchecked_types
@@ -59,7 +59,10 @@ def test_training_lowers_the_objective(
 
 
 @pytest.mark.parametrize("name", ["pa-one", "pa-one-matrix"])
-def test_learning_from_repairs_makes_repaired_tours_shorter(name: str) -> None:
+def test_learning_from_repairs_makes_repaired_tours_shorter(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(repair_steps, "_REPAIRS", 12)
     config = small_config(
         network=NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=16),
         objective="repairs",
@@ -79,7 +82,7 @@ def test_learning_from_repairs_makes_repaired_tours_shorter(name: str) -> None:
 
     def step() -> float:
         run.instance_generator.manual_seed(1)
-        return repair_step(run).objective
+        return repair_steps.repair_step(run).objective
 
     objectives = [step()]
     with unchecked_types():
