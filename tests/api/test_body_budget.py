@@ -91,7 +91,7 @@ def url() -> Iterator[str]:
 def stalled(url: str, length: int) -> socket.socket:
     """A connection on which all of a body but its last byte has been sent."""
     host, port = re.findall(r"//(.*):(\d+)", url)[0]
-    connection = socket.create_connection((host, int(port)), timeout=10)
+    connection = socket.create_connection((host, int(port)), timeout=60)
     head = "POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
     head += f"Content-Length: {length}\r\n\r\n"
     connection.sendall(head.encode() + bytes(length - 1))

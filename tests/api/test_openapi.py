@@ -121,7 +121,7 @@ def test_schemathesis_finds_nothing(address: str, tmp_path: Path) -> None:
     # Its phase "coverage", of 3,000 requests more, takes three minutes.
     phases = f"--phases=examples,fuzzing,stateful{',coverage' * IS_WHOLE}"
     most = f"--max-examples={tenth(20)}"
-    options = ["--no-color", "--generation-deterministic", most, phases]
+    options = ["--no-color", "--generation-deterministic", "--request-timeout=60", most, phases]
     options.append("--exclude-path=/files")  # which takes forms alone
     hooks = {"SCHEMATHESIS_HOOKS": "tests.helpers.schemathesis_hooks", "PYTHONPATH": str(ROOT)}
     found = subprocess.run(

@@ -17,6 +17,7 @@ from PIL import Image
 
 from service.api.app import Edge
 from tests.helpers.actors import Shuffler
+from tests.helpers.jobs import first_found
 from tests.helpers.serving import LIMITS, app_of, problem, runner_of, serving, workers_of
 
 GRID = [
@@ -245,9 +246,10 @@ def test_without_an_actor_of_matrices_there_is_no_coverage() -> None:
 
 def test_before_the_ways_over_a_map_are_compiled_there_is_no_coverage(tmp_path: Path) -> None:
     warm = tmp_path / "warm"
-    app = app_of(workers=workers_of(runner_of(warm=warm)), edge=Edge(request_seconds=3))
+    app = app_of(workers=workers_of(runner_of(warm=warm)), edge=Edge(request_seconds=1))
     with serving(app, warm=False) as url:
-        answer = httpx.post(f"{url}/coverage", json=changed(time_limit=0))
+        with httpx.Client(base_url=url, timeout=60) as client:
+            answer = first_found(client, changed(time_limit=0), "/coverage")
         problem(answer, 503, "warming-up")
         warm.touch()
 
@@ -324,7 +326,7 @@ def test_a_survey_that_would_take_too_long_is_refused_early(
     files = {"request": (None, json.dumps(task | costs)), "map": png(np.zeros((1000, 1000)))}
     began = time.monotonic()
     document = problem(patient.post("/coverage", files=files), 422, "survey-too-long")
-    assert time.monotonic() - began < 8
+    assert time.monotonic() - began < 30
     assert document["limit"] == 1.0
     assert "500 places over 1000000 free cells" in document["detail"]
 

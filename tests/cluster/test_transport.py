@@ -78,7 +78,7 @@ def test_what_is_no_message_is_dropped_and_logged_once(
         queue = Queue(QUEUE, channel=channel)
         with Consumer(channel, [queue], on_message=receive):
             while not received:
-                broker.drain_events(timeout=5)
+                broker.drain_events(timeout=60)
     assert received == [["a"]]
     assert connection.llen(QUEUE) == 0
     assert len([line for line in caplog.messages if "is dropped" in line]) == len(GARBAGE)

@@ -130,7 +130,7 @@ def test_a_plan_is_over_in_time_though_the_network_is_slow() -> None:
         PlanOptions(directions=spread(100), size=10, fewer=True, time_limit=0.3),
     )
     assert (len(constructor.calls), front.constructed) == (1, 0)
-    assert len(front.tours) == 10
+    assert 0 < len(front.tours) <= 10
     assert front.timings["construction"] >= 1000 * SHARE * 0.3
 
 

@@ -25,6 +25,7 @@ from tests.helpers.jobs import (
     check,
     ended,
     events,
+    first_found,
     id_of,
     later,
     until_found,
@@ -406,10 +407,10 @@ def test_a_caller_sees_its_own_jobs_alone(engine: Engine) -> None:
 
 def test_a_keyed_request_is_answered_in_time_and_its_job_goes_on(engine: Engine) -> None:
     key = {"Idempotency-Key": "in time"}
-    with engine.serve(edge=Edge(request_seconds=3.0)) as served:
+    with engine.serve(edge=Edge(request_seconds=1.0)) as served:
         client = served.client
         for _ in range(2):
-            answer = client.post("/front", json=LONG, headers=key)
+            answer = first_found(client, LONG, **key)
             assert (answer.status_code, answer.json()["status"]) == (200, "running")
             assert answer.json()["terminated"] is None
             check(answer.json())

@@ -106,7 +106,7 @@ async def followed(steps: int) -> list[str]:
     for _ in range(steps):
         await asyncio.sleep(0)
     following = asyncio.ensure_future(_statuses(jobs, record))
-    async with asyncio.timeout(1):
+    async with asyncio.timeout(60):
         return await following
 
 
@@ -134,7 +134,7 @@ async def full_store() -> None:
     store.full = True
     for submission in list(workers.submissions):
         submission.finish(FRONT)
-    async with asyncio.timeout(1):
+    async with asyncio.timeout(60):
         assert (await following)[-1] == "done"
         assert (await running).status == "done"
     assert alone.ended
@@ -148,7 +148,7 @@ async def full_store() -> None:
         with pytest.raises(StoreUnavailable):
             await refused
     store.full = False
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(60):
         while store.records[first.id].status != "done" or second.id not in store.records:
             await asyncio.sleep(0.01)
         await asyncio.sleep(0.01)
@@ -188,7 +188,7 @@ def test_a_job_that_cannot_be_resumed_ends() -> None:
         engine = LocalEngine(NoProcesses(), store, read)
         following = replace(new_record(), source=None)
         await engine.start()
-        async with asyncio.timeout(2):
+        async with asyncio.timeout(60):
             assert (await _statuses(engine, following))[-1] == "failed"
         await engine.close()
 
@@ -201,7 +201,7 @@ def test_a_job_may_be_cancelled_before_it_is_resumed() -> None:
         await store.put(new_record())
         engine = LocalEngine(NoProcesses(), store, read)
         await engine.start()
-        async with asyncio.timeout(2):
+        async with asyncio.timeout(60):
             assert (await engine.cancel(new_record())).status == "cancelled"
         assert store.records["0" * 32].status == "cancelled"
         await engine.close()

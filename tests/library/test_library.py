@@ -182,7 +182,7 @@ def planning_many() -> Iterator[tuple[subprocess.Popen[bytes], list[psutil.Proce
 def test_ctrl_c_ends_all_who_plan_many() -> None:
     with planning_many() as (program, crew):
         program.send_signal(signal.SIGINT)
-        printed, _ = program.communicate(timeout=20)
+        printed, _ = program.communicate(timeout=120)
         assert printed == b"interrupted\n"
         assert not any(each.is_running() for each in crew)
 
@@ -190,7 +190,7 @@ def test_ctrl_c_ends_all_who_plan_many() -> None:
 def test_a_process_that_dies_names_its_instance_and_ends_the_others() -> None:
     with planning_many() as (program, crew):
         crew[1].kill()
-        printed, _ = program.communicate(timeout=20)
+        printed, _ = program.communicate(timeout=120)
         assert re.fullmatch(
             rb"failed instance [01]: its process ended with status -9\n", printed
         ), printed

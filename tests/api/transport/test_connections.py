@@ -28,7 +28,7 @@ CHUNK = b"10000\r\n" + b" " * 2**16 + b"\r\n"
 def connected(url: str, source: str = "127.0.0.1") -> socket.socket:
     address = urlsplit(url)
     return socket.create_connection(
-        (address.hostname, address.port), timeout=10, source_address=(source, 0)
+        (address.hostname, address.port), timeout=60, source_address=(source, 0)
     )
 
 
@@ -83,6 +83,12 @@ def read_to_the_end(connection: socket.socket) -> int:
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
+    with serving(app_of(), warm=False) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def impatient() -> Iterator[str]:
     limits = ConnectionLimits(head_seconds=1.0)
     with serving(app_of(), warm=False, connections=limits) as address:
         yield address
@@ -98,8 +104,10 @@ def many_descriptors() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
-def test_a_crowd_of_idle_connections_is_gone_soon_and_others_are_answered_meanwhile() -> None:
-    settings = {"PARETOUR_HEAD_SECONDS": "3", "PARETOUR_WORKERS": "1"}
+def test_a_crowd_of_idle_connections_is_gone_soon_and_others_are_answered_meanwhile(
+    quick_actors: dict[str, str],
+) -> None:
+    settings = {"PARETOUR_HEAD_SECONDS": "3", "PARETOUR_WORKERS": "1", **quick_actors}
     with (
         many_descriptors(),
         serve_process(settings, descriptors=1024) as service,
@@ -115,8 +123,8 @@ def test_a_crowd_of_idle_connections_is_gone_soon_and_others_are_answered_meanwh
     assert service.log.count(b"make way") <= 10
 
 
-def test_a_slow_head_is_refused_in_time_however_steadily_it_drips(url: str) -> None:
-    with connected(url) as connection:
+def test_a_slow_head_is_refused_in_time_however_steadily_it_drips(impatient: str) -> None:
+    with connected(impatient) as connection:
         for letter in b"GET /health/live HTTP/1.1\r\nX-Slow: " + b"x" * 1000:
             connection.sendall(bytes([letter]))
             answered, _, _ = select([connection], [], [], 0.05)
@@ -125,8 +133,8 @@ def test_a_slow_head_is_refused_in_time_however_steadily_it_drips(url: str) -> N
         problem_in(connection, 408, "head-too-slow")
 
 
-def test_a_connection_that_was_answered_may_not_be_slow_with_its_next_head(url: str) -> None:
-    with connected(url) as connection:
+def test_a_connection_that_was_answered_may_not_be_slow_with_its_next_head(impatient: str) -> None:
+    with connected(impatient) as connection:
         connection.sendall(b"GET /health/live HTTP/1.1\r\nHost: x\r\n\r\n")
         assert connection.recv(2**16).startswith(b"HTTP/1.1 200")
         connection.sendall(b"GET /health")
