@@ -62,7 +62,7 @@ def test_training_lowers_the_objective(
 def test_learning_from_repairs_makes_repaired_tours_shorter(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(repair_steps, "_REPAIRS", 12)
+    monkeypatch.setattr(repair_steps, "_REPAIRS", 24)
     config = small_config(
         network=NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=16),
         objective="repairs",
