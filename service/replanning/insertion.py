@@ -9,8 +9,7 @@ from service.jit import compiled
 from service.objectives import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours, Tours
 from service.search.closing import closed_tours, opened_tours
-from service.search.costs import Costs, make_costs, step_costs
-from service.search.several.costs import make_objective_costs, weighted_costs
+from service.search.costs import Costs, make_costs, step_costs, weighted_costs
 
 Array = NDArray[np.float64]
 _LEAST_WEIGHT = 1e-3  # of three or four objectives: so that all count
@@ -33,10 +32,11 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     tours = closed_tours(instance, tours)
     scaled = weights / np.ldexp(instance.scale, instance.shifts)
     begun = tours.shape[1] - len(added)
+    costs = make_costs(instance)
     if instance.objectives == OBJECTIVES:
-        insert_cheapest(make_costs(instance), tours, begun, scaled)
+        insert_cheapest(costs, tours, begun, scaled)
     else:
-        costs, alone = make_objective_costs(instance), np.array([[1.0, 0.0]])
+        alone = np.array([[1.0, 0.0]])
         for k, each in enumerate(scaled):
             insert_cheapest(weighted_costs(costs, each), tours[k : k + 1], begun, alone)
     return opened_tours(instance, tours).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Both costs of a step from one city to another, for compiled code."""
+"""The costs of a step from one city to another, and of tours, for compiled code."""
 
 from typing import NamedTuple
 
@@ -24,21 +24,22 @@ LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
 
 
 class Costs(NamedTuple):
-    """The scaled costs of an instance: a matrix, or coordinates where that is empty.
+    """The scaled costs of an instance, or its weighted sum: a matrix, or planes where it is empty.
 
-    A forbidden leg costs more than any tour without one, under both objectives. So a tour that has
+    A forbidden leg costs more than any tour without one, under all objectives. So a tour that has
     one is dominated by every tour that has none.
 
-    Those of open routes have one more city, city 0, which comes before the instance's. Of more
-    than two planes the first cost is the sum of the distances in all, and the second is 0.
+    Those of open routes have one more city, city 0, which comes before the instance's. Local
+    searches read two costs of each step. A weighted sum of more objectives is the first of them,
+    and the second is 0: of more than two planes, the first is the sum of the distances in all.
     """
 
-    cities: Array  # (n, 4), or (n, 2 p) with p planes, p > 2
-    matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
+    cities: Array  # (n, 2 m): coordinates, of city 0 and with matrices all 0
+    matrix: Array  # (n, n, m), or (0, 0, m) where the coordinates are used
     symmetric: bool
     closing: Array  # (2, n), the costs from city 0 and to it; (2, 0) of closed tours
-    largest: Array  # (2,), of any step: what rounding can add to a gain is a share of these
-    plain: bool  # whether no city is invented, and there are no planes beyond the second
+    largest: Array  # (m,), of any step: what rounding can add to a gain is a share of these
+    plain: bool  # whether no city is invented, and there are no planes to sum up
 
 
 def make_costs(instance: Instance) -> Costs:
@@ -50,28 +51,42 @@ def make_costs(instance: Instance) -> Costs:
     largest = largest_steps(instance)
     closing = closing_costs(instance, float(largest.max()))
     added = 1 if closing.size else 0
-    n = added + instance.n
-    cities = np.zeros((n, 4))
-    if instance.coordinates is None:
-        assert instance.matrices is not None
+    n, objectives = added + instance.n, instance.objectives
+    cities, tabulated = np.zeros((n, 2 * objectives)), n
+    if instance.coordinates is not None:
+        corner = instance.coordinates.min(axis=0)
+        cities[added:] = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
+        tabulated = n if instance.n < DENSE_BELOW else 0
+    matrix = np.empty((tabulated, tabulated, objectives))
+    if instance.coordinates is not None:
+        tabulate(cities, matrix)
+    else:
         planes = np.ldexp(instance.penalised_matrices, instance.shifts[:, None, None])
-        matrix = np.empty((n, n, 2))
         matrix[added:, added:] = planes.transpose(1, 2, 0)
-        if added:
-            matrix[0], matrix[:, 0] = closing[0, :, None], closing[1, :, None]
-        return Costs(cities, matrix, instance.symmetric, closing, largest, not added)
-    corner = instance.coordinates.min(axis=0)
-    cities[added:] = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
-    sparse = Costs(cities, np.zeros((0, 0, 2)), True, closing, largest, not added)
-    if instance.n >= DENSE_BELOW:
-        return sparse
-    matrix = np.empty((n, n, 2))
-    tabulate(sparse, matrix)
-    return sparse._replace(matrix=matrix)
+    if added and tabulated:
+        matrix[0], matrix[:, 0] = closing[0, :, None], closing[1, :, None]
+    return Costs(cities, matrix, instance.symmetric, closing, largest, not added)
+
+
+def weighted_costs(costs: Costs, weights: Array) -> Costs:
+    """Return the costs whose first is the weighted sum and whose second is 0; weights (m,).
+
+    Under one weight there is one cost, whatever it is the sum of. So the local searches for two
+    objectives serve for more. Only the lengths of what they find are summed under all objectives.
+    """
+    n, largest = len(costs.cities), np.array([weights @ costs.largest, 0.0])
+    if not len(costs.matrix):
+        cities, empty = costs.cities * weights.repeat(2), np.zeros((0, 0, 2))
+        return costs._replace(cities=cities, matrix=empty, largest=largest, plain=False)
+    matrix = np.zeros((n, n, 2))
+    matrix[:, :, 0] = costs.matrix @ weights
+    if costs.closing.size:
+        matrix[0, :, 0], matrix[:, 0, 0] = costs.closing
+    return costs._replace(cities=np.zeros((n, 4)), matrix=matrix, largest=largest)
 
 
 def scaled_reference(instance: Instance, reference_point: Array) -> Array:
-    """Return a reference point in the unit of make_costs(), shape (2,).
+    """Return a reference point in the unit of make_costs(), shape (m,).
 
     Where it is too far from the costs for areas to be finite, and not 0, it is brought nearer.
     """
@@ -115,11 +130,12 @@ def travel_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
 
 
 @compiled
-def tabulate(costs: Costs, matrix: Array) -> None:
-    """Fill a matrix, shape (n, n, 2), with the costs of all steps."""
+def tabulate(cities: Array, matrix: Array) -> None:
+    """Fill a matrix, shape (n, n, m), with the distances of all cities, shape (n, 2 m)."""
     for i in range(len(matrix)):
         for j in range(len(matrix)):
-            matrix[i, j, 0], matrix[i, j, 1] = step_costs(costs, i, j)
+            for m in range(matrix.shape[2]):
+                matrix[i, j, m] = distance(cities, 2 * m, i, j)
 
 
 @compiled
@@ -131,3 +147,20 @@ def lengths(costs: Costs, tour: NDArray[np.int32]) -> tuple[float, float]:
         first += c[0]
         second += c[1]
     return first, second
+
+
+@compiled
+def sum_lengths(costs: Costs, tour: NDArray[np.int32], sums: Array) -> None:
+    """Sum the scaled lengths of a tour under all objectives, shape (m,). O(n m)."""
+    for m in range(len(sums)):
+        sums[m] = 0.0
+    before = tour[len(tour) - 1]
+    for k in range(len(tour)):
+        city = tour[k]
+        if not is_closing(costs.closing, before, city):
+            for m in range(len(sums)):
+                if len(costs.matrix):
+                    sums[m] += costs.matrix[before, city, m]
+                else:
+                    sums[m] += distance(costs.cities, 2 * m, before, city)
+        before = city

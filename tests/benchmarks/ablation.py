@@ -125,7 +125,7 @@ def edges_as_candidates(tours: NDArray[np.integer]) -> Iterator[None]:
         cities, costs, sizes = search.pool
         width = cities.shape[1]
         steps = np.empty((n, n, 2))
-        tabulate(search.state.costs, steps)
+        tabulate(search.state.costs.cities, steps)
         equal = steps @ search.weights[WEIGHTS // 2]
         np.fill_diagonal(equal, 2 * equal.max() + 1)
         ranked = equal - 2 * equal.max() * joined

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from service.instance import Instance
 from service.preferences import lattice, spread_out
 from service.search.bound.weighted import SLACK, lowest_sums
-from service.search.costs import scaled_reference
-from service.search.several.costs import make_objective_costs, weighted_costs
+from service.search.costs import make_costs, scaled_reference, weighted_costs
 from service.watch import Watch
 
 Array = NDArray[np.float64]
@@ -31,7 +30,7 @@ def lowest_lengths(instance: Instance, watch: Watch[Any]) -> tuple[Array, Array]
     shares = lattice(instance.objectives, PARTS[instance.objectives]).clip(LEAST_SHARE)
     weights = shares[spread_out(shares)] / np.ldexp(instance.scale, instance.shifts)
     weights /= weights.sum(axis=1, keepdims=True)
-    costs = make_objective_costs(instance)
+    costs = make_costs(instance)
     sums = [(weighted_costs(costs, each), 1.0, 1.0) for each in weights]
     return weights, lowest_sums(sums, range(len(weights)), weights, watch)
 

@@ -55,7 +55,7 @@ class DescentsOfSeveral:
         self._instance, self._state, self._sums = instance, state, sums
         self._local_search = local_search
         self._touched = touched
-        self._n = len(state.costs.planes)
+        self._n = len(state.costs.cities)
 
     @property
     def assembling(self) -> bool:

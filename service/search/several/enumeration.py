@@ -9,8 +9,8 @@ from service.instance import Instance
 from service.jit import compiled, inlined
 from service.search.archive import ROUNDING
 from service.search.closing import opened_tours
+from service.search.costs import Costs, make_costs, sum_lengths
 from service.search.several.archive import BlockArchive, insert, make_archive, rows_of
-from service.search.several.costs import ObjectiveCosts, make_objective_costs, sum_lengths
 from service.watch import Watch
 
 Cities = NDArray[np.int32]
@@ -24,8 +24,8 @@ def exact_tours_of_several(instance: Instance, watch: Watch[Any]) -> tuple[Citie
 
     Where time runs out first, return those found so far, one at least, and False.
     """
-    costs = make_objective_costs(instance)
-    n = len(costs.table)
+    costs = make_costs(instance)
+    n = len(costs.cities)
     archive = make_archive(n, instance.objectives)
     order = np.arange(n, dtype=np.int32)
     ends = np.array([ANY if end is None else 1 + end for end in (instance.start, instance.end)])
@@ -68,7 +68,7 @@ def no_worse(points: NDArray[np.float64], j: int, k: int, slack: float) -> bool:
 
 @compiled
 def insert_some(
-    costs: ObjectiveCosts,
+    costs: Costs,
     archive: BlockArchive,
     order: Cities,
     ends: NDArray[np.int64],

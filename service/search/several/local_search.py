@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from service.jit import compiled, standalone
 from service.search.candidates import Scalarization
+from service.search.costs import Costs, sum_lengths
 from service.search.local_search import (
     SPIKE,
     improve_at,
@@ -19,7 +20,6 @@ from service.search.local_search import (
     sum_afresh,
 )
 from service.search.several.archive import BlockArchive, insert, weighted_sum
-from service.search.several.costs import ObjectiveCosts, sum_lengths
 from service.search.working_tour import QueuedTour, WorkingTour, dequeue, load, restore, save
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ TOURNAMENT_SIZE = 8  # points drawn, to choose one
 class StateOfSeveral(NamedTuple):
     """All that the compiled part of a search reads and changes."""
 
-    costs: ObjectiveCosts
+    costs: Costs
     archive: BlockArchive
     working: WorkingTour
     random: NDArray[np.int64]  # (1,), the state of random_below()

@@ -16,6 +16,7 @@ from service.instance import Instance
 from service.search.archive import MAX_POINTS
 from service.search.archive import make_archive as make_sorted_archive
 from service.search.candidates import Scalarization
+from service.search.costs import make_costs, sum_lengths, weighted_costs
 from service.search.front_search import FrontSearch
 from service.search.pareto_local_search import SearchState, WeightedCandidates
 from service.search.several.archive import (
@@ -23,11 +24,6 @@ from service.search.several.archive import (
     insert,
     make_archive,
     rows_of,
-)
-from service.search.several.costs import (
-    make_objective_costs,
-    sum_lengths,
-    weighted_costs,
 )
 from service.search.several.descents import DescentsOfSeveral
 from service.search.several.local_search import (
@@ -63,8 +59,8 @@ class SearchOfSeveral(FrontSearch):
         capacity: int = MAX_POINTS,
         touched: NDArray[np.integer] | None = None,
     ) -> None:
-        self._costs = make_objective_costs(instance)
-        self._n = len(self._costs.planes)
+        self._costs = make_costs(instance)
+        self._n = len(self._costs.cities)
         self._sums = WeightedSums(self._costs, search_weights(instance))
         self._weights = self._sums.weights
         self._archive = make_archive(self._n, instance.objectives, capacity)

@@ -14,7 +14,7 @@ from service.search.candidates import (
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.several.costs import ObjectiveCosts, weighted_costs
+from service.search.costs import Costs, weighted_costs
 
 Array = NDArray[np.float64]
 
@@ -37,10 +37,10 @@ def search_weights(instance: Instance) -> Array:
 class WeightedSums:
     """The weighted sums of a search; the candidates under a weight are found when first needed."""
 
-    def __init__(self, costs: ObjectiveCosts, weights: Array) -> None:
+    def __init__(self, costs: Costs, weights: Array) -> None:
         self.weights = weights
         self._costs = costs
-        n = len(costs.planes)
+        n = len(costs.cities)
         width = min(CANDIDATES_PER_CITY, n - 1)
         self._candidates = np.zeros((len(weights), n, width), np.int32)
         self._candidate_costs = np.zeros((len(weights), n, width))
@@ -51,7 +51,7 @@ class WeightedSums:
         if self._ranked[k]:
             return
         scalarization = self.scalarization(k)
-        pool = make_candidate_pool(len(self._costs.planes))
+        pool = make_candidate_pool(len(self._costs.cities))
         for _ in fill_in_blocks(pool, scalarization.costs, np.ones((1, 2))):
             yield
         rank_candidates(pool, scalarization)

@@ -7,13 +7,7 @@ from numpy.typing import NDArray
 from service.instance import Instance, step_lengths, tour_lengths
 from service.search.candidates import CANDIDATES_PER_CITY, fill_in_blocks, make_candidate_pool
 from service.search.closing import closed_tours
-from service.search.costs import lengths
-from service.search.several.costs import (
-    ObjectiveCosts,
-    make_objective_costs,
-    sum_lengths,
-    weighted_costs,
-)
+from service.search.costs import Costs, lengths, make_costs, sum_lengths, weighted_costs
 from service.search.sizes import DENSE_BELOW
 from tests.helpers.instances import opened, random_routes, uniform
 
@@ -22,10 +16,10 @@ ends = pytest.mark.parametrize("ends", ["closed", "none", "start", "both"])
 SIZES = pytest.mark.parametrize("n", [40, DENSE_BELOW])
 
 
-def made(n: int, objectives: int, ends: str) -> tuple[Instance, ObjectiveCosts]:
+def made(n: int, objectives: int, ends: str) -> tuple[Instance, Costs]:
     instance = uniform(n, objectives=objectives)
     instance = instance if ends == "closed" else opened(instance, ends)
-    return instance, make_objective_costs(instance)
+    return instance, make_costs(instance)
 
 
 def some_weights(objectives: int) -> NDArray[np.float64]:
@@ -38,7 +32,7 @@ def some_weights(objectives: int) -> NDArray[np.float64]:
 def test_sums_of_a_tour_are_its_lengths(n: int, objectives: int, ends: str) -> None:
     instance, costs = made(n, objectives, ends)
     weights = some_weights(objectives)
-    assert len(costs.table) == (0 if n == DENSE_BELOW else len(costs.planes))
+    assert len(costs.matrix) == (0 if n == DENSE_BELOW else len(costs.cities))
     routes = random_routes(instance, 3)
     expected = np.ldexp(tour_lengths(instance, routes), instance.shifts)
     for tour, scaled in zip(closed_tours(instance, routes), expected, strict=True):
