@@ -10,7 +10,6 @@ from service.kinds.parts import Part
 from service.over_the_day import warm_up as day
 from service.replanning import insertion
 from service.search import warm_up as search
-from service.search.several import warm_up as several
 
 Compile = Callable[[], None]
 
@@ -35,24 +34,16 @@ def _maps() -> None:
     import_module("scipy.ndimage")
 
 
-def _bounds() -> None:
-    """Compile the bounds on hypervolumes of two objectives, and of three and four."""
-    search.bounds()
-    several.bounds()
-
-
 WORK: Mapping[Part, Work] = {
-    Part.FEW_CITIES: Work(search.few_cities, (search.two_opt, search.beside_two_opt), 10),
+    Part.FEW_CITIES: Work(search.few_cities, (search.two_opt, search.beside_two_opt), 12),
     Part.FEWEST_CITIES: Work(search.fewest_cities, (search.fewest_cities,), 1),
     Part.MORE_CITIES: Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
     Part.MAPS: Work(_maps, (detours.warm_up,), 2),
     Part.CHANGES: Work(insertion.warm_up, (insertion.warm_up,), 1),
     Part.FLEETS: Work(fleet.warm_up, (fleet.warm_up,), 11),
-    Part.SEVERAL_OBJECTIVES: Work(
-        several.warm_up, (several.local_search, several.beside_local_search), 9
-    ),
+    Part.SEVERAL_OBJECTIVES: Work(search.several_objectives, (search.several_objectives,), 4),
     Part.OVER_THE_DAY: Work(day.warm_up, (day.warm_up,), 8),
     Part.MANY_CITIES: Work(search.many_cities, (search.many_cities,), 5),
-    Part.BOUNDS: Work(_bounds, (_bounds,), 4),
+    Part.BOUNDS: Work(search.bounds, (search.bounds,), 4),
 }
 PIECES = [(part, piece) for part, work in WORK.items() for piece in work.pieces]

@@ -18,8 +18,9 @@ from service.over_the_day.moves import (
     write_moved,
 )
 from service.over_the_day.travel import Cities, Traffic, sum_lengths
+from service.search.archive.insertion import insert
+from service.search.archive.layout import Archive
 from service.search.local_search import random_below
-from service.search.several.archive import BlockArchive, insert
 
 Array = NDArray[np.float64]
 
@@ -50,14 +51,14 @@ class WeightedSearch(NamedTuple):
     saved: Cities
     saved_value: Array
     random: NDArray[np.int64]
-    archive: BlockArchive
+    archive: Archive
 
 
 def make_weighted_search(
     traffic: Traffic,
     means: Array,
     weights: Array,
-    archive: BlockArchive,
+    archive: Archive,
     places: tuple[int, int],
     seed: int,
 ) -> WeightedSearch:
@@ -110,7 +111,7 @@ def save(search: WeightedSearch) -> None:
 
 
 @compiled
-def insert_driven(archive: BlockArchive, traffic: Traffic, tour: Cities, departure: float) -> bool:
+def insert_driven(archive: Archive, traffic: Traffic, tour: Cities, departure: float) -> bool:
     """Offer a tour that leaves at a time to the archive; return whether it was inserted."""
     sum_lengths(traffic, tour, departure, archive.lengths)
     return insert(archive, archive.lengths, tour)

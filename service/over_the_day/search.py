@@ -29,8 +29,8 @@ from service.over_the_day.travel import (
     write_reached,
 )
 from service.preferences import spread, weights
+from service.search.archive.layout import Archive, best_row, make_archive, rows_of
 from service.search.nondominated import nondominated
-from service.search.several.archive import BlockArchive, best_row, make_archive, rows_of
 from service.watch import Watch
 
 Array = NDArray[np.float64]
@@ -200,7 +200,7 @@ class DaySearch:
 
 @compiled
 def offer_all(
-    archive: BlockArchive,
+    archive: Archive,
     traffic: Traffic,
     tours: NDArray[np.int32],
     earliest: float,

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import compiled, inlined
+from service.objectives import OBJECTIVES
 from service.search.closing import (
     closing_cost,
     closing_costs,
@@ -83,6 +84,13 @@ def weighted_costs(costs: Costs, weights: Array) -> Costs:
     if costs.closing.size:
         matrix[0, :, 0], matrix[:, 0, 0] = costs.closing
     return costs._replace(cities=np.zeros((n, 4)), matrix=matrix, largest=largest)
+
+
+def as_two(costs: Costs, weights: Array) -> tuple[Costs, float, float]:
+    """Return two costs and their weights, of which a weighted sum of all objectives is made."""
+    if len(weights) == OBJECTIVES:
+        return costs, float(weights[0]), float(weights[1])
+    return weighted_costs(costs, weights), 1.0, 1.0
 
 
 def scaled_reference(instance: Instance, reference_point: Array) -> Array:

@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, least_steps
 from service.jit import compiled, inlined
-from service.objectives import OBJECTIVES
-from service.search.archive import ROUNDING, Archive, accepts, insert, make_archive
-from service.search.closing import closing_cost, is_open, opened_tours
-from service.search.costs import Costs, lengths, make_costs, travel_costs
-from service.search.several.enumeration import exact_tours_of_several
+from service.search.archive.insertion import accepts, insert
+from service.search.archive.layout import ROUNDING, Archive, make_archive, rows_of
+from service.search.closing import closing_cost, is_closing, is_open, opened_tours
+from service.search.costs import Costs, make_costs, sum_lengths
 from service.watch import Watch
 
 Array = NDArray[np.float64]
@@ -28,9 +27,9 @@ class Enumeration(NamedTuple):
 
     tour: Cities  # (n,): before a place the cities are chosen, after it are those that are left
     tried: Cities  # (n,): the place from which the city at a place has come
-    reached: Array  # (n, 2), zero in the first row: both lengths up to a place
-    least: Array  # (n, 2): the least costs of a step that leaves a city
-    left: Array  # (n, 2): the sums of these over the city at a place and those that are left
+    reached: Array  # (n, m), zero in the first row: the lengths up to a place
+    least: Array  # (n, m): the least costs of a step that leaves a city
+    left: Array  # (n, m): the sums of these over the city at a place and those that are left
     place: NDArray[np.int64]  # (1,): the place whose city is chosen next; 0 at the end
 
 
@@ -44,18 +43,18 @@ def exact_tours(instance: Instance, watch: Watch[Any] | None = None) -> tuple[Ci
         watch: Asked at least every few ms whether to end. None sets no limit.
     """
     watch = watch or Watch()
-    if instance.objectives > OBJECTIVES:
-        return exact_tours_of_several(instance, watch)
     costs = make_costs(instance)
-    archive = make_archive(len(costs.cities))
+    archive = make_archive(len(costs.cities), instance.objectives)
     complete = True
     for block, _ in enumerate(enumerate_tours(costs, archive)):
         late = block >= LEAST_BLOCKS and watch.over()
         if (late or watch.stopped()) and archive.counts[0] > 0:
             complete = False
             break
-    tours = archive.tours[archive.slots[np.flatnonzero(_distinct(archive))]]
-    return opened_tours(instance, tours), complete
+    rows = rows_of(archive)
+    distinct = np.ones(len(rows), np.bool_)
+    mark_distinct(archive.points[rows], 1 + ROUNDING * len(costs.cities), distinct)
+    return opened_tours(instance, archive.tours[rows[distinct]]), complete
 
 
 def enumerate_tours(costs: Costs, archive: Archive) -> Iterator[None]:
@@ -68,7 +67,7 @@ def enumerate_tours(costs: Costs, archive: Archive) -> Iterator[None]:
     n = len(costs.cities)
     tour = np.arange(n, dtype=np.int32)
     if n == 1:
-        insert(archive, (0.0, 0.0), tour)
+        insert(archive, np.zeros(costs.matrix.shape[2]), tour)
         return
     steps = costs.matrix.transpose(2, 0, 1).copy()
     if costs.closing.size:
@@ -79,21 +78,36 @@ def enumerate_tours(costs: Costs, archive: Archive) -> Iterator[None]:
     least = np.floor(least / unit) * unit
     left = np.tile(least.sum(axis=0), (n, 1))
     enumeration = Enumeration(
-        tour, np.zeros(n, np.int32), np.zeros((n, 2)), least, left, np.ones(1, np.int64)
+        tour, np.zeros(n, np.int32), np.zeros(least.shape), least, left, np.ones(1, np.int64)
     )
     while enumeration.place[0] > 0:
         insert_some(costs, archive, enumeration, STEPS)
         yield
 
 
-def _distinct(archive: Archive) -> NDArray[np.bool_]:
-    """Return which points only rounding keeps from being dominated by a neighbour, as False."""
-    slack = 1 + ROUNDING * archive.tours.shape[1]
-    first, second = archive.points[: archive.counts[0]].T * slack
-    distinct = np.ones(len(first), np.bool_)
-    distinct[:-1] &= archive.points[1 : len(first), 0] > first[:-1]
-    distinct[1:] &= archive.points[: len(first) - 1, 1] > second[1:]
-    return distinct
+@compiled
+def mark_distinct(points: Array, slack: float, distinct: NDArray[np.bool_]) -> None:
+    """Mark each point that more than rounding keeps from being dominated by another one marked.
+
+    Args:
+        points: Shape (k, m).
+        slack: What a length may be multiplied by, for rounding.
+        distinct: The marks, shape (k,), all True.
+    """
+    for k in range(len(points)):
+        for j in range(len(points)):
+            if j != k and distinct[j] and no_worse(points, j, k, slack):
+                distinct[k] = False
+                break
+
+
+@inlined
+def no_worse(points: Array, j: int, k: int, slack: float) -> bool:
+    """Return whether point j is nowhere above point k, but for rounding."""
+    below = True
+    for m in range(points.shape[1]):
+        below &= points[j, m] <= points[k, m] * slack
+    return below
 
 
 @compiled
@@ -116,11 +130,12 @@ def insert_some(costs: Costs, archive: Archive, enumeration: Enumeration, steps:
         swap(tour, place, tried[place])
         if not may_follow(costs.closing, tour, place):
             continue
-        first, second = least_lengths_at(costs, enumeration, place)
-        if not accepts(archive, first, second):
+        bound_lengths(costs, enumeration, place, archive.lengths)
+        if not accepts(archive, archive.lengths):
             continue
         if place == n - 1:
-            insert(archive, lengths(costs, tour), tour)
+            sum_lengths(costs, tour, archive.lengths)
+            insert(archive, archive.lengths, tour)
         else:
             place += 1
             tried[place] = place - 1
@@ -128,15 +143,16 @@ def insert_some(costs: Costs, archive: Archive, enumeration: Enumeration, steps:
 
 
 @inlined
-def least_lengths_at(costs: Costs, enumeration: Enumeration, place: int) -> tuple[float, float]:
-    """Return what all tours that begin as this one does, up to a place, cost at least."""
+def bound_lengths(costs: Costs, enumeration: Enumeration, place: int, bounds: Array) -> None:
+    """Set bounds, shape (m,), to what all tours that begin as this one does cost at least."""
     tour, _, reached, least, left, _ = enumeration
-    before = tour[place - 1]
-    c = travel_costs(costs, before, tour[place])
-    for m in range(2):
-        reached[place, m] = reached[place - 1, m] + c[m]
+    before, city = tour[place - 1], tour[place]
+    closing = is_closing(costs.closing, before, city)
+    for m in range(len(bounds)):
+        step = 0.0 if closing else costs.matrix[before, city, m]
+        reached[place, m] = reached[place - 1, m] + step
         left[place, m] = left[place - 1, m] - least[before, m]
-    return reached[place, 0] + left[place, 0], reached[place, 1] + left[place, 1]
+        bounds[m] = reached[place, m] + left[place, m]
 
 
 @inlined

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from service.front import SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
-from service.search.archive import MAX_POINTS
+from service.search.archive.layout import MAX_POINTS
 from service.search.enumeration import exact_tours
 from service.search.front_search import FrontSearch
 from service.search.nondominated import nondominated

@@ -4,11 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import compiled, inlined, standalone
-from service.search.archive import Archive, accepts, insert
+from service.search.archive.insertion import accepts, insert
+from service.search.archive.layout import is_sorted
 from service.search.candidates import Scalarization
 from service.search.closing import is_kept, is_open
-from service.search.costs import lengths
+from service.search.costs import lengths, sum_lengths
 from service.search.moves import apply_move, block_swap, length_change, or_opt, two_opt
+from service.search.state import SearchState
 from service.search.working_tour import (
     QueuedTour,
     WorkingTour,
@@ -134,16 +136,19 @@ def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[
 
 
 @compiled
-def offer(working: QueuedTour, scalarization: Scalarization, archive: Archive) -> bool:
-    """Offer the tour to the archive, and return whether it was inserted.
+def offer(state: SearchState, working: QueuedTour) -> bool:
+    """Offer a tour to the archive, and return whether it was inserted.
 
-    Lengths that would be accepted are summed afresh first, as updates gather rounding errors.
+    Its lengths are summed afresh, as updates gather rounding errors. Of two objectives they are
+    known, but for that: there they are summed only where they would be accepted.
     """
-    if not accepts(archive, working.length[0], working.length[1]):
+    archive = state.archive
+    if is_sorted(archive) and not accepts(archive, working.length):
         return False
-    point = lengths(scalarization.costs, working.tour)
-    working.length[0], working.length[1] = point
-    return insert(archive, point, working.tour)
+    sum_lengths(state.costs, working.tour, archive.lengths)
+    if is_sorted(archive):
+        working.length[0], working.length[1] = archive.lengths[0], archive.lengths[1]
+    return insert(archive, archive.lengths, working.tour)
 
 
 @inlined
@@ -160,9 +165,8 @@ def sum_afresh(working: QueuedTour, scalarization: Scalarization) -> None:
 
 @inlined
 def descend(
-    working: WorkingTour,
+    state: SearchState,
     scalarization: Scalarization,
-    archive: Archive,
     threshold: float,
     budget: int,
     offer_all: bool,
@@ -172,19 +176,18 @@ def descend(
     With `offer_all` the archive is offered the tours on the way. Returns what is left of the
     budget.
     """
+    working = state.working
     while working.ring[1] > 0 and budget > 0:
         if improve_at(working, scalarization, dequeue(working), threshold) and offer_all:
-            offer(working, scalarization, archive)
+            offer(state, working)
         budget -= 1
     return budget
 
 
 @standalone
-def iterated_local_search(  # noqa: PLR0913  # as it is two functions in one
-    working: WorkingTour,
+def iterated_local_search(
+    state: SearchState,
     scalarization: Scalarization,
-    archive: Archive,
-    random: NDArray[np.int64],
     steps: int,
     budget: int,
     offer_all: bool,
@@ -198,20 +201,21 @@ def iterated_local_search(  # noqa: PLR0913  # as it is two functions in one
     Returns what is left of the budget, in cities of the queue: 0 if the last descent may not have
     ended.
     """
-    w0, w1 = scalarization.w0, scalarization.w1
+    working, w0, w1 = state.working, scalarization.w0, scalarization.w1
     value = w0 * working.length[0] + w1 * working.length[1]
     threshold = least_gain(scalarization, value)
     rounded = False
     for step in range(steps + 1):
         if step > 0:
-            perturb(working, scalarization, random)
+            perturb(working, scalarization, state.random)
             rounded = spiked(working, working.saved_length[0], working.saved_length[1])
-        budget = descend(working, scalarization, archive, threshold, budget, offer_all)
+        budget = descend(state, scalarization, threshold, budget, offer_all)
         if steps == 0:
             break
         if rounded:
             sum_afresh(working, scalarization)
-        offer(working, scalarization, archive)
+        if is_sorted(state.archive) or not offer_all:  # else it would be offered again, at O(n m)
+            offer(state, working)
         reached = w0 * working.length[0] + w1 * working.length[1]
         if reached <= value + threshold:
             value = reached

@@ -1,9 +1,11 @@
-"""A Pareto local search that fills the gaps between the points that weighted sums reach.
+"""Pareto local searches, which fill the gaps between the points that weighted sums reach.
 
 Pareto local search (Paquete, Chiarandini and Stuetzle, 2004) explores the neighbourhood of one
 tour of the front at a time. Here neighbours are sampled rather than enumerated: by iterated
 local search under the weighted sum that is tangent to the front at the tour's point. Every tour
-on the way is offered to the archive, under both objectives.
+on the way is offered to the archive, under both objectives. Of more objectives a front has no
+tangent from one point to the next: there, points are searched from that are near the best one
+under the weighted sum that is in use.
 """
 
 from typing import NamedTuple
@@ -11,92 +13,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, least_lengths
 from service.jit import compiled, inlined
-from service.search.archive import Archive
-from service.search.candidates import CANDIDATES_PER_CITY, Scalarization
-from service.search.costs import Costs
+from service.search.archive.layout import Archive, weighted_sum
+from service.search.candidates import Scalarization
 from service.search.local_search import NO_END, iterated_local_search, random_below
-from service.search.working_tour import WorkingTour, load
+from service.search.sizes import LARGE, MENDING, VAST
+from service.search.state import SearchState
+from service.search.working_tour import load
 
 Array = NDArray[np.float64]
 
-WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little time each, and than 35
-MENDED_WEIGHTS = 85  # where tours of an earlier front are mended: each needs less time
-LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
-DECADE = 10.0  # between two of the weights that are added where costs are of very different sizes
-LEXICOGRAPHIC = 1e3  # times less than the least that decides: at the ends, only to break ties
-WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
-LARGE = 500  # cities from which on weights are spaced so; at 400 that is worse in the first second
-MENDING = 100  # cities from which on earlier tours are mended by three-opt: too good for two-opt
 MANY = 1_200  # cities from which on a round is too long for a rest that is mostly as before
-VAST = 7_000  # cities from which on a round of descents alone is first; at 5,000 it gains nothing
 TOURNAMENT_SIZE = 8  # points drawn, to choose one
 STEPS = 10  # of the iterated local search at each point
 LAST = 2.0**-300  # times the value of a point, which comes after all others
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
-
-
-class WeightedCandidates(NamedTuple):
-    """Weights spread over all trade-offs, and the candidate lists under each of them."""
-
-    weights: Array  # (k, 2), rows adding to 1, by ascending first weight
-    candidates: NDArray[np.int32]  # (k, n, candidates)
-    candidate_costs: Array  # (k, n, candidates)
-
-
-def make_weighted_candidates(instance: Instance, n: int, mending: bool) -> WeightedCandidates:
-    """Return weights, for scaled lengths, and empty candidate lists of n cities under each.
-
-    With `mending` the search sets out from tours of an earlier front.
-    """
-    count = MENDED_WEIGHTS if mending and MENDING <= n < LARGE else WEIGHTS
-    if n < LARGE:
-        share = np.linspace(0.0, 1.0, count).clip(LEAST_SHARE, 1 - LEAST_SHARE)
-    else:
-        share = 1 / (1 + np.exp(np.linspace(WIDEST_LOGIT, -WIDEST_LOGIT, count)))
-    below, above = _extremes(instance)
-    shares = np.concatenate((below, np.stack([share, 1 - share], axis=1), above))
-    weights = shares / np.ldexp(instance.scale, instance.shifts)
-    weights /= weights.sum(axis=1, keepdims=True)
-    candidates = np.zeros((len(weights), n, min(CANDIDATES_PER_CITY, n - 1)), np.int32)
-    return WeightedCandidates(weights, candidates, np.zeros(candidates.shape))
-
-
-def _extremes(instance: Instance) -> tuple[Array, Array]:
-    """Return shares to add before the least first weight and after the greatest, shape (k, 2) each.
-
-    Without outliers there are none. With them, trade-offs lie further apart: an
-    outlier of one objective has to count as little as a common cost of the other, and where tours
-    need only costs far below the scale, these have to count as much.
-    """
-    larger = instance.extents / instance.scale
-    if (larger <= 1).all():
-        return np.empty((0, 2)), np.empty((0, 2))
-    least = least_lengths(instance)
-    known = np.isfinite(least) & (least > 0)
-    smaller = np.where(known, instance.scale / np.where(known, least, 1.0), 1.0).clip(1.0)
-    below, above = (
-        LEAST_SHARE * DECADE ** -np.arange(1.0, np.ceil(np.log10(ratio)) + 1)
-        for ratio in LEXICOGRAPHIC * larger * smaller[::-1]
-    )
-    few = [np.stack([ratios / (1 + ratios), 1 / (1 + ratios)], axis=1) for ratios in (below, above)]
-    return few[0][::-1], few[1][:, ::-1]
-
-
-def bisection_order(count: int) -> list[int]:
-    """Return 0 to count - 1: both ends first, then the middles of shorter and shorter intervals.
-
-    Each weight then has neighbours on either side whose tours are good starts for it.
-    """
-    order = [0, count - 1]
-    intervals = [(0, count - 1)]
-    for low, high in intervals:
-        if high - low > 1:
-            middle = (low + high) // 2
-            order.append(middle)
-            intervals += [(low, middle), (middle, high)]
-    return order
 
 
 class Round(NamedTuple):
@@ -125,16 +56,6 @@ def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
     return (Round(8, 0), Round(4, 0)) if n < MANY or 2 * len(touched) > n else ()
 
 
-class SearchState(NamedTuple):
-    """All that the compiled part of a search reads and changes."""
-
-    costs: Costs
-    weighted_candidates: WeightedCandidates
-    archive: Archive
-    working: WorkingTour
-    random: NDArray[np.int64]  # (1,), the state of random_below()
-
-
 @inlined
 def front_span(archive: Archive, common: Array, k: int, reach: int) -> tuple[float, float]:
     """Return width and height of the front from `reach` points before a point to `reach` after.
@@ -142,13 +63,13 @@ def front_span(archive: Archive, common: Array, k: int, reach: int) -> tuple[flo
     The span ends before lengths above the common ones: the rest of the front is not near there.
     """
     before, after = max(k - reach, 0), min(k + reach, archive.counts[0] - 1)
-    while after > k and archive.points[after, 0] > common[0]:
+    while after > k and archive.lows[after, 0] > common[0]:
         after -= 1
-    while before < k and archive.points[before, 1] > common[1]:
+    while before < k and archive.lows[before, 1] > common[1]:
         before += 1
     return (
-        archive.points[after, 0] - archive.points[before, 0],
-        archive.points[before, 1] - archive.points[after, 1],
+        archive.lows[after, 0] - archive.lows[before, 0],
+        archive.lows[before, 1] - archive.lows[after, 1],
     )
 
 
@@ -164,8 +85,8 @@ def choose_point(archive: Archive, common: Array, random: NDArray[np.int64]) -> 
     for _ in range(TOURNAMENT_SIZE):
         k = random_below(random, archive.counts[0])
         width, height = front_span(archive, common, k, 1)
-        value = width * height / (1 + archive.tries[archive.slots[k]])
-        if archive.points[k, 0] > common[0] or archive.points[k, 1] > common[1]:
+        value = width * height / (1 + archive.tries[archive.rows[k, 0]])
+        if archive.lows[k, 0] > common[0] or archive.lows[k, 1] > common[1]:
             value *= LAST
         if value > largest:
             chosen, largest = k, value
@@ -195,11 +116,54 @@ def fill_gaps(state: SearchState, common: Array, rounds: int) -> None:
             cost that could be avoided.
         rounds: The number of points.
     """
-    archive, working = state.archive, state.working
+    archive = state.archive
     for _ in range(rounds):
         k = choose_point(archive, common, state.random)
-        slot = archive.slots[k]
-        archive.tries[slot] += 1
+        row = archive.rows[k, 0]
+        archive.tries[row] += 1
         scalarization = scalarization_at(state, common, k)
-        load(working, archive.tours[slot], archive.points[k, 0], archive.points[k, 1])
-        iterated_local_search(working, scalarization, archive, state.random, STEPS, NO_END, True)
+        load(state.working, archive.tours[row], archive.points[row, 0], archive.points[row, 1])
+        iterated_local_search(state, scalarization, STEPS, NO_END, True)
+
+
+@compiled
+def choose_row(state: SearchState, weights: Array, least: float) -> int:
+    """Choose by tournament a point from which to search under a weighted sum.
+
+    Of a few points, drawn from any block and any place in it, that is the one that is least above
+    the least weighted sum, multiplied by one more than the number of searches from it so far.
+    """
+    archive, random = state.archive, state.random
+    chosen, smallest = -1, np.inf
+    for _ in range(TOURNAMENT_SIZE):
+        block = random_below(random, archive.counts[3])
+        row = archive.rows[block, random_below(random, archive.sizes[block])]
+        value = (weighted_sum(archive, row, weights) - least) * (1 + archive.tries[row])
+        if value < smallest:
+            chosen, smallest = row, value
+    return chosen
+
+
+@compiled
+def search_from_points(
+    state: SearchState,
+    scalarization: Scalarization,
+    weights: Array,
+    least: float,
+    rounds: int,
+) -> None:
+    """Iterate from `rounds` points, one after another, each chosen anew.
+
+    Args:
+        state: The state of the search.
+        scalarization: The weighted sum, in two costs.
+        weights: Its weights, shape (m,).
+        least: The least weighted sum found so far.
+        rounds: The number of points.
+    """
+    archive = state.archive
+    for _ in range(rounds):
+        row = choose_row(state, weights, least)
+        archive.tries[row] += 1
+        load(state.working, archive.tours[row], weighted_sum(archive, row, weights), 0.0)
+        iterated_local_search(state, scalarization, STEPS, NO_END, True)

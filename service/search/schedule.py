@@ -23,48 +23,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.archive import (
-    MAX_POINTS,
-    accepts,
-    dominated_area,
-    insert,
-    make_archive,
-)
+from service.search.archive.layout import MAX_POINTS
+from service.search.archive.sorted_points import dominated_area
 from service.search.candidates import (
     POOL_WEIGHTS,
-    Scalarization,
     fill_in_blocks,
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.costs import lengths, make_costs, scaled_reference
-from service.search.descents import Descents
+from service.search.costs import scaled_reference
 from service.search.enumeration import enumerate_tours
-from service.search.front_search import FrontSearch
+from service.search.front_search import BLOCK, CONSTRUCTIONS, PATIENCE, FrontSearch
 from service.search.pareto_local_search import (
-    LARGE,
     STEPS,
-    VAST,
-    SearchState,
-    bisection_order,
     fill_gaps,
-    make_weighted_candidates,
     rounds,
 )
-from service.search.three_opt.choice import choose_local_searches
-from service.search.working_tour import make_working_tour
+from service.search.sizes import LARGE, VAST
+from service.search.weights import bisection_order
 
 Array = NDArray[np.float64]
-Cities = NDArray[np.int32]
 
-CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
 LARGE_DESCENTS = 25  # of a large instance: weights descended to before others from their neighbours
-BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
 EXPLORE_EVERY = 10  # one turn in ten goes to the method that has lately gained less
 MAX_PROVED = 11  # cities, the invented one among them, up to which convergence is proved
-PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
 
 class Search(FrontSearch):
@@ -78,41 +62,17 @@ class Search(FrontSearch):
         capacity: int = MAX_POINTS,
         touched: NDArray[np.integer] | None = None,
     ) -> None:
-        self.shifts = instance.shifts
+        super().__init__(instance, seed, reference_point, capacity, touched)
         self.corner = scaled_reference(instance, reference_point)
         self.common = scaled_reference(instance, instance.reference_point)
-        costs = make_costs(instance)
-        self.n = len(costs.cities)
-        archive = make_archive(self.n, capacity)
-        super().__init__(instance, reference_point, archive, touched)
         self.large = self.n >= LARGE
         self.block = max(STEPS, BLOCK * FULL_BLOCK // max(FULL_BLOCK, self.n))
-        mending = touched is not None
-        weighted_candidates = make_weighted_candidates(instance, self.n, mending)
-        self.weights = weighted_candidates.weights
         self.bisection = bisection_order(len(self.weights))
-        self.state = SearchState(
-            costs,
-            weighted_candidates,
-            archive,
-            make_working_tour(self.n),
-            np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
-        )
-        descent, self.local_search = choose_local_searches(self.state, mending)
-        self.descents = Descents(instance, self.state, descent, self.touched)
 
-    def _front(self) -> tuple[Cities, Array]:
-        archive = self.state.archive
-        return archive.slots[: self.size], archive.points[: self.size]
-
-    def _insert(self, tour: Cities) -> None:
-        insert(self.state.archive, lengths(self.state.costs, tour), tour)
-
-    def _accepts(self, tour: Cities) -> bool:
-        return accepts(self.state.archive, *lengths(self.state.costs, tour))
-
-    def _middle(self) -> Scalarization:
-        return self.descents.scalarization(len(self.weights) // 2)
+    @property
+    def middle(self) -> int:
+        """The number of a weight under which each objective counts."""
+        return len(self.weights) // 2
 
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.
@@ -147,12 +107,15 @@ class Search(FrontSearch):
         order = self.bisection
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(order[:descents]):
-            rank_candidates(self.pool, self.descents.scalarization(k))
+            scalarization = self.descents.scalarization(k)
+            rank_candidates(self.pool, scalarization)
             construct = rank < constructions and self.touched is None
-            yield from self.descents.descend(k, construct)
+            yield from self.descents.descend(k, scalarization, construct)
         for k in order[descents:]:
-            rank_candidates(self.pool, self.descents.scalarization(k))
-            yield from self.descents.descend_from_neighbours(k, assembling=self.n < VAST)
+            scalarization = self.descents.scalarization(k)
+            rank_candidates(self.pool, scalarization)
+            assembling = self.n < VAST
+            yield from self.descents.descend_from_neighbours(k, scalarization, assembling)
             yield 1
 
     def pool_candidates(self) -> Iterator[int]:
@@ -160,29 +123,24 @@ class Search(FrontSearch):
 
         Of very many cities without a tour the first one is then constructed as soon as it can be.
         """
-        self.pool, middle = make_candidate_pool(self.n), len(self.weights) // 2
+        self.pool = make_candidate_pool(self.n)
         pooled = np.linspace(0, len(self.weights) - 1, POOL_WEIGHTS).astype(int)
         if self.n >= VAST:
-            pooled = pooled[np.argsort(np.abs(pooled - middle), kind="stable")]
+            pooled = pooled[np.argsort(np.abs(pooled - self.middle), kind="stable")]
         for filled in fill_in_blocks(self.pool, self.state.costs, self.weights[pooled]):
             if filled == 1 and self.n >= VAST and not self.size:
-                rank_candidates(self.pool, self.descents.scalarization(middle))
-                self.descents.construct(middle)
+                rank_candidates(self.pool, self.descents.scalarization(self.middle))
+                self.descents.construct(self.middle)
             yield 0
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
         """Run a number of iterations of iterated local search under weight k."""
         scalarization = self.descents.scalarization(k)
         if self.large:
-            yield from self.descents.descend_from_neighbours(k, assembling=True)
-        self.descents.load_start(self.local_search, scalarization)
+            yield from self.descents.descend_from_neighbours(k, scalarization, assembling=True)
         effort = self.local_search.effort
-        own = max(1, iterations // effort)
         block = BLOCK if self.large else max(1, self.block // effort)
-        for done in range(0, own, block):
-            steps = min(own - done, block)
-            self.local_search.iterate(scalarization, steps)
-            yield steps * effort
+        yield from self.iterate(k, scalarization, max(1, iterations // effort), block)
 
     def _fill_gaps(self) -> Iterator[int]:
         """Run about n iterations of Pareto local search."""
@@ -196,7 +154,7 @@ class Search(FrontSearch):
         Gain is hypervolume per iteration, as a moving average.
         """
         next_weight = cycle(self.bisection)
-        area = partial(dominated_area, self.state.archive, self.corner[0], self.corner[1])
+        area = partial(dominated_area, self.state.archive, self.corner)
         rates = [np.inf, np.inf]
         quiet, turn = 0, 0
         while quiet < PATIENCE * self.n:

@@ -8,3 +8,6 @@ THREE_OPT = 250
 # second-level cache, and memory stays linear in the number of cities.
 DENSE_BELOW = 600
 GREEDY = 2_000  # from which on tours are constructed by greedy edge; of 1,000 clustered it is worse
+MENDING = 100  # from which on earlier tours are mended by three-opt: too good for two-opt
+LARGE = 500  # from which on weights are spaced by their logit; at 400 worse in the first second
+VAST = 7_000  # from which on a round of descents alone is first; at 5,000 it gains nothing

@@ -10,7 +10,9 @@ import numpy as np
 
 from service.instance import Instance
 from service.search import candidates
-from service.search.archive import dominated_area
+from service.search.archive.insertion import insert
+from service.search.archive.layout import make_archive
+from service.search.archive.sorted_points import dominated_area
 from service.search.best_subset import best_subset
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.candidates import Scalarization, rank_candidates
@@ -18,13 +20,15 @@ from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.enumeration import exact_tours
 from service.search.front_points import FrontPoints
+from service.search.hypervolume import hypervolume
 from service.search.improve import improve
 from service.search.local_search import least_gain, offer, sum_afresh
-from service.search.pareto_local_search import WEIGHTS, fill_gaps
+from service.search.pareto_local_search import fill_gaps
 from service.search.schedule import Search
 from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import LocalSearch, ThreeOptSearch
 from service.search.three_opt.undoable_tour import make_undoable_tour
+from service.search.weights import WEIGHTS
 from service.search.working_tour import enqueue_cities
 
 _N = 12  # cities: one too many to enumerate at once
@@ -33,7 +37,14 @@ _TOUR = np.arange(_N, dtype=np.int32)
 
 def warm_up() -> None:
     """Compile the whole search."""
-    for compile_part in (few_cities, fewest_cities, more_cities, many_cities, bounds):
+    for compile_part in (
+        few_cities,
+        fewest_cities,
+        more_cities,
+        several_objectives,
+        many_cities,
+        bounds,
+    ):
         compile_part()
 
 
@@ -54,6 +65,7 @@ def two_opt() -> None:
 
 def beside_two_opt() -> None:
     """Compile what a search by two-opt needs besides."""
+    insert(make_archive(_N, 3), np.ones(3), _TOUR)  # which the other piece needs too, but later
     instance = _instance(coordinates=True)
     points = np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]])
     best_subset(FrontPoints(points, np.full(2, 4.0)), 2)
@@ -65,9 +77,9 @@ def beside_two_opt() -> None:
         rank_candidates(search.pool, scalarization)
     search.add(_TOUR[np.newaxis])
     search.not_covered(_TOUR[np.newaxis])
-    search.descents.load_start(search.local_search, scalarization)
+    search.descents.load_best(0, scalarization, search.local_search)
     _offer(search, search.local_search, scalarization)
-    dominated_area(search.state.archive, *search.corner)
+    dominated_area(search.state.archive, search.corner)
     constructed_tour(instance, scalarization, greedy=False)
 
 
@@ -113,6 +125,16 @@ def many_cities() -> None:
     constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
 
 
+def several_objectives() -> None:
+    """Compile what three and four objectives need besides."""
+    for objectives in (3, 4):
+        instance = _instance(coordinates=True, objectives=objectives)
+        improve(instance, _TOUR[np.newaxis], iterations=3_000, capacity=16)
+        front = FrontPoints.among(np.eye(objectives), np.full(objectives, 2.0))[1]
+        best_subset(front, 2)
+        hypervolume(front.points, front.reference_point)
+
+
 def bounds() -> None:
     """Compile the bounds on the hypervolume."""
     for coordinates in (True, False):
@@ -125,14 +147,14 @@ def _search(instance: Instance) -> Search:
 
 
 def _three_opt(search: Search) -> ThreeOptSearch:
-    return ThreeOptSearch(search.state, make_undoable_tour(search.n))
+    return ThreeOptSearch(search.state, make_undoable_tour(search.n), every=1)
 
 
 def _offer(search: Search, local_search: LocalSearch, scalarization: Scalarization) -> None:
     """Offer a local optimum to the archive."""
     local_search.load(_TOUR, *lengths(scalarization.costs, _TOUR))
     sum_afresh(local_search.working, scalarization)
-    offer(local_search.working, scalarization, search.state.archive)
+    offer(search.state, local_search.working)
 
 
 def _rank_candidates(scalarization: Scalarization) -> None:
@@ -150,15 +172,17 @@ def _step_through_three_opt(instance: Instance) -> None:
     search.local_search = search.descents.local_search = _three_opt(search)
     for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
         pass
-    for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):
+    scalarization = search.descents.scalarization(WEIGHTS // 2)
+    for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, scalarization, assembling=True):
         pass
 
 
-def _instance(*, coordinates: bool, n: int = _N) -> Instance:
+def _instance(*, coordinates: bool, n: int = _N, objectives: int = 2) -> Instance:
     """Return an instance of n cities, by coordinates or by matrices that differ by direction."""
     cities = np.arange(float(n))
     if coordinates:
         planes = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
-        return Instance(coordinates=planes)
+        more = np.outer(cities, np.arange(5.0, 2 * objectives + 1)) % 13
+        return Instance(coordinates=np.concatenate((planes, more), axis=1))
     matrices = np.triu(np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1))
     return Instance(matrices=matrices)

@@ -27,7 +27,6 @@ from service.preferences import fan, from_angles
 from service.search.candidates import CANDIDATES_PER_CITY, make_candidate_pool
 from service.search.costs import tabulate
 from service.search.improve import improve
-from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
 from service.search.warm_up import warm_up
 from service.watch import Watch
@@ -126,7 +125,7 @@ def edges_as_candidates(tours: NDArray[np.integer]) -> Iterator[None]:
         width = cities.shape[1]
         steps = np.empty((n, n, 2))
         tabulate(search.state.costs.cities, steps)
-        equal = steps @ search.weights[WEIGHTS // 2]
+        equal = steps @ search.weights[search.middle]
         np.fill_diagonal(equal, 2 * equal.max() + 1)
         ranked = equal - 2 * equal.max() * joined
         first = ranked.argpartition(width - 1, axis=1)[:, :width]

@@ -22,8 +22,8 @@ from tqdm import tqdm
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
-from service.search.pareto_local_search import bisection_order
 from service.search.warm_up import warm_up
+from service.search.weights import bisection_order
 from service.watch import Watch
 from tests.benchmarks import provenance as of_run
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points

@@ -31,7 +31,7 @@ from models.data.generators import clustered, uniform
 from service.instance import Instance, step_lengths, tour_lengths
 from service.preferences import spread
 from service.search.improve import improve
-from service.search.several.warm_up import warm_up
+from service.search.warm_up import warm_up
 from service.watch import Watch
 from tests.benchmarks.kro import rounded_distances
 from tests.benchmarks.provenance import load

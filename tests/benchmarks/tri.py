@@ -28,7 +28,7 @@ from service.construction.repairs import repairs_worth
 from service.instance import Instance
 from service.onnx_runtime import onnxruntime
 from service.search.improve import improve
-from service.search.several.warm_up import warm_up
+from service.search.warm_up import warm_up
 from service.watch import Watch
 from tests.benchmarks.printed import TRI_CORNERS
 from tests.benchmarks.rows import resume

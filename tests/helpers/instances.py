@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
+from service.search.archive.layout import make_archive
 from service.search.candidates import Scalarization
 from service.search.candidates import weighted_cost as weighted_cost_kernel
 from service.search.costs import make_costs
 from service.search.open_routes import moved_ends
+from service.search.state import SearchState, WeightedCandidates
+from service.search.working_tour import make_working_tour
 from tests.helpers.kernels import for_python
 
 weighted_cost = for_python(weighted_cost_kernel)
@@ -101,6 +104,19 @@ def scalarization_of(instance: Instance) -> Scalarization:
     candidate_costs = np.take_along_axis(sums, candidates, axis=1) / 2
     return Scalarization(
         costs, np.ascontiguousarray(candidates, np.int32), candidate_costs, 0.5, 0.5
+    )
+
+
+def state_of(scalarization: Scalarization, seed: int) -> SearchState:
+    """The state of a search under one weighted sum of two objectives, without a tour."""
+    costs, candidates, candidate_costs, w0, w1 = scalarization
+    n = len(costs.cities)
+    return SearchState(
+        costs,
+        WeightedCandidates(np.array([[w0, w1]]), candidates[None], candidate_costs[None]),
+        make_archive(n, 2),
+        make_working_tour(n),
+        np.array([seed]),
     )
 
 

@@ -15,7 +15,6 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.enumeration import exact_tours
 from service.search.improve import LEAST_POINTS, improve
-from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import BLOCK, Search
 from service.search.sizes import MAX_ENUMERATED
 from service.watch import Progress, Watch
@@ -287,7 +286,7 @@ def test_a_search_that_is_stopped_at_once_gives_a_nearest_neighbour_tour(kind: s
     found = improve(instance, no_tours(60), watch=Watch(stop=lambda: True))
     search = Search(instance, 0, 60 * instance.scale)
     matrices = np.ldexp(instance.scale, instance.shifts)[:, None, None] * instance.scaled_matrices
-    cost = np.tensordot(search.weights[WEIGHTS // 2], matrices, 1)
+    cost = np.tensordot(search.weights[search.middle], matrices, 1)
     [tour] = found.tours.tolist()
     visited = tour[tour.index(0) :] + tour[: tour.index(0)]
     for k in range(1, 60):

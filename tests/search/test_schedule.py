@@ -9,17 +9,10 @@ from numpy.typing import NDArray
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
-from service.search.pareto_local_search import (
-    LARGE,
-    LEAST_SHARE,
-    MANY,
-    MENDED_WEIGHTS,
-    MENDING,
-    VAST,
-    WEIGHTS,
-    rounds,
-)
+from service.search.pareto_local_search import MANY, rounds
 from service.search.schedule import Search
+from service.search.sizes import LARGE, MENDING, VAST
+from service.search.weights import LEAST_SHARE, MENDED_WEIGHTS, WEIGHTS
 from service.watch import Watch
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
@@ -33,8 +26,7 @@ def test_whole_numbered_matrices_stay_exact(kind: str, ends: str) -> None:
     search = Search(instance, 0, 60 * instance.scale)
     for _, _ in zip(range(200), search.run(), strict=False):
         pass
-    points = search.state.archive.points[: search.size] * 2.0**-search.shifts
-    assert np.array_equal(points, tour_lengths(instance, search.tours()))
+    assert np.array_equal(search.points(), tour_lengths(instance, search.tours()))
 
 
 def test_a_given_tour_that_the_archive_had_to_let_go_is_still_returned() -> None:
@@ -63,6 +55,7 @@ def test_weights_reach_as_far_for_many_cities_as_for_few_and_crowd_at_the_ends()
 def test_of_many_cities_the_tours_on_the_way_of_a_descent_are_kept() -> None:
     cities = np.arange(LARGE)
     search = Search(uniform(LARGE), 0, np.full(2, float(LARGE)), touched=cities)
+    search.add(random_tours(LARGE, 1))
     for iterations in search.run():
         if iterations:  # the first weight has a local optimum
             break

@@ -37,8 +37,9 @@ from service.fleet.search.working_plan import (
     unlink,
 )
 from service.jit import compiled, inlined
+from service.search.archive.insertion import accepts, insert
+from service.search.archive.layout import Archive
 from service.search.local_search import random_below
-from service.search.several.archive import BlockArchive, accepts, insert
 
 Array = NDArray[np.float64]
 
@@ -297,8 +298,8 @@ class Driven(NamedTuple):
 class Found(NamedTuple):
     """The nondominated plans, and those among the plans that keep most of the driven one."""
 
-    plans: BlockArchive
-    kept: BlockArchive
+    plans: Archive
+    kept: Archive
     driven: Driven
     point: Array  # (m,), scratch space
     row: Nodes  # scratch space

@@ -30,7 +30,7 @@ from service.fleet.search.ruin_and_recreate import (
 from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
 from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
-from service.search.several.archive import make_archive, rows_of
+from service.search.archive.layout import make_archive, rows_of
 from service.watch import Watch
 
 RUINS = 100  # in a round

@@ -14,11 +14,11 @@ from service.instance import Instance, tour_lengths
 from service.objectives import OBJECTIVES
 from service.search.bound.several import bound_of_several
 from service.search.bound.weighted import lowest_sums
-from service.search.costs import make_costs, scaled_reference
+from service.search.costs import as_two, make_costs, scaled_reference
 from service.search.enumeration import exact_tours
 from service.search.hypervolume import hypervolume
-from service.search.pareto_local_search import bisection_order
 from service.search.sizes import MAX_ENUMERATED
+from service.search.weights import bisection_order
 from service.watch import Watch
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ def hypervolume_bound(
     scale = np.ldexp(instance.scale, instance.shifts)
     weights = np.stack([share, 1 - share], axis=1) / scale
     costs = make_costs(instance)
-    sums = [(costs, w0, w1) for w0, w1 in weights.tolist()]
+    sums = [as_two(costs, each) for each in weights]
     places = np.arange(float(WEIGHTS))[:, np.newaxis]
     lowest = lowest_sums(sums, bisection_order(WEIGHTS), places, watch)
     return area_above(weights * scaled_reference(instance, reference_point), lowest)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from service.instance import Instance
 from service.preferences import lattice, spread_out
 from service.search.bound.weighted import SLACK, lowest_sums
-from service.search.costs import make_costs, scaled_reference, weighted_costs
+from service.search.costs import as_two, make_costs, scaled_reference
 from service.watch import Watch
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ def lowest_lengths(instance: Instance, watch: Watch[Any]) -> tuple[Array, Array]
     weights = shares[spread_out(shares)] / np.ldexp(instance.scale, instance.shifts)
     weights /= weights.sum(axis=1, keepdims=True)
     costs = make_costs(instance)
-    sums = [(weighted_costs(costs, each), 1.0, 1.0) for each in weights]
+    sums = [as_two(costs, each) for each in weights]
     return weights, lowest_sums(sums, range(len(weights)), weights, watch)
 
 

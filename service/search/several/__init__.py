@@ -1,1 +1,1 @@
-"""The search for fronts of three and four objectives, by the kernels of the search for two."""
+"""The schedule for three and four objectives, their volumes, and the choice of their tours."""

@@ -6,11 +6,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from service.objectives import OBJECTIVES
 from service.search import working_tour
 from service.search.candidates import Scalarization
 from service.search.local_search import NO_END, iterated_local_search
-from service.search.pareto_local_search import LARGE, MENDING, SearchState
-from service.search.sizes import THREE_OPT
+from service.search.sizes import LARGE, MENDING, THREE_OPT
+from service.search.state import SearchState
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
 from service.search.three_opt.undoable_tour import UndoableTour, make_undoable_tour
@@ -50,11 +51,14 @@ def choose_local_searches(state: SearchState, mending: bool) -> tuple[LocalSearc
 
     Of fewer cities than LARGE a descent by two-opt is over sooner; iterations mend what it left.
     """
-    n, symmetric, two_opt = len(state.costs.cities), state.costs.symmetric, TwoOptSearch(state)
+    n, symmetric = len(state.costs.cities), state.costs.symmetric
+    several = len(state.archive.lengths) > OBJECTIVES
+    two_opt = TwoOptSearch(state, offer_all=several)
     if symmetric and n < (MENDING if mending else THREE_OPT):
         return two_opt, two_opt
     effort = 1 if symmetric and n >= LARGE else EFFORT
-    three_opt = ThreeOptSearch(state, make_undoable_tour(n), effort)
+    every = NO_END if several else max(1, n // OFFERED)
+    three_opt = ThreeOptSearch(state, make_undoable_tour(n), every, effort)
     return two_opt if n < LARGE else three_opt, three_opt
 
 
@@ -63,6 +67,7 @@ class TwoOptSearch:
     """A local search by 2-opt and Or-opt, or where costs are asymmetric by swaps of blocks."""
 
     state: SearchState
+    offer_all: bool  # or else the local optima that iterations reach
     effort: int = 1
 
     @property
@@ -76,16 +81,11 @@ class TwoOptSearch:
 
     def descend(self, scalarization: Scalarization, budget: int) -> int:
         """Make improving moves."""
-        return self._search(scalarization, 0, budget)
+        return iterated_local_search(self.state, scalarization, 0, budget, False)
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
         """Perturb and descend."""
-        self._search(scalarization, steps, NO_END)
-
-    def _search(self, scalarization: Scalarization, steps: int, budget: int) -> int:
-        _, _, archive, working, random = self.state
-        given = working, scalarization, archive, random
-        return iterated_local_search(*given, steps, budget, False)
+        iterated_local_search(self.state, scalarization, steps, NO_END, self.offer_all)
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,7 @@ class ThreeOptSearch:
 
     state: SearchState
     working: UndoableTour
+    every: int  # of the local optima that iterations reach, one is offered
     effort: int = 1
 
     def load(self, tour: Cities, first: float, second: float) -> None:
@@ -106,7 +107,4 @@ class ThreeOptSearch:
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
         """Perturb and descend."""
-        state, every = self.state, max(1, len(self.working.tour) // OFFERED)
-        three_opt.iterated_local_search(
-            self.working, scalarization, state.archive, state.random, steps, every
-        )
+        three_opt.iterated_local_search(self.state, self.working, scalarization, steps, self.every)

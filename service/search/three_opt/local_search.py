@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import compiled, inlined, standalone
-from service.search.archive import Archive
 from service.search.candidates import Scalarization
 from service.search.local_search import (
     LONGEST_BLOCK,
@@ -19,6 +18,7 @@ from service.search.local_search import (
     spiked,
     sum_afresh,
 )
+from service.search.state import SearchState
 from service.search.three_opt.deepening import deepen
 from service.search.three_opt.exchanges import NONE, make_exchange, swap_adjacent, wide
 from service.search.three_opt.finding import find_exchanges, nothing_found
@@ -96,10 +96,9 @@ def perturb(working: UndoableTour, scalarization: Scalarization, random: NDArray
 
 @compiled
 def iterated_local_search(
+    state: SearchState,
     working: UndoableTour,
     scalarization: Scalarization,
-    archive: Archive,
-    random: NDArray[np.int64],
     steps: int,
     every: int,
 ) -> None:
@@ -113,17 +112,17 @@ def iterated_local_search(
     threshold = least_gain(scalarization, value)
     save(working)
     for step in range(1, steps + 1):
-        perturb(working, scalarization, random)
+        perturb(working, scalarization, state.random)
         rounded = spiked(working, working.saved_length[0], working.saved_length[1])
         descend(working, scalarization, MOST_CITIES, True)
         if rounded:
             sum_afresh(working, scalarization)
         if step % every == 0:
-            offer(working, scalarization, archive)
+            offer(state, working)
         reached = w0 * working.length[0] + w1 * working.length[1]
         if reached <= value + threshold:
             value = reached
             save(working)
         else:
             undo(working)
-    offer(working, scalarization, archive)
+    offer(state, working)

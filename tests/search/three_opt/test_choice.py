@@ -3,9 +3,8 @@
 import numpy as np
 
 from service.instance import Instance
-from service.search.pareto_local_search import LARGE, MENDING
 from service.search.schedule import Search
-from service.search.sizes import THREE_OPT
+from service.search.sizes import LARGE, MENDING, THREE_OPT
 from service.search.three_opt.choice import ThreeOptSearch, TwoOptSearch, choose_local_searches
 
 FEW = Instance(coordinates=np.random.default_rng(0).random((12, 4)))

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from service.search.archive import accepts, make_archive
+from service.search.archive.insertion import accepts
 from service.search.candidates import Scalarization
 from service.search.costs import lengths
 from service.search.three_opt.deepening import deepen
@@ -30,6 +30,7 @@ from tests.helpers.instances import (
     opened,
     random_matrices,
     scalarization_of,
+    state_of,
     steps_of,
     weighted_length,
 )
@@ -166,14 +167,13 @@ def test_a_search_of_a_route_keeps_its_ends_and_returns_to_the_best(fixed: str) 
         scalarization = scalarization_of(instance)
         working = make_undoable_tour(13)
         load(working, working.tour.copy(), *lengths(scalarization.costs, working.tour))
-        archive = make_archive(13)
         enqueue_cities(working, working.tour.copy())
         while descend(working, scalarization, 3, False) == 0:
             pass
         value = weighted_length(scalarization, working.tour)
-        random = np.array([seed + 1])
-        iterated_local_search(working, scalarization, archive, random, 30, 1 + 10 * seed)
-        assert not accepts(archive, *working.length)  # at least the last tour has been offered
+        state = state_of(scalarization, seed + 1)
+        iterated_local_search(state, working, scalarization, 30, 1 + 10 * seed)
+        assert not accepts(state.archive, working.length)  # at least the last tour has been offered
         assert weighted_length(scalarization, working.tour) <= value + 1e-9
         assert sorted(working.tour) == list(range(13))
         assert working.position[working.tour].tolist() == list(range(13))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.archive import accepts, make_archive
+from service.search.archive.insertion import accepts
 from service.search.candidates import Scalarization
 from service.search.closing import closed_tours
 from service.search.costs import lengths
@@ -36,6 +36,7 @@ from tests.helpers.instances import (
     random_matrices,
     random_routes,
     scalarization_of,
+    state_of,
     weighted_length,
 )
 from tests.helpers.kernels import for_python
@@ -165,10 +166,10 @@ def test_a_search_keeps_the_ends_of_a_route_and_returns_to_the_best(
         instance = opened(instance, ends, seed)
     working, scalarization = descended(instance, seed)
     value = weighted_length(scalarization, working.tour)
-    archive = make_archive(len(working.tour))
-    iterated_local_search(working, scalarization, archive, np.array([seed + 1]), 30, 1)
+    state = state_of(scalarization, seed + 1)
+    iterated_local_search(state, working, scalarization, 30, 1)
     check_consistent(working, scalarization)
-    assert not accepts(archive, *working.length)
+    assert not accepts(state.archive, working.length)
     assert weighted_length(scalarization, working.tour) <= value + LEAST
     if ends:
         check_ends(instance, working)
@@ -194,7 +195,7 @@ def test_a_kick_removes_no_step_that_has_to_stay_and_can_be_undone(ends: str) ->
 def test_the_same_seed_gives_the_same_tour() -> None:
     def found() -> list[int]:
         working, scalarization = descended(random_matrices(30, 0, symmetric=False), 0)
-        iterated_local_search(working, scalarization, make_archive(30), np.array([7]), 100, 1)
+        iterated_local_search(state_of(scalarization, 7), working, scalarization, 100, 1)
         return working.tour.tolist()
 
     assert found() == found()

@@ -1,12 +1,14 @@
-"""The archive of three and four objectives holds the nondominated points and their tours."""
+"""The archive holds the nondominated points and their tours, of two to four objectives."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.pareto import nondominated
-from service.search.several.archive import accepts, best_row, insert, make_archive, rows_of
+from service.pareto import hypervolume, nondominated
+from service.search.archive.insertion import accepts, insert
+from service.search.archive.layout import best_row, make_archive, rows_of
+from service.search.archive.sorted_points import dominated_area, thin
 
 Points = list[tuple[int, ...]]
 
@@ -34,9 +36,13 @@ def test_it_holds_just_the_nondominated_points_and_their_tours(
         assert not accepts(archive, point)
     weights = np.ldexp(1.0, -np.arange(objectives))  # powers of two: equal sums are equal
     assert archive.points[best_row(archive, weights)] @ weights == (points @ weights).min()
+    if objectives == 2:
+        corner = np.full(2, 10.0)
+        area = 100 * hypervolume(points, corner)
+        assert dominated_area(archive, corner) == pytest.approx(area)
 
 
-@pytest.mark.parametrize("objectives", [3, 4])
+@pytest.mark.parametrize("objectives", [2, 3, 4])
 def test_a_full_archive_makes_room_and_keeps_the_least_of_each_length(objectives: int) -> None:
     rng = np.random.default_rng(objectives)
     points = rng.random((3000, objectives))
@@ -62,3 +68,13 @@ def test_thousands_of_points_are_compared_with_few() -> None:
     blocks = archive.counts[3]
     touched = [(archive.lows[:blocks] <= point).all(axis=1).sum() for point in points[::100]]
     assert np.mean(touched) < 0.05 * blocks
+
+
+def test_of_two_objectives_thinning_drops_the_points_that_add_least() -> None:
+    archive = make_archive(1, 2, 16)
+    for point in [(1, 9), (4, 5), (4.1, 4.9), (4.2, 4.8), (8, 1)]:
+        insert(archive, np.array(point, float), np.array([0], np.int32))
+    thin(archive)
+    left = archive.points[rows_of(archive)].tolist()
+    assert [1.0, 9.0] in left
+    assert [4.1, 4.9] not in left

@@ -1,0 +1,1 @@
+"""The archive: all nondominated tours that a search has found so far."""
