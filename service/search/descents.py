@@ -27,6 +27,7 @@ from service.search.working_tour import enqueue_cities
 Cities = NDArray[np.int32]
 
 OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
+LEAST_BLOCK = 20  # cities from the queue between two offers: a call takes as long as some cities
 DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
 NEIGHBOURS = 6  # weights to begin at; of 3 objectives 3 leave a fifth of the gain, 10 add none
 ASSEMBLIES = 2  # times that each tour is assembled from: what there is to choose at random differs
@@ -147,7 +148,7 @@ class Descents:
         """
         working = self.local_search.working
         enqueue_cities(working, cities)
-        block = 1 + self.n // OFFERS if offering else DESCENT_BLOCK
+        block = max(LEAST_BLOCK, 1 + self.n // OFFERS) if offering else DESCENT_BLOCK
         while self.local_search.descend(scalarization, block) == 0:
             if offering:
                 self._offer_on_the_way()
