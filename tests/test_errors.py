@@ -16,6 +16,7 @@ from service.errors.printable import printable, printable_lines
 SERVICE = Path(__file__).parents[1] / "service"
 MAKERS = {
     *("invalid", "invalid_header", "uncoverable", "_refused", "_of_plan", "_fault", "Fault", "of"),
+    *("fault", "refusal", "refuse", "_of_files"),
 }
 OF_PYDANTIC = {
     *("extra-forbidden", "greater-than-equal", "less-than-equal", "string-pattern-mismatch"),
@@ -117,7 +118,7 @@ def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
     for source in sources:
         for code, given in faults_in(ast.parse(source)):
             fields = {name for _, name, _, _ in Formatter().parse(SENTENCES[code]) if name}
-            optional = {"near", "values", "part", "pointer", "parameter"}
+            optional = {"near", "values", "part", "pointer", "parameter", "row", "column"}
             assert given is None or "values" in given or fields <= given <= fields | optional, code
 
 

@@ -23,7 +23,6 @@ from service.files.reading import (
     NamedFile,
     Request,
     Source,
-    UnreadableFile,
     check_cells,
 )
 from service.files.stop_tables import numbers_of
@@ -68,7 +67,7 @@ def read_request(
 
     Raises:
         UnreadableFile: A file cannot be read; the message names it.
-        UsageError: It holds what another command plans.
+        UsageError: It holds what another command plans, or is no file that can be read once.
         OSError: The file does not exist.
     """
     files = [path for path in paths if path is not None]
@@ -78,7 +77,7 @@ def read_request(
         try:
             members, picture = read_ros_map(files[0])
         except ValueError as error:
-            raise UnreadableFile(f"{files[0]}: {error}") from None
+            raise UsageError(f"{files[0]}: {error}") from None
         return FileRequest({**members}, None, "coverage", picture)
     contents = [_content(path) for path in files]
     if is_map and contents[0].is_picture:
@@ -95,9 +94,9 @@ def read_request(
 
 
 def check_inputs(*files: Path | None) -> None:
-    """Raise UnreadableFile if several files are standard input, which can be read once."""
+    """Raise UsageError if several files are standard input, which can be read once."""
     if files.count(STANDARD_INPUT) > 1:
-        raise UnreadableFile("only one of the files can be standard input")
+        raise UsageError("only one of the files can be standard input")
 
 
 def ids_in(stops: object) -> Ids | None:
@@ -159,7 +158,7 @@ def _content(path: Path) -> NamedFile:
         piped = stat.S_ISFIFO(os.fstat(file.fileno()).st_mode)
         begin = file.raw.read(1) if piped else b""  # None if no program has written yet
         if piped and begin == b"":
-            raise UnreadableFile(f"{path}: must be a file, or a pipe that a program writes into")
+            raise UsageError(f"{path}: must be a file, or a pipe that a program writes into")
         os.set_blocking(file.fileno(), True)
         return NamedFile(str(path), (begin or b"") + _bounded(file, str(path)))
 
@@ -172,7 +171,7 @@ def _without_waiting(path: str, flags: int) -> int:
 def _bounded(file: BinaryIO, name: str) -> bytes:
     data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
-        raise UnreadableFile(f"{name} must have at most {_MOST_BYTES} bytes, got more")
+        raise UsageError(f"{name} must have at most {_MOST_BYTES} bytes, got more")
     return data
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from pydantic_core import to_json
 
 _LONGEST_NAME = 100  # characters of a caller's name, where it is quoted
+_LONGEST_SHOWN = 80  # characters of what came
 Value = float | str
 SENTENCES: Mapping[str, str] = tomllib.loads(
     Path(__file__).with_name("sentences.toml").read_text(encoding="utf-8")
@@ -78,8 +79,8 @@ class Fault:
 def said(sentence: str, values: Mapping[str, object]) -> str:
     """Return a sentence with its values in place of its fields.
 
-    `{came!j}` is shown as JSON; `{other!p}` is a pointer without its first slash; `{because}` is
-    the sentence of another code with the same values.
+    `{came!j}` is shown as JSON, and `{came!q}` in quotation marks; `{other!p}` is a pointer without
+    its first slash; `{because}` is the sentence of another code with the same values.
     """
     return _Sentence().vformat(sentence, (), values)
 
@@ -93,6 +94,8 @@ class _Sentence(Formatter):
         match conversion:
             case "j":
                 return show(value)
+            case "q":
+                return quoted(value, _LONGEST_SHOWN)
             case "p":
                 return value[1:]
         return super().convert_field(value, conversion)
@@ -113,8 +116,8 @@ def _plain(name: str, value: Any) -> Value:
 
 
 def shorten(text: str) -> str:
-    """Return at most 80 characters of what came, to be shown in a sentence."""
-    return text if len(text) <= 80 else f"{text[:79]}…"
+    """Return the first characters of what came, to be shown in a sentence."""
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[: _LONGEST_SHOWN - 1]}…"
 
 
 def show(value: object) -> str:
@@ -130,6 +133,6 @@ def show(value: object) -> str:
             return shorten(to_json(value, inf_nan_mode="constants").decode())
 
 
-def quoted(name: str) -> str:
-    """Return a caller's name for a stop as it is quoted in a sentence."""
-    return repr(name[:_LONGEST_NAME])
+def quoted(text: object, most: int = _LONGEST_NAME) -> str:
+    """Return the beginning of a text, such as a name, in quotation marks."""
+    return repr(str(text)[:most])

@@ -76,10 +76,11 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     known = [each[:LONGEST_NAME] for each in (*heading, *aside)]
     for name, field in source.file.chosen.items():
         if name not in known:
-            raise source.refusal("has no column of the name that was chosen", name)
+            raise source.refusal("no-such-column", came=name)
         if field not in (*fields, IGNORED):
-            demand = f"column {quoted(name)} must be taken for {', '.join(fields)} or {IGNORED}"
-            raise source.refusal(demand, field)
+            choices = f"{', '.join(fields)} or {IGNORED}"
+            part = f"column {quoted(name)}"
+            raise source.refusal("not-a-choice", part, choices=choices, came=field)
     chosen = chosen_fields(source.file, heading)
     left_out = {
         at: ColumnLeftOut(heading[at], each, [row[at] for _, row in table.rows])
@@ -91,7 +92,7 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     left_out |= table.left_out
     kept = [at for at in range(len(heading)) if at not in left_out]
     if not kept:
-        raise source.refusal("must have a column that is not ignored")
+        raise source.refusal("all-ignored")
     return Table(
         [heading[at] for at in kept] if table.heading else None,
         [(number, [row[at] for at in kept]) for number, row in table.rows],

@@ -73,17 +73,14 @@ class Columns:
         """Return a field."""
         return self.table.rows[row][1][column]
 
-    def where(self, row: int, column: int) -> str:
-        """Return the position of a field, for sentences."""
-        return f"row {self.table.rows[row][0]}, column {quoted(self.names[column])}"
-
-    def refuse(self, row: int, column: int, demand: str, *came: object) -> WrongCell:
-        """Return the exception that says what a field must be, and quotes what came instead.
+    def refuse(self, row: int, at: int, code: str, /, **values: object) -> WrongCell:
+        """Return the exception that says what a field must be.
 
         The source keeps it as well: all wrong fields are refused together.
         """
-        sentence = f"{self.where(row, column)} {demand}"
-        return self.source.refuse_cell(self.table.rows[row][0], column, sentence, *came)
+        number = self.table.rows[row][0]
+        fault = self.source.fault(code, row=number, column=self.names[at], **values)
+        return self.source.refuse_cell(number, at, fault)
 
     def are_whole_days(self, column: int) -> bool:
         """Return whether all dates of a column are at midnight, so that they have no times."""
@@ -115,22 +112,21 @@ class Columns:
         text = self.text(row, column)
         number = number_in(text)
         if number is None:
-            raise self.refuse(row, column, "must be a number", text)
+            raise self.refuse(row, column, "no-number", came=text)
         return number
 
     def amount(self, row: int, column: int) -> float:
         """Return the number in a field, which must not be negative."""
         number = self.number(row, column)
         if number < 0:
-            raise self.refuse(row, column, f"must not be negative, got {number:g}")
+            raise self.refuse(row, column, "negative", came=number)
         return number
 
     def whole(self, row: int, column: int) -> int:
         """Return the whole number from 1 in a field."""
         number = self.number(row, column)
         if number < 1 or not number.is_integer():
-            demand = "must be a whole number from 1"
-            raise self.refuse(row, column, demand, self.text(row, column))
+            raise self.refuse(row, column, "no-count", came=self.text(row, column))
         return int(number)
 
     def read_signs(self, columns: Sequence[int] = ()) -> None:
@@ -207,10 +203,9 @@ class Columns:
         seen: dict[str, int] = {}
         for row, name in enumerate(ids):
             if not name:
-                self.refuse(row, at, "must be an id, got none")
+                self.refuse(row, at, "no-id")
             elif name in seen:
-                came = f"got {quoted(name)} as in row {seen[name]}"
-                self.refuse(row, at, f"must be an id that no other row has, {came}")
+                self.refuse(row, at, "same-id", came=name, first=seen[name])
             else:
                 seen[name] = self.table.rows[row][0]
 
@@ -345,8 +340,7 @@ def _check_places(columns: Columns, at: int) -> None:
     """Keep the fields of a column that are not places as wrong."""
     for row, (_, texts) in enumerate(columns.table.rows):
         if place_in(texts[at]) is None:
-            demand = "must be a place, as 60.1, 24.9 (latitude first) or POINT(24.9 60.1)"
-            columns.refuse(row, at, demand, texts[at])
+            columns.refuse(row, at, "not-a-point", came=texts[at])
 
 
 def place_in(text: str) -> list[float] | None:

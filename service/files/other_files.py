@@ -13,15 +13,16 @@ BINARY = {
     b"\x93NUMPY": "a NumPy file: send it as the part `matrices` of POST /front",
 }
 _LOCKED = "EncryptedPackage".encode("utf-16-le")  # as Excel writes an XLSX with a password
-# By the name of the first element, in small letters.
+STOPS = "a file of stops"
+# What it must be, and what it is, by the name of the first element in small letters.
 XML = {
-    "html": "must be a file of stops, got a web page: download the file itself, or save it as CSV",
-    "table": "must be a file of stops, got a table of a web page: save it as XLSX or CSV",
-    "workbook": "must be XLSX, got a spreadsheet in XML: save it as XLSX or CSV",
-    "document": "must be XLSX, got an OpenDocument spreadsheet (.fods): save it as XLSX or CSV",
-    "osm": "must be a file of stops, got data of OpenStreetMap: export its points as GeoJSON",
-    "featurecollection": "must be GeoJSON, got GML: export it as GeoJSON",
-    "trainingcenterdatabase": "must be GPX, got TCX: export its places as GPX",
+    "html": (STOPS, "a web page: download the file itself, or save it as CSV"),
+    "table": (STOPS, "a table of a web page: save it as XLSX or CSV"),
+    "workbook": ("XLSX", "a spreadsheet in XML: save it as XLSX or CSV"),
+    "document": ("XLSX", "an OpenDocument spreadsheet (.fods): save it as XLSX or CSV"),
+    "osm": (STOPS, "data of OpenStreetMap: export its points as GeoJSON"),
+    "featurecollection": ("GeoJSON", "GML: export it as GeoJSON"),
+    "trainingcenterdatabase": ("GPX", "TCX: export its places as GPX"),
 }
 
 

@@ -21,21 +21,21 @@ def weighted(places: Array, weights: Array) -> list[list[float]]:
 
 def check_range(source: Source, place: Sequence[float], where: str) -> None:
     """Raise UnreadableFile if a longitude or a latitude is out of range."""
-    for _, demand in out_of_range(place):
-        raise source.refusal(f"{where} {demand}")
+    for _, code, values in out_of_range(place):
+        raise source.refusal(code, where, **values)
 
 
-def out_of_range(place: Sequence[float]) -> Iterator[tuple[int, str]]:
-    """Yield each axis on which a place is not on the earth, and what is demanded of it."""
+def out_of_range(place: Sequence[float]) -> Iterator[tuple[int, str, dict[str, object]]]:
+    """Yield each axis on which a place is not on the earth, and what is wrong, with its values."""
     for axis, (name, most) in enumerate((("longitude", 180), ("latitude", 90))):
         value = place[axis]
         if not -most <= value <= most:
-            hint = ""
+            wrong = "off-the-earth"
             if name == "latitude" and abs(value) <= 180 and abs(place[0]) <= 90:
-                hint = "; latitude and longitude look swapped"
+                wrong = "degrees-swapped"
             elif max(abs(place[0]), abs(place[1])) > 180:
-                hint = "; places must be in degrees (WGS84, EPSG:4326): convert them from metres"
-            yield axis, f"must have a {name} of -{most} to {most}, got {value:g}{hint}"
+                wrong = "not-in-degrees"
+            yield axis, wrong, {"axis": name, "most": most, "came": value}
 
 
 def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:

@@ -135,8 +135,4 @@ def question(columns: Columns, free: Sequence[int]) -> UnreadableFile:
         columns.fields[found[0]], columns.fields[found[1]] = "longitude", "latitude"
     columns.source.supposed[:] = columns.listed()
     names = ", ".join(quoted(columns.names[at]) for at in free[:8])
-    return columns.source.refusal(
-        "must say where each stop is: in columns named lat and lon, or in 4, 6 or 8 columns of"
-        f" numbers named x1, y1, x2, y2, x and y of each plane; got columns of numbers, {names},"
-        " which may be anything. What is each of them? Name it, or choose it"
-    )
+    return columns.source.refusal("which-places", given=names)

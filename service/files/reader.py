@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from itertools import chain
 
+from service.errors import Fault
 from service.files.benchmarks.customers import is_customers, read_customers
 from service.files.benchmarks.cvrp import read_cvrp
 from service.files.benchmarks.keywords import check_costs, is_fleet
 from service.files.columns import share_signs
 from service.files.json_files.reader import looks_like_json, read_json
 from service.files.maps.octile import is_octile
-from service.files.other_files import named_binary
+from service.files.other_files import STOPS, named_binary
 from service.files.reading import (
     Bounds,
     FileTooLarge,
@@ -98,8 +99,7 @@ def _read_all(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -
     if len(sources) == 1:
         return _read(sources[0], wanted)
     if not OBJECTIVES <= len(sources) <= MOST_OBJECTIVES:
-        demand = f"there must be one file, or one for each of two to {MOST_OBJECTIVES} objectives"
-        raise UnreadableFile(f"{demand}, got {len(files)}")
+        raise _of_files("number-of-files", most=MOST_OBJECTIVES, came=len(files))
     return _read_several(sources, wanted, unrounded)
 
 
@@ -122,7 +122,7 @@ def _read_several(sources: Sequence[Source], wanted: Kind | None, unrounded: boo
     tables = [(source, each) for source, each in contents if isinstance(each, Table)]
     share_signs(tables)
     if wanted == "fleet" and not len(tables) == len(sources) == 2:
-        raise UnreadableFile("the files of a fleet must be a table of stops and one of vehicles")
+        raise _of_files("files-of-fleet")
     if len(tables) == len(sources) == 2 and (
         wanted == "fleet" or any(has_vehicles(each) for _, each in tables)
     ):
@@ -145,7 +145,7 @@ def _read(source: Source, wanted: Kind | None) -> Reading:
         if is_fleet(content):
             return read_cvrp(content)
         check_costs(content)
-        raise source.refusal("a file of TSPLIB is one objective: name another for the other one")
+        raise source.refusal("one-objective")
     if is_customers(content):
         return read_customers(source, content)
     return read_json(source, content, wanted)
@@ -164,7 +164,7 @@ def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
 def _table(source: Source) -> Table:
     content = _content(source)
     if not isinstance(content, Table):
-        raise source.refusal("must be a table, in CSV or XLSX")
+        raise source.refusal("not-a-table")
     return content
 
 
@@ -173,7 +173,7 @@ def _content(source: Source) -> Table | TsplibFile | str:
     if source.rows is not None:
         return table_of_rows(source, source.rows)
     if (named := named_binary(source.file.data)) is not None:
-        raise source.refusal(f"must be a file of stops, got {named}")
+        raise source.refusal("another-format", wanted=STOPS, given=named)
     if is_xml(source.file.data):
         return table_of_xml(source)
     text = text_of(source)
@@ -192,11 +192,11 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Fi
     if isinstance(file, Table):
         return part_of(source, file)
     if isinstance(file, str):
-        raise source.refusal("must be a table or TSPLIB, as one of several files")
+        raise source.refusal("not-one-of-several")
     check_costs(file)
     if unrounded:
         if file.kind != "EUC_2D":
-            raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
+            raise source.refusal("not-planes", "EDGE_WEIGHT_TYPE", given=file.kind)
         return FilePart(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
     found = costs(file)
     note_rounded(file)
@@ -214,13 +214,13 @@ def _joined(parts: Sequence[FilePart]) -> Request:
     for part in parts:
         if part.count != first.count:
             came = f"{first.count} of {first.name} and {part.count} of {part.name}"
-            raise UnreadableFile(f"all files must have the same number of stops, got {came}")
+            raise _of_files("other-number-of-stops", given=came)
     ids = next((part.ids for part in parts if part.ids), None)
     if any(part.ids and part.ids != ids for part in parts):
-        raise UnreadableFile("all files must have the same ids, in the same order")
+        raise _of_files("other-ids")
     located = [part.stops for part in parts if part.stops]
     if len(located) > 1:
-        raise UnreadableFile("only one of the files may have longitudes and latitudes")
+        raise _of_files("two-with-places")
     if not ids and all(part.costs.keys() == {"matrix"} for part in parts):
         return {"matrices": [part.costs["matrix"] for part in parts]}
     if not ids and all(part.costs.keys() == {"coordinates"} for part in parts):
@@ -235,6 +235,11 @@ def _joined(parts: Sequence[FilePart]) -> Request:
     named = [{"id": each} for each in ids or map(str, range(1, first.count + 1))]
     stops = located[0] if located else named
     return {"stops": stops, "objectives": objectives}
+
+
+def _of_files(code: str, **values: object) -> UnreadableFile:
+    """Return the exception that says what several files together must be."""
+    return UnreadableFile(Fault(code, values=values))
 
 
 def _side_by_side(planes: Sequence[list[list[float]]]) -> list[list[float]]:

@@ -5,6 +5,8 @@ from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
+from service.errors import Fault
+from service.errors import faults as faults_
 from service.errors.printable import printable
 from service.files.work import TooMuchWork, Work
 
@@ -97,18 +99,22 @@ class UnreadableFile(ValueError):
     """A file that does not follow its format, or whose format is not supported.
 
     Attributes:
+        faults: What is wrong, one thing or more.
         columns: What the columns of tables were taken for, as far as they were read.
         choices: What they may be taken for instead, by file.
-        cells: A sentence on each wrong cell of tables, row by row, if only cells are wrong.
     """
 
     columns: Sequence[Column] = ()
     choices: Mapping[str, Sequence[str]] = MappingProxyType({})
-    cells: Sequence[str] = ()
+
+    def __init__(self, *faults: Fault, least: str = "") -> None:
+        self.faults = faults
+        more = f" (and {least}{len(faults) - 1} more)" if len(faults) > 1 else ""
+        super().__init__(f"{faults[0].detail}{more}")
 
 
 class WrongCell(UnreadableFile):
-    """A cell of a table that cannot be read. Its source keeps it, so that reading can go on."""
+    """Cells of tables that cannot be read. A source keeps each, so that reading can go on."""
 
 
 class FileTooLarge(UnreadableFile):
@@ -177,8 +183,8 @@ class Source:
     supposed: list[Column] = field(default_factory=list)  # columns, while they are being read
     # The names of columns that are details, with their texts by the ids of stops.
     details: list[tuple[str, Mapping[str, str]]] = field(default_factory=list)
-    # The sentences on cells that cannot be read, by the numbers of their rows and columns.
-    wrong: dict[tuple[int, int], str] = field(default_factory=dict)
+    # The faults of cells that cannot be read, by the numbers of their rows and columns.
+    wrong: dict[tuple[int, int], Fault] = field(default_factory=dict)
     signs: Signs = field(default_factory=Signs)
 
     @property
@@ -194,29 +200,39 @@ class Source:
         """Note something in the file that is not supported for fleets."""
         self.note("left-out", f"{what} was not used: it is not supported for fleets.")
 
-    def refusal(self, demand: str, *came: object) -> UnreadableFile:
-        """Return the exception that says what the file must be, and quotes what came instead."""
-        got = "".join(f", got {quoted(each)}" for each in came)
-        return UnreadableFile(f"{self.name}: {printable(demand)}{got}")
+    def fault(self, code: str, part: str = "", /, **values: object) -> Fault:
+        """Return a fault of the file, or of a part of it with which the sentence begins.
 
-    def refuse_cell(self, row: int, column: int, demand: str, *came: object) -> WrongCell:
+        `row` and `column` among the values are the place of a row or a cell, and are its name.
+        """
+        if "row" in values and not part:
+            part = f"row {values['row']}"
+            part += f", column {quoted(values['column'])}" if "column" in values else ""
+        where = f"{self.name}: {printable(part)}" if part else f"{self.name}:"
+        demand = printable(faults_.said(faults_.SENTENCES[code], values))
+        return Fault(code, where, values={"file": self.name, **values}, said=demand)
+
+    def refusal(self, code: str, part: str = "", /, **values: object) -> UnreadableFile:
+        """Return the exception that says what the file, or a part of it, must be."""
+        return UnreadableFile(self.fault(code, part, **values))
+
+    def refuse_cell(self, row: int, column: int, fault: Fault) -> WrongCell:
         """Keep a wrong cell, and return the exception that says what it must be.
 
-        Only the first sentence about a cell is kept.
+        Only the first fault of a cell is kept.
 
         Raises:
             UnreadableFile: There are more wrong cells than are counted.
         """
-        refusal = self.refusal(demand, *came)
         if len(self.wrong) >= MOST_WRONG:
-            raise refusal
-        self.wrong.setdefault((row, column), str(refusal))
-        return WrongCell(str(refusal))
+            raise UnreadableFile(fault)
+        self.wrong.setdefault((row, column), fault)
+        return WrongCell(fault)
 
     def check_count(self, noun: str, limit: int, actual: int) -> None:
         """Raise FileTooLarge if the number is over the limit."""
         if actual > limit:
-            raise FileTooLarge(f"{self.name}: must have at most {limit} {noun}, got {actual}")
+            raise FileTooLarge(self.fault("too-many", limit=limit, noun=noun, actual=actual))
 
     def of_sheet(self, title: str, rows: list[tuple[int, list[str]]]) -> "Source":
         """Return the source of the rows of a sheet; without a title, with the same name."""
@@ -251,7 +267,7 @@ class Source:
         try:
             self.work.spend(int(lines * units))
         except TooMuchWork:
-            raise FileTooLarge(f"{self.name}: must have fewer lines, got {lines + 1}") from None
+            raise FileTooLarge(self.fault("too-many-lines", came=lines + 1)) from None
 
     def spend_on_xml(self, piece: bytes) -> None:
         """Spend work on bytes of XML that were unpacked, and on the tags in them."""
@@ -259,10 +275,7 @@ class Source:
 
     def too_much_work(self) -> FileTooLarge:
         """Return the exception for a file that has too much beside what a request is made of."""
-        return FileTooLarge(
-            f"{self.name}: must have less beside its texts and numbers (empty rows and cells,"
-            " formats, names, sheets): copy the table alone into a new file"
-        )
+        return FileTooLarge(self.fault("too-much-work"))
 
     def check_rows(self, count: int) -> None:
         """Raise FileTooLarge if there are more rows than stops may be, before they are read."""
@@ -290,14 +303,10 @@ def reading_of_several(
 
 def check_cells(sources: Sequence[Source]) -> None:
     """Raise UnreadableFile with all wrong cells that were found in tables, if there are any."""
-    cells = [text for source in sources for _, text in sorted(source.wrong.items())]
-    if not cells:
-        return
-    least = "at least " if any(len(source.wrong) >= MOST_WRONG for source in sources) else ""
-    more = f" (and {least}{len(cells) - 1} more)" if len(cells) > 1 else ""
-    error = UnreadableFile(f"{cells[0]}{more}")
-    error.cells = cells
-    raise error
+    cells = [fault for source in sources for _, fault in sorted(source.wrong.items())]
+    if cells:
+        most = max(len(source.wrong) for source in sources)
+        raise WrongCell(*cells, least="at least " if most >= MOST_WRONG else "")
 
 
 def _ids_in(request: Request) -> list[str]:
@@ -314,4 +323,4 @@ def choices_of(sources: Sequence[Source]) -> dict[str, list[str]]:
 
 def quoted(text: object) -> str:
     """Return the beginning of a text, in quotation marks and without control characters."""
-    return repr(str(text)[:_LONGEST_SHOWN])
+    return faults_.quoted(text, _LONGEST_SHOWN)

@@ -104,7 +104,7 @@ def _in_planes(columns: Columns) -> Reading:
         is_plane = len(numeric) == 2 and (planes or is_nameless(columns))
         if len(numeric) > 1 and not is_plane:
             raise question(columns, numeric)
-        raise source.refusal(_no_places(columns, free))
+        raise source.refusal("no-places", given=_without_places(columns, free))
     columns.read_signs([at for plane in planes for at in plane])
     columns.leave_free([at for plane in planes for at in plane])
     for plane, names in zip(planes, zip(PLANES[::2], PLANES[1::2], strict=True), strict=False):
@@ -123,12 +123,8 @@ def _in_planes(columns: Columns) -> Reading:
     return source.reading("front", {"stops": stops, "objectives": objectives})
 
 
-def _no_places(columns: Columns, free: list[int]) -> str:
-    """Return the sentence on a table without places: what is needed, what was found, what to do."""
-    needed = (
-        "must say where each stop is: in columns named lat and lon,"
-        " or in 4, 6 or 8 columns of numbers named x1, y1, x2, y2, x and y of each plane"
-    )
+def _without_places(columns: Columns, free: list[int]) -> str:
+    """Return what a table without places has, and what to do."""
     table, names = columns.table, columns.names[:8]
     words = not all(map(columns.are_numbers, free))
     first = (table.heading or table.rows[0][1])[0]
@@ -144,7 +140,7 @@ def _no_places(columns: Columns, free: list[int]) -> str:
         came += ". Look up the places of names and addresses first (geocoding)"
     elif len(free) == 2:
         came += ". One plane needs a second file with the other one"
-    return f"{needed}; got {came}"
+    return came
 
 
 def _located(columns: Columns) -> Reading:
@@ -187,8 +183,9 @@ def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
     if not {"x", "y"} <= set(fields):
         named = zip(columns.names, fields, strict=True)
         fleet = ", ".join(quoted(name) for name, each in named if each in FLEET)
-        demand = "must have places, in columns lon and lat or x and y"
-        raise source.refusal(f"{demand}, beside {fleet}" if fleet else demand)
+        if fleet:
+            raise source.refusal("no-places-beside", names=fleet)
+        raise source.refusal("no-places-of-fleet")
     columns.keep(("x", "y", *FLEET), "a fleet has no costs or other planes of its own")
     source.note("objectives", "Distances in the plane of x and y are time as well.")
     plane = columns.numbers([fields.index("x"), fields.index("y")])
@@ -216,8 +213,8 @@ def check_degrees(
     columns: Columns, row: int, fields: tuple[int, int], place: Sequence[float]
 ) -> None:
     """Keep the longitude and latitude of a row as wrong if they are out of range."""
-    for axis, demand in out_of_range(place):
-        columns.refuse(row, fields[axis], demand)
+    for axis, code, values in out_of_range(place):
+        columns.refuse(row, fields[axis], code, **values)
 
 
 def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
@@ -246,7 +243,7 @@ def _other_objectives(columns: Columns, stops: list[Stop]) -> list[dict[str, Any
         return [{"name": "time", "from": "road_time"}]
     if len(costs) >= MOST_OBJECTIVES:
         came = ", ".join(quoted(columns.names[at]) for at in costs)
-        raise columns.source.refusal(f"must have at most 3 columns of costs, got {came}")
+        raise columns.source.refusal("too-many-costs", most=MOST_OBJECTIVES - 1, given=came)
     return [_cost_per_metre(columns, at, stops) for at in costs]
 
 
@@ -256,7 +253,7 @@ def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> dict[str,
     source.check_count("stops with a cost", source.bounds.matrix_cities, len(stops))
     weights = np.array([each for (each,) in columns.numbers([cost])])
     for row in np.flatnonzero(weights < 0).tolist():
-        columns.refuse(row, cost, "must not be negative")
+        columns.refuse(row, cost, "below-0")
     name = quoted(columns.names[cost])
     source.note("objectives", f"{name} is what a metre costs near a stop: an objective.")
     places = np.array([stop["location"] for stop in stops])
@@ -287,13 +284,9 @@ def part_of(source: Source, table: Table) -> FilePart:
         free = list(range(count))
         columns.fields[0] = None
     if len(free) not in (2, count):
-        demand = (
-            "must have columns named lat and lon, or 2 columns of numbers, x and y,"
-            " or as many columns of costs as rows"
-        )
         rows = "1 row" if count == 1 else f"{count} rows"
         wide = "1 column" if len(free) == 1 else f"{len(free)} columns"
-        raise source.refusal(f"{demand}; got {rows} of {wide if free else 'ids alone'}")
+        raise source.refusal("no-costs", rows=rows, given=wide if free else "ids alone")
     columns.read_signs(free)
     ids = columns.ids() if "id" in columns.fields else None
     if len(free) == 2 != count:

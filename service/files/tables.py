@@ -138,13 +138,13 @@ def table_of_rows(source: Source, fields: Iterable[tuple[int, Sequence[str]]]) -
     if empty:
         source.note("empty-rows", f"{_counted(empty)} left out.")
     if not rows:
-        raise source.refusal("must have a row for each stop, got none")
+        raise source.refusal("no-stops")
     _take_titles(source, rows)
     heading = _take_heading(source, rows)
     if heading is not None:
         heading = joined_heading(source, heading, rows)
     if not rows:
-        raise source.refusal("must have a row for each stop below its heading, got none")
+        raise source.refusal("heading-alone")
     return Table(heading, _squared(source, heading, rows))
 
 
@@ -198,7 +198,7 @@ def _csv_rows(source: Source, text: str, separator: str) -> Iterator[list[str]]:
     try:
         yield from reader
     except csv.Error as error:
-        raise source.refusal(f"must be CSV: {error}, at line {reader.line_num}") from None
+        raise source.refusal("not-csv", reason=str(error), line=reader.line_num) from None
 
 
 def _take_titles(source: Source, rows: list[Row]) -> None:
@@ -262,9 +262,7 @@ def _squared(source: Source, heading: list[str] | None, rows: list[Row]) -> list
     for number, row in rows:
         short = width - len(row)
         if any(row[width:]) or (short > 0 and heading is None):
-            fields = "1 field" if width == 1 else f"{width} fields"
-            hint = "; a text with a separator in it needs quotation marks" if width == 1 else ""
-            demand = f"row {number} must have {fields}, as the first row"
-            raise source.refusal(f"{demand}, got {len(row)}{hint}")
+            code = "row-of-one" if width == 1 else "other-fields"
+            raise source.refusal(code, row=number, fields=width, came=len(row))
         squared.append((number, row[:width] + [""] * short))
     return squared

@@ -29,9 +29,9 @@ def text_of(source: Source) -> str:
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
-        raise source.refusal(f"must be text, and is not {encoding} at byte {error.start}") from None
+        raise source.refusal("not-text", encoding=encoding, byte=error.start) from None
     if "\0" in text:
-        raise source.refusal("must be text, got bytes that are zero")
+        raise source.refusal("zero-bytes")
     if not encoding.startswith("utf"):
         said = f"The text was read as {encoding}, as it is not UTF-8"
         source.note("encoding", f"{said}: if letters look wrong, save the file as UTF-8.")

@@ -68,7 +68,7 @@ class TsplibFile:
         """
         value = self.word("DIMENSION")
         if not re.fullmatch("[1-9][0-9]{0,8}", value):
-            raise self.source.refusal("DIMENSION must be a whole number", value)
+            raise self.source.refusal("not-whole", "DIMENSION", came=value)
         self.source.check_count("cities", self.source.bounds.cities, int(value))
         return int(value)
 
@@ -107,9 +107,7 @@ class TsplibFile:
             return found[:, 1:]  # of other numbers, which stand for their places in the file
         if order is None:
             first, last = self.first_node, self.first_node + self.dimension - 1
-            raise self.source.refusal(
-                f"{section} must have one row for each node {first} to {last}"
-            )
+            raise self.source.refusal("row-each-node", section, first=first, last=last)
         return found[order, 1:]
 
     def order(self, nodes: Array) -> NDArray[np.intp] | None:
@@ -122,8 +120,8 @@ class TsplibFile:
         """Return the numbers of a section in rows and columns."""
         words = self.words(section)
         if len(words) != rows * columns:
-            demand = f"{rows} rows of {columns} numbers, as DIMENSION says"
-            raise self.source.refusal(f"{section} must have {demand}, got {len(words)} numbers")
+            demand = {"rows": rows, "columns": columns}
+            raise self.source.refusal("numbers-of-rows", section, **demand, came=len(words))
         return self.parsed(section, words).reshape(rows, columns)
 
     def parsed(self, section: str, words: list[str]) -> Array:
@@ -131,9 +129,9 @@ class TsplibFile:
         try:
             numbers = np.array(words, dtype=np.float64)
         except ValueError as error:
-            raise self.source.refusal(f"{section} must hold numbers: {str(error)[:100]}") from None
+            raise self.source.refusal("no-numbers", section, reason=str(error)[:100]) from None
         if np.isnan(numbers).any():
-            raise self.source.refusal(f"{section} must hold numbers, got nan")
+            raise self.source.refusal("nan", section)
         return numbers
 
 
@@ -181,7 +179,7 @@ def _add(file: TsplibFile, found: dict[str, Any], name: str, value: Any) -> None
         UnreadableFile: The keyword stands twice, with different values.
     """
     if name in found and name not in _REPEATED and (found[name] != value or value == []):
-        raise file.source.refusal(f"{name[:60]} must stand once, got it twice")
+        raise file.source.refusal("keyword-twice", name[:60])
     found.setdefault(name, value)
 
 
@@ -204,12 +202,12 @@ def costs(file: TsplibFile) -> Array:
     if file.kind in _AXES:
         found = places(file)
         if not (np.abs(found) <= _LARGEST).all():
-            raise file.source.refusal(f"NODE_COORD_SECTION must hold numbers up to {_LARGEST:g}")
+            raise file.source.refusal("numbers-too-large", "NODE_COORD_SECTION", most=_LARGEST)
         scale = _scale(file)
         return _distances(file.kind, found * scale) / scale
     if file.kind != "EXPLICIT":
         known = ", ".join(("EXPLICIT", *_AXES))
-        raise file.source.refusal(f"EDGE_WEIGHT_TYPE must be one of {known}", file.kind)
+        raise file.source.refusal("not-known", "EDGE_WEIGHT_TYPE", known=known, came=file.kind)
     return _explicit(file)
 
 
@@ -227,8 +225,7 @@ def _scale(file: TsplibFile) -> float:
         return 1
     scale = number_in(file.word("SCALE"))
     if scale is None or scale < 1 or (scale != 1 and file.kind in ("GEO", "ATT")):
-        demand = f"SCALE must be a number from 1, and 1 for {file.kind}"
-        raise file.source.refusal(demand, file.word("SCALE"))
+        raise file.source.refusal("wrong-scale", "SCALE", kind=file.kind, came=file.word("SCALE"))
     return scale
 
 
@@ -239,7 +236,7 @@ def _explicit(file: TsplibFile) -> Array:
     layout = _LAYOUTS.get(named)
     if layout is None:
         known = ", ".join(_LAYOUTS)
-        raise file.source.refusal(f"EDGE_WEIGHT_FORMAT must be one of {known}", named)
+        raise file.source.refusal("not-known", "EDGE_WEIGHT_FORMAT", known=known, came=named)
     n, section = file.dimension, "EDGE_WEIGHT_SECTION"
     if layout == "full":
         return file.numbers(section, n, n)
@@ -248,8 +245,8 @@ def _explicit(file: TsplibFile) -> Array:
     at = np.triu_indices(n, shift) if half == "upper" else np.tril_indices(n, -shift)
     words = file.words(section)
     if len(words) != len(at[0]):
-        demand = f"{section} must have {len(at[0])} numbers, as {named} of DIMENSION {n}"
-        raise file.source.refusal(f"{demand}, got {len(words)}")
+        demand = {"numbers": len(at[0]), "format": named, "n": n}
+        raise file.source.refusal("numbers-of-format", section, **demand, came=len(words))
     matrix = np.zeros((n, n))
     matrix[at] = file.parsed(section, words)
     matrix[at[1], at[0]] = matrix[at]

@@ -12,7 +12,15 @@ from service.errors import Fault, Refusal
 from service.files.chosen import DETAIL, IGNORED, with_chosen
 from service.files.maps.reader import with_grid
 from service.files.reader import read_files
-from service.files.reading import Bounds, FileTooLarge, NamedFile, Note, Reading, UnreadableFile
+from service.files.reading import (
+    Bounds,
+    FileTooLarge,
+    NamedFile,
+    Note,
+    Reading,
+    UnreadableFile,
+    WrongCell,
+)
 from service.files.xlsx.sheets import is_spreadsheet
 from service.requests.limits import Limits, check_structure
 
@@ -50,14 +58,13 @@ class _Unreadable(Refusal):
     code = "unreadable-file"
 
     def __init__(self, error: UnreadableFile) -> None:
-        cells = [Fault("wrong-cell", said=each) for each in error.cells]
-        super().__init__(detail=str(error), errors=cells)
+        super().__init__(detail=str(error), errors=error.faults)
         columns = [asdict(column) for column in error.columns]
         self.members: dict[str, Any] = (
             {"columns": columns, "choices": error.choices} if columns else {}
         )
-        if error.cells:
-            self.members["wrong_cells"] = len(error.cells)
+        if isinstance(error, WrongCell):
+            self.members["wrong_cells"] = len(error.faults)
 
     def document(self, request_id: str) -> dict[str, Any]:
         return {**super().document(request_id), **self.members}
@@ -82,7 +89,7 @@ def read_upload(upload: Upload, limits: Limits, actors: Mapping[str, ActorInfo])
         if reading.kind == "coverage":  # a client that shows the map needs a grid
             reading = with_grid(reading, limits.cells)
     except FileTooLarge as error:
-        raise Refusal("file-too-large", detail=str(error)) from None
+        raise Refusal("file-too-large", errors=error.faults) from None
     except UnreadableFile as error:
         raise _Unreadable(error) from None
     return _json(reading, limits.body_bytes)
@@ -98,8 +105,9 @@ def _json(reading: Reading, most_bytes: int) -> bytes:
     if len(answer) > most_bytes and reading.details:
         return _json(_without_details(reading), most_bytes)
     if len(answer) > most_bytes:
-        detail = f"{reading.name}: must become a request of at most {most_bytes} bytes"
-        raise Refusal("file-too-large", detail=f"{detail}, got {len(answer)}")
+        counts = {"limit": most_bytes, "actual": len(answer)}
+        fault = Fault("too-long-request", f"{reading.name}:", values=counts)
+        raise Refusal("file-too-large", errors=[fault])
     return answer
 
 

@@ -38,8 +38,7 @@ def check_servers(
             able = [each for each in vehicles if name in (None, each["id"])]
             if able and not _any_has(able, stops[row]["skills"]):
                 whose = "one vehicle" if name is None else f"vehicle {quoted(name)}"
-                demand = f"must be skills that {whose} has, all of them"
-                visits.refuse(row, at, demand, visits.text(row, at))
+                visits.refuse(row, at, "no-such-skills", whose=whose, came=visits.text(row, at))
 
 
 def _check_pinned(
@@ -49,8 +48,7 @@ def _check_pinned(
     if (at := visits.find("vehicle")) is not None:
         for row in visits.filled(at):
             if stops[row]["vehicle"] not in by_id:
-                demand = f"must be the id of a vehicle of {file}"
-                visits.refuse(row, at, demand, stops[row]["vehicle"])
+                visits.refuse(row, at, "no-such-vehicle", table=file, came=stops[row]["vehicle"])
 
 
 def _any_has(vehicles: Iterable[Vehicle], skills: Sequence[str]) -> bool:
@@ -82,15 +80,15 @@ def _add_max_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> Non
 
 
 def _beside(columns: Columns, row: int, at: int, other: int) -> UnreadableFile:
-    demand = f"must be empty beside {quoted(columns.names[other])}"
-    return columns.refuse(row, at, demand, columns.text(row, at))
+    beside, came = columns.names[other], columns.text(row, at)
+    return columns.refuse(row, at, "empty-beside", beside=beside, came=came)
 
 
 def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
     """Add the most trips of a route; by default vehicles load again where they start."""
     if "reload" not in vehicle:
         if "start" not in vehicle:
-            raise columns.refuse(row, at, "needs a stop for loading again, in a column 'reload'")
+            raise columns.refuse(row, at, "no-column-reload")
         vehicle["reload"] = [vehicle["start"]]
     vehicle["max_trips"] = columns.whole(row, at)
 
@@ -98,5 +96,5 @@ def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> Non
 def _add_max_overtime(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
     if overtime := seconds_in(columns, row, at):
         if not in_shifts([vehicle]):
-            raise columns.refuse(row, at, "needs a shift of the vehicle", columns.text(row, at))
+            raise columns.refuse(row, at, "no-shift", came=columns.text(row, at))
         vehicle["max_overtime"] = overtime

@@ -49,8 +49,10 @@ def _columns_of(columns: Columns, field: str, visits: Columns, demands: list[int
     found = [at for at, each in enumerate(columns.fields) if each == field]
     if len(found) != len(demands):
         noun = field.replace("_", " ")
-        demand = f"must have a column of {noun} for each demand of {visits.source.name}"
-        raise columns.source.refusal(f"{demand}, {len(demands)}, got {len(found)}")
+        counts = {"demands": len(demands), "came": len(found)}
+        raise columns.source.refusal(
+            "column-each-demand", noun=noun, table=visits.source.name, **counts
+        )
     amounts = [amount_of(visits.names[at]) for at in demands]
     by_amount = {amount_of(columns.names[at]): at for at in found}
     if by_amount.keys() == set(amounts) and len(by_amount) == len(amounts):
@@ -71,5 +73,5 @@ def _add_initial_load(
     for at, loaded, most in zip(found, load, vehicle["capacity"], strict=True):
         if loaded > most:
             came = f"{loaded / units:g}"
-            columns.refuse(row, at, f"must be at most the capacity, {most / units:g}", came)
+            columns.refuse(row, at, "load-over-capacity", limit=most / units, came=came)
     vehicle["initial_load"] = [int(each) for each in load]

@@ -75,7 +75,7 @@ def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Col
     """Return the columns of vehicles. The contents of start and end decide: times, or stops."""
     of_stops = {"latitude", "x", "place", "demand"} & set(fields_of(table.heading or []))
     if table.heading is None or (of_stops and not is_about_vehicles(table.heading)):
-        raise source.refusal("must have columns of vehicles, as capacity, shift start, shift end")
+        raise source.refusal("no-columns-of-vehicles")
     columns = columns_of_vehicles(source, table)
     ids = {stop["id"] for stop in stops}
     for end, bound in (("start", "shift_from"), ("end", "shift_to")):
@@ -128,7 +128,7 @@ class _Vehicles:
         ids = [text] if text in self._ids else texts_in(self._columns, row, at)
         for each in ids:
             if each not in self._ids:
-                raise self._columns.refuse(row, at, "must be ids of stops", each)
+                raise self._columns.refuse(row, at, "no-such-stops", came=each)
         return ids
 
     def _place(self, row: int, place: str, vehicle: str) -> str | None:
@@ -137,7 +137,7 @@ class _Vehicles:
         at = columns.find(place)
         if at is not None and (text := " ".join(columns.text(row, at).split())):
             if text not in self._ids:
-                raise columns.refuse(row, at, "must be the id of a stop", text)
+                raise columns.refuse(row, at, "no-such-stop", came=text)
             return text
         longitude, latitude = columns.find(f"{place}_longitude"), columns.find(f"{place}_latitude")
         if longitude is None or latitude is None:
@@ -145,7 +145,7 @@ class _Vehicles:
         if not columns.text(row, longitude) and not columns.text(row, latitude):
             return None
         if not self._located:
-            raise columns.refuse(row, latitude, "must be empty, as stops have x and y")
+            raise columns.refuse(row, latitude, "empty-in-planes")
         fields = (longitude, latitude)
         location = [columns.tried(0.0, columns.number, row, at) for at in fields]
         check_degrees(columns, row, fields, location)

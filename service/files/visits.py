@@ -70,8 +70,8 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
     whole = [np.abs(each - np.rint(each)) < _ROUNDING for each in finer]
     right = (rows >= 0) & (rows <= _MOST) & whole[-1]
     for row, at in np.argwhere(~right).tolist():
-        demand = f"must be 0 to {_MOST:,.0f}, with at most {_MOST_DECIMALS} decimals"
-        columns.refuse(row, demands[at], f"{demand}, got {rows[row, at]:g}")
+        bounds = {"most": _MOST, "decimals": _MOST_DECIMALS}
+        columns.refuse(row, demands[at], "wrong-demand", **bounds, came=float(rows[row, at]))
     decimals = next((at for at, each in enumerate(whole) if each.all()), 0)
     if decimals:
         columns.source.note(

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from service.files.column_names import fields_of
-from service.files.other_files import XML
+from service.files.other_files import STOPS, XML
 from service.files.places import check_range
 from service.files.reading import Source, UnreadableFile, quoted
 from service.files.tables import Table, number_in, table_of
@@ -92,7 +92,7 @@ class _Points:
         except UnreadableFile:  # which is a ValueError
             raise
         except (expat.ExpatError, LookupError, ValueError) as error:  # the latter of its encoding
-            raise self.source.refusal(f"must be XML: {str(error)[:200]}") from None
+            raise self.source.refusal("not-xml", reason=str(error)[:200]) from None
 
     def _feed(self, parser: "expat.XMLParserType", data: bytes) -> None:
         for at in range(0, len(data), _PIECE):
@@ -106,15 +106,15 @@ class _Points:
 
     def _doctype(self, name: str, *_: object) -> None:
         if name.casefold() == "html":
-            raise self.source.refusal(XML["html"])
-        raise self.source.refusal("must be GPX or KML without a document type", name)
+            raise self._another_format(name)
+        raise self.source.refusal("document-type", came=name)
 
     def _start(self, name: str, attributes: Mapping[str, str]) -> None:
         name = name.rpartition(":")[2]
         if not self._path:
             self._check_root(name)
         if len(self._path) >= _DEEPEST:
-            raise self.source.refusal(f"must have elements up to {_DEEPEST} deep")
+            raise self.source.refusal("too-deep", most=_DEEPEST)
         self._path.append(name)
         self._text = []
         self._column = None
@@ -126,8 +126,13 @@ class _Points:
     def _check_root(self, name: str) -> None:
         self.root = name.casefold()
         if self.root not in ("gpx", "kml"):
-            other = f"must be a file of stops, got XML that begins with {quoted(name)}"
-            raise self.source.refusal(XML.get(self.root, other))
+            raise self._another_format(name)
+
+    def _another_format(self, name: str) -> UnreadableFile:
+        """Return the exception for XML that begins with another element."""
+        other = (STOPS, f"XML that begins with {quoted(name)}")
+        wanted, given = XML.get(name.casefold(), other)
+        return self.source.refusal("another-format", wanted=wanted, given=given)
 
     def _start_gpx(self, name: str, attributes: Mapping[str, str]) -> None:
         self.recorded += name == "trkpt"
@@ -199,9 +204,8 @@ class _Points:
         of_routes = [point for point in self.points if point.kind == "rtept"]
         stops = waypoints or of_routes
         if not stops:
-            demand = "must have waypoints (wpt), or routes (rte)"
             came = "tracks alone, which are ways that were recorded" if self.recorded else "neither"
-            raise self.source.refusal(f"{demand}; got {came}")
+            raise self.source.refusal("no-waypoints", given=came)
         if waypoints and of_routes:
             text = f"{len(of_routes)} points of routes were not used: stops are waypoints."
             self.source.note("left-out", text)
@@ -231,13 +235,11 @@ class _Points:
         others = [point for point in self.points if not point.places]
         for point in others:
             if not point.shapes:
-                name = point.texts.get("id") or point.address
-                demand = f"placemark {quoted(name)} must have a Point"
-                hint = ": look up where its address is first (geocoding)" if point.address else ""
-                raise self.source.refusal(demand + hint)
+                named = f"placemark {quoted(point.texts.get('id') or point.address)}"
+                raise self.source.refusal("address-alone" if point.address else "no-point", named)
         if not stops:
             came = "links to another file: download all of the map" if self.links else "none"
-            raise self.source.refusal(f"must have placemarks with a Point, got {came}")
+            raise self.source.refusal("no-placemarks", given=came)
         if others:
             text = f"{len(others)} placemarks of lines and areas were not used."
             self.source.note("left-out", text)
@@ -255,7 +257,8 @@ def _rows(source: Source, points: list[_Point]) -> Iterator[list[str]]:
             where = f"point {at}, {quoted(name)},"
             degrees = [number_in(each) for each in place]
             if None in degrees:
-                raise source.refusal(f"{where} must have a longitude and a latitude", *place)
+                axes = dict(zip(("longitude", "latitude"), place, strict=True))
+                raise source.refusal("no-degrees", where, **axes)
             check_range(source, [each or 0.0 for each in degrees], where)
             yield [name, *place, *(point.texts.get(each, "") for each in columns)]
 

@@ -233,8 +233,14 @@ def test_all_wrong_cells_are_told_at_once_and_those_that_are_not_listed_are_coun
     assert {"latitude", "ignored"} <= {*told["choices"]["orders.csv"]}
     alone = sent(address, ("vans.csv", vans), ("orders.csv", b"id,lat,lon,qty\na,1,2,3\nb,1,2,4\n"))
     told = alone.json()
-    assert told["errors"] == [{"detail": told["detail"], "code": "wrong-cell"}]
-    assert "errors" not in sent(address, ("a.csv", b"")).json()
+    cell = {"file": "vans.csv", "row": 3, "column": "capacity", "came": '"big"'}
+    demand = "must be a number, got 'big'"
+    assert told["errors"] == [
+        {"detail": told["detail"], "code": "no-number", "demand": demand, "values": cell}
+    ]
+    empty = sent(address, ("a.csv", b"")).json()
+    assert [each["code"] for each in empty["errors"]] == ["no-stops"]
+    assert "wrong_cells" not in empty
 
 
 def test_other_bodies_are_refused(address: str) -> None:

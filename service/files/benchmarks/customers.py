@@ -33,13 +33,13 @@ def read_customers(source: Source, text: str) -> Reading:
         if line.strip() and _numeric(line.split())
     ]
     if len(rows) < 2 or len(rows[0][1]) not in (2, 3):
-        raise source.refusal("must have a row of vehicles and capacity, and one for each customer")
+        raise source.refusal("no-customers")
     (_, (count, capacity, *_)), *customers = rows
     width = len(customers[0][1])
     for number, row in customers:
         if len(row) != width or width not in (_WITH_TIMES, _WITH_PAIRS):
-            demand = f"row {number} must have {_WITH_TIMES} numbers, or {_WITH_PAIRS} with pairs"
-            raise source.refusal(f"{demand}, got {len(row)}")
+            widths = {"numbers": _WITH_TIMES, "with_pairs": _WITH_PAIRS}
+            raise source.refusal("numbers-of-customer", row=number, **widths, came=len(row))
     source.check_count("stops", source.bounds.cities, len(customers))
     depot, *others = [row for _, row in customers]
     names = [f"{row[0]:g}" for _, row in customers]
@@ -68,7 +68,7 @@ def _customer(source: Source, row: list[float]) -> dict[str, Any]:
 
 def _whole(source: Source, number: float, what: str) -> int:
     if not number.is_integer():
-        raise source.refusal(f"{what} must be a whole number, got {number:g}")
+        raise source.refusal("no-whole-number", what, came=number)
     return int(number)
 
 

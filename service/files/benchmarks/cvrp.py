@@ -73,7 +73,7 @@ def _add_visits(
 def _add_demands(file: TsplibFile, stops: list[Stop], clients: list[int]) -> None:
     found = [name for name in ("DEMAND_SECTION", "LINEHAUL_SECTION") if name in file.sections]
     if len(found) > 1:
-        raise file.source.refusal(f"{found[0]} must not stand beside {found[1]}")
+        raise file.source.refusal("stands-beside", found[0], keyword=found[1])
     if not found and "CVRP" not in file.word("TYPE").upper():
         return
     name = found[0] if found else "DEMAND_SECTION"
@@ -85,8 +85,7 @@ def _add_demands(file: TsplibFile, stops: list[Stop], clients: list[int]) -> Non
 
 def _load(file: TsplibFile, number: float, section: str, stop: Stop) -> int:
     if not number.is_integer() or number < 0:
-        demand = f"{section}, stop {stop['id']} must be a whole number from 0"
-        raise file.source.refusal(f"{demand}, got {number:g}")
+        raise file.source.refusal("whole-from-0", f"{section}, stop {stop['id']}", came=number)
     return int(number)
 
 
@@ -97,8 +96,7 @@ def _check_backhauls(file: TsplibFile) -> None:
     if len(numbers) == 2 * file.dimension:  # of each node, as PyVRP writes it
         numbers = file.of_nodes(name, 1)
     if numbers.any():
-        demand = f"{name} is not supported: no pick-up can be taken to the depot"
-        raise file.source.refusal(demand)
+        raise file.source.refusal("no-backhauls", name)
 
 
 def _add_pairs(
@@ -106,13 +104,13 @@ def _add_pairs(
 ) -> tuple[Array | None, list[dict[str, str]]]:
     """Add demands and services of pick-ups and deliveries; return all windows, and shipments."""
     if both := [each for each in _BESIDE_PAIRS if {each} & {*file.header, *file.sections}]:
-        raise file.source.refusal(f"{both[0]} must not stand beside {_PAIRS}")
+        raise file.source.refusal("stands-beside", both[0], keyword=_PAIRS)
     rows = file.of_nodes(_PAIRS, 6)
     windows = rows[:, 1:3] if rows[:, 1:3].any() else None
     if "TIME_WINDOW_SECTION" in file.sections:
         again = file.of_nodes("TIME_WINDOW_SECTION", 2)
         if windows is not None and not np.array_equal(windows, again):
-            raise file.source.refusal(f"TIME_WINDOW_SECTION must be as {_PAIRS}, or left out")
+            raise file.source.refusal("windows-differ", "TIME_WINDOW_SECTION", section=_PAIRS)
         windows = again
     shipments = []
     for at in clients:
@@ -135,8 +133,8 @@ def _check_pair(file: TsplibFile, rows: Array, pickup: int, delivery: int) -> No
     first = file.first_node
     inside = 0 <= pickup < len(rows) and 0 <= delivery < len(rows)
     if not inside or rows[pickup, 5] != delivery + first or rows[delivery, 4] != pickup + first:
-        demand = f"{_PAIRS} must name the pick-up of each delivery, and its delivery"
-        raise file.source.refusal(demand, f"{pickup + first} and {delivery + first}")
+        came = f"{pickup + first} and {delivery + first}"
+        raise file.source.refusal("pairs-differ", _PAIRS, came=came)
 
 
 def _each_or_one(file: TsplibFile, name: str) -> Callable[[int], float]:
@@ -144,12 +142,12 @@ def _each_or_one(file: TsplibFile, name: str) -> Callable[[int], float]:
     section = f"{name}_SECTION"
     if section in file.sections:
         if name in file.header:
-            raise file.source.refusal(f"{name} must not stand beside {section}")
+            raise file.source.refusal("stands-beside", name, keyword=section)
         numbers = file.of_nodes(section, 1)[:, 0].tolist()
         return lambda at: numbers[at]
     one = number_in(file.word(name)) if name in file.header else 0
     if one is None:
-        raise file.source.refusal(f"{name} must be a number", file.word(name))
+        raise file.source.refusal("no-number", name, came=file.word(name))
     return lambda _: one
 
 

@@ -123,7 +123,7 @@ def rename(file: TsplibFile) -> None:
     for found, end in parts:
         for short in (f"{each}{end}" for each in OF_VEHICLES if each != "DEPOT"):
             if short in found and f"VEHICLES_{short}" in found:
-                raise file.source.refusal(f"{short} must not stand beside VEHICLES_{short}")
+                raise file.source.refusal("stands-beside", short, keyword=f"VEHICLES_{short}")
             if short in found:
                 found[f"VEHICLES_{short}"] = found.pop(short)
 
@@ -138,7 +138,7 @@ def check_costs(file: TsplibFile) -> None:
     if is_fleet(file):
         of_fleets = (name for name in (*file.header, *file.sections) if name in _TELLING)
         name = next(of_fleets, "TYPE")
-        raise file.source.refusal(f"{name} is of a fleet: bring this file alone")
+        raise file.source.refusal("of-a-fleet", name)
     if file.sections.get("DEPOT_SECTION"):
         file.source.note("left-out", "DEPOT_SECTION was not used: tours are round trips.")
     _check(file, _OF_COSTS | {"DEPOT_SECTION", *_COUNTS})
@@ -162,15 +162,14 @@ def count_of(file: TsplibFile) -> str | None:
     """
     found = [name for name in _COUNTS if name in file.header]
     if len(found) > 1:
-        raise file.source.refusal(f"{found[0]} must not stand beside {found[1]}")
+        raise file.source.refusal("stands-beside", found[0], keyword=found[1])
     return found[0] if found else None
 
 
 def _check_type(file: TsplibFile) -> None:
     kind = file.word("TYPE").upper()
     if kind in _NOT_PLANNED:
-        demand = f"TYPE must be TSP, ATSP or CVRP, got {kind}: {_NOT_PLANNED[kind]}"
-        raise file.source.refusal(f"{demand}. This is not supported")
+        raise file.source.refusal("other-problem", "TYPE", given=kind, reason=_NOT_PLANNED[kind])
     if kind in _PLANNED_OTHERWISE:
         file.source.note("objectives", f"TYPE is {kind}: {_PLANNED_OTHERWISE[kind]}.")
     if kind == _SPLIT and "VEHICLES_ALLOWED_CLIENTS_SECTION" not in file.sections:
@@ -184,8 +183,7 @@ def _check(file: TsplibFile, known: set[str]) -> None:
         if name in _NOTED and file.listed(name):
             file.source.note("left-out", f"{name} was not used: {_NOTED[name]}.")
         elif name not in known and name not in _NOTED:
-            demand = f"{_shown(name)} is not supported: remove it to plan without it"
-            raise file.source.refusal(demand)
+            raise file.source.refusal("unsupported", _shown(name))
     unknown = [
         name
         for name in file.header
@@ -194,8 +192,7 @@ def _check(file: TsplibFile, known: set[str]) -> None:
     for name in unknown:
         word = file.word(name)
         if number_in(word) is not None or _SWITCH.fullmatch(word):
-            demand = f"{_shown(name)} is not supported: remove it to plan without it"
-            raise file.source.refusal(demand, word)
+            raise file.source.refusal("unsupported-value", _shown(name), came=word)
     if unknown:
         shown = ", ".join(map(_shown, unknown[:_MOST_NAMED]))
         more = f" and {len(unknown) - _MOST_NAMED} more" if len(unknown) > _MOST_NAMED else ""

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from service.files.benchmarks.keywords import count_of
 from service.files.fleets import Vehicle
-from service.files.reading import quoted
 from service.files.tables import number_in
 from service.files.tsplib import TsplibFile
 
@@ -58,8 +57,7 @@ class Vehicles:
     def check_distances(self, file: TsplibFile, *, timed: bool) -> None:
         """Raise UnreadableFile if distances are limited where a limit is on times."""
         if timed and self.limits_distances:
-            demand = f"{_DISTANCE} is not supported beside times: VEHICLES_MAX_DURATION is"
-            raise file.source.refusal(demand)
+            raise file.source.refusal("distance-beside-times", _DISTANCE)
 
 
 def vehicles_of(
@@ -122,7 +120,7 @@ def _count(file: TsplibFile) -> int | None:
         return lengths[0] if lengths else one
     value = number_in(file.word(name))
     if value is None or not value.is_integer() or value < 1:
-        raise file.source.refusal(f"{name} must be a whole number from 1", file.word(name))
+        raise file.source.refusal("no-count", name, came=file.word(name))
     return int(value)
 
 
@@ -167,7 +165,7 @@ class _Rows:
         """Return the number of a vehicle; None if nothing is said."""
         found = self.numbers(name, at)
         if found and len(found) > 1:
-            raise self._refusal(name, "one number for each vehicle", len(found))
+            raise self.file.source.refusal("number-each-vehicle", name, came=len(found))
         return found[0] if found else None
 
     def numbers(self, name: str, at: int) -> list[float]:
@@ -175,10 +173,10 @@ class _Rows:
         section = f"{name}_SECTION"
         if name in self.file.header:
             if section in self.file.sections:
-                raise self.file.source.refusal(f"{name} must not stand beside {section}")
+                raise self.file.source.refusal("stands-beside", name, keyword=section)
             value = number_in(self.file.word(name))
             if value is None:
-                raise self.file.source.refusal(f"{name} must be a number", self.file.word(name))
+                raise self.file.source.refusal("no-number", name, came=self.file.word(name))
             return [value]
         return self._by_vehicle(section)[at] if section in self.file.sections else []
 
@@ -206,14 +204,10 @@ class _Rows:
             rows.pop()
         numbers = sorted(row[0] if row else 0.0 for row in rows)
         if not rows or len(rows) != self.count or numbers != list(range(1, len(rows) + 1)):
-            raise self._refusal(
-                section, f"one row for each vehicle 1 to {self.count or 'the last'}", len(rows)
-            )
+            last = self.count or "the last"
+            raise file.source.refusal("row-each-vehicle", section, last=last, came=len(rows))
         self.parsed[section] = [row[1:] for row in sorted(rows)]
         return self.parsed[section]
-
-    def _refusal(self, name: str, demand: str, came: int) -> Exception:
-        return self.file.source.refusal(f"{name} must have {demand}, got {came}")
 
 
 def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at: int) -> Vehicle:
@@ -225,7 +219,7 @@ def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at
     if capacity := rows.numbers("CAPACITY", at):
         made["capacity"] = [_load(file, each) for each in capacity]
     elif "DEMAND_SECTION" in file.sections:
-        raise file.source.refusal("CAPACITY must be a number, or a section", "nothing")
+        raise file.source.refusal("no-capacity", "CAPACITY")
     if windows is not None:
         made["shift"] = windows[start].tolist()
     if (longest := _longest(rows, at)) is not None:
@@ -239,7 +233,7 @@ def _longest(rows: _Rows, at: int) -> float | None:
     """Return the limit on the routes of a vehicle, the least if there are several."""
     limits = [limit for name in _LIMITS if (limit := rows.number(name, at)) is not None]
     if limits and min(limits) <= 0:
-        raise rows.file.source.refusal(f"limits on routes must be over 0, got {min(limits):g}")
+        raise rows.file.source.refusal("not-over-0", "limits on routes", came=min(limits))
     return _plain(min(limits)) if limits else None
 
 
@@ -250,10 +244,10 @@ def _reload(rows: _Rows, depots: Depots, at: int) -> Vehicle:
     reloads = rows.number(most, at)
     if not found:
         if reloads and section not in file.sections:
-            raise file.source.refusal(f"{most} needs {section}")
+            raise file.source.refusal("needs-section", most, section=section)
         return {}
     if wrong := [depots.name(each) for each in found if each not in depots.stops]:
-        raise file.source.refusal(f"{section} must name depots of DEPOT_SECTION", wrong[0])
+        raise file.source.refusal("no-such-depots", section, came=wrong[0])
     reload = {"reload": [depots.name(each) for each in found]}
     return reload if reloads is None else reload | {"max_trips": _load(file, reloads) + 1}
 
@@ -269,15 +263,14 @@ def _start(rows: _Rows, depots: Depots, at: int) -> int:
     if found is not None:
         start = _index(rows.file, "VEHICLES_DEPOT_SECTION", found)
         if start not in depots.stops:
-            raise source.refusal("VEHICLES_DEPOT_SECTION must name a depot", f"{found:g}")
+            raise source.refusal("no-such-depot", "VEHICLES_DEPOT_SECTION", came=f"{found:g}")
         return start
     first, *others = depots.stops
     if others and at == 0:
         reloads = {each for row in rows.lists("VEHICLES_RELOAD_DEPOT") for each in row}
         if not {*others} <= reloads:
-            section = "VEHICLES_DEPOT_SECTION one for each vehicle"
             came = " ".join(map(depots.name, depots.stops))
-            raise source.refusal(f"DEPOT_SECTION must have one depot, or {section}", came)
+            raise source.refusal("several-depots", "DEPOT_SECTION", came=came)
         source.note("vehicle", f"All vehicles start at the first depot, {depots.name(first)}.")
     return first
 
@@ -295,8 +288,7 @@ def _unit_cost(rows: _Rows) -> float:
     [unit, *others] = [each or 0.0 for each in units]
     if others or unit <= 0:
         came = ", ".join(sorted(f"{each or 0:g}" for each in units))
-        demand = f"{name} must be one number over 0 for all vehicles: others are not supported"
-        raise rows.file.source.refusal(demand, came)
+        raise rows.file.source.refusal("units-differ", name, came=came)
     if unit != 1:
         text = f"Fixed costs and prizes were divided by {unit:g}, the cost of a unit of distance."
         rows.file.source.note("fixed", text)
@@ -320,8 +312,7 @@ def _allowed(
     for stop in clients:
         able = tuple(at for at, allowed in enumerate(clients_of) if stop in allowed)
         if not able:
-            demand = f"{section} must allow each client to a vehicle, and allows to none"
-            raise file.source.refusal(demand, depots.name(stop))
+            raise file.source.refusal("client-of-none", section, came=depots.name(stop))
         if len(able) == len(types):
             continue
         if len(able) == 1:
@@ -332,8 +323,7 @@ def _allowed(
         for at in able:
             types[at].setdefault("skills", []).append(skill)
     if any(len(each.get("skills", ())) > _MOST_SKILLS for each in types):
-        demand = f"{section} must have at most {_MOST_SKILLS} different sets of vehicles"
-        raise file.source.refusal(demand)
+        raise file.source.refusal("too-many-sets", section, most=_MOST_SKILLS)
     return told
 
 
@@ -341,16 +331,14 @@ def _index(file: TsplibFile, section: str, number: float | None, word: str = "")
     """Return the position of the stop that a number of a section names."""
     at = -1 if number is None or number % 1 else int(number) - file.first_node
     if not 0 <= at < file.nodes:
-        nodes = f"{file.first_node} to {file.first_node + file.nodes - 1}"
-        demand = f"{section} must have numbers of nodes, {nodes}"
-        raise file.source.refusal(demand, word or f"{number:g}")
+        nodes = {"first": file.first_node, "last": file.first_node + file.nodes - 1}
+        raise file.source.refusal("no-such-node", section, **nodes, came=word or f"{number:g}")
     return at
 
 
 def _load(file: TsplibFile, number: float) -> int:
     if not number.is_integer() or number < 0:
-        demand = "capacities and trips must be whole numbers from 0"
-        raise file.source.refusal(demand, quoted(f"{number:g}")[1:-1])
+        raise file.source.refusal("not-loads", "capacities and trips", came=f"{number:g}")
     return int(number)
 
 

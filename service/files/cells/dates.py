@@ -74,6 +74,10 @@ class TimeColumn(NamedTuple):
     name: str
     texts: Sequence[str]
 
+    def refusal(self, code: str, /, **values: object) -> UnreadableFile:
+        """Return the exception that says what the column must have."""
+        return self.source.refusal(code, f"column {quoted(self.name)}", **values)
+
 
 def parts_of(text: str) -> Parts:
     """Return the date, the time and the zone in a text; only the time if it has no date."""
@@ -122,8 +126,7 @@ def calendar_of(columns: Sequence[TimeColumn]) -> Calendar:
             try:
                 dates.add(_date_in(part.date, day_first))
             except ValueError:
-                demand = f"column {quoted(each.name)} must have dates of the calendar"
-                raise each.source.refusal(demand, part.date) from None
+                raise each.refusal("no-such-date", came=part.date) from None
     whole = {
         (each.source.name, each.name)
         for each, parts in dated
@@ -165,8 +168,7 @@ def _day_first(dated: Iterable[tuple[TimeColumn, list[Parts]]]) -> bool:
         return False
     each, text, numbers = next(item for item in slashed if item[2][0] != item[2][1])
     both = [f"{numbers[2]:02}-{a:02}-{b:02}" for a, b in (numbers[1::-1], numbers[:2])]
-    demand = f"column {quoted(each.name)} has dates such as {quoted(text)}, which may be"
-    raise each.source.refusal(f"{demand} {both[0]} or {both[1]}: write them as year-month-day")
+    raise each.refusal("day-or-month", came=text, one=both[0], another=both[1])
 
 
 def _zone_of(found: Iterable[tuple[TimeColumn, list[Parts]]]) -> int | None:
@@ -197,9 +199,8 @@ def _zone_of(found: Iterable[tuple[TimeColumn, list[Parts]]]) -> int | None:
 def _mixed(
     zoned: tuple[TimeColumn, str, Parts], plain: tuple[TimeColumn, str, Parts]
 ) -> UnreadableFile:
-    demand = f"column {quoted(zoned[0].name)} has a time with a time zone, {quoted(zoned[1])}"
-    beside = f"beside one without, {quoted(plain[1])} in column {quoted(plain[0].name)}"
-    return zoned[0].source.refusal(f"{demand}, {beside}: write all of them in one zone")
+    beside = {"beside": plain[1], "column_beside": plain[0].name}
+    return zoned[0].refusal("zones-differ", came=zoned[1], **beside)
 
 
 def _note(

@@ -29,11 +29,8 @@ def read_units(columns: Columns) -> None:
         plain = [text for text in texts if (number_in(text) or 0) > 0]
         clocks = [text for text in texts if number_in(text) is None and _NOT_ZERO.search(text)]
         if plain and clocks:
-            raise columns.source.refusal(
-                f"column {quoted(name)} has {quoted(plain[0])} beside {quoted(clocks[0])}: is it"
-                f" {plain[0]} min or {plain[0]} sec? Write its unit, or name it"
-                f" {quoted(f'{name} (min)')}"
-            )
+            came = {"came": plain[0], "beside": clocks[0], "instead": f"{name} (min)"}
+            raise columns.source.refusal("no-unit", f"column {quoted(name)}", **came)
         if plain:
             _take_unit(columns, at, max(number_in(text) or 0.0 for text in plain))
 

@@ -180,10 +180,7 @@ def _decided(source: Source, cells: Sequence[str], agree: bool) -> str | None:
 def _question(source: Source, name: str, text: str, readings: dict[str, str]) -> UnreadableFile:
     """Return the refusal of a column that allows both readings."""
     both = " or ".join(f"{float(readings[sign]):.15g}" for sign in sorted(readings))
-    return source.refusal(
-        f"column {name} has numbers such as {quoted(text)}, which may be {both}: write them"
-        " without thousands signs, and with decimal points"
-    )
+    return source.refusal("which-sign", f"column {name}", came=text, readings=both)
 
 
 def _is_grouped(text: str, plain: str) -> bool:

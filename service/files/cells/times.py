@@ -12,7 +12,7 @@ from service.files.column_names import (
     unit_of_times,
 )
 from service.files.columns import Columns
-from service.files.reading import WrongCell, quoted
+from service.files.reading import quoted
 from service.files.tables import number_in
 
 _TIME = re.compile(  # 10:30, 26:00, 10:30:05.5, 1 day, 2:00:00
@@ -198,22 +198,23 @@ def spans_in(columns: Columns, row: int, fields: Iterable[str]) -> list[list[flo
     found = [each for spans in read for each in spans or ()]
     backward = [(span, at) for span, at in found if span[1] < span[0]]
     for _, at in backward:
-        demand = f"must have a {_noun(columns, at)} that ends after it begins"
-        hint = " (after midnight, 2:00 is 26:00)" if at in columns.hours else ""
-        columns.refuse(row, at, demand + hint, columns.text(row, at))
+        code = "ends-before-midnight" if at in columns.hours else "ends-before"
+        columns.refuse(row, at, code, noun=_noun(columns, at), came=columns.text(row, at))
     if backward or None in read:
         return _IF_WRONG
     found.sort(key=lambda each: each[0])
     for (before, _), (span, at) in pairwise(found):
         if span[0] <= before[1]:
-            came = f"got {span[0]:g} s after {before[1]:g} s"
-            demand = f"must begin after the {_noun(columns, at)} before has ended, {came}"
-            columns.refuse(row, at, demand)
+            ends = {"begin": span[0], "end": before[1]}
+            columns.refuse(row, at, "begins-before", noun=_noun(columns, at), **ends)
     return [span for span, _ in found]
 
 
-def _spans_in(columns: Columns, row: int, field: str) -> list[tuple[list[float], int]]:
-    """Return the windows or shifts of one field, each with a column that it is in."""
+def _spans_in(columns: Columns, row: int, field: str) -> list[tuple[list[float], int]] | None:
+    """Return the windows or shifts of one field, each with a column that it is in.
+
+    None if a time of it is wrong, which is kept.
+    """
     both = columns.find(field)
     if both is not None:
         bounds = _bounds_in(columns, row, both)
@@ -226,14 +227,14 @@ def _spans_in(columns: Columns, row: int, field: str) -> list[tuple[list[float],
     if earliest in filled and latest not in filled and columns.on_earth and field in WINDOWS:
         start = times[0]
         if start is None:
-            raise WrongCell
+            return None
         return [([start, _DAY * (start // _DAY + 1)], _noted_open(columns, row, earliest))]
     if latest is None or latest not in filled:
         at = filled[0] if latest is None else latest
-        raise columns.refuse(row, at, f"must say when the {_noun(columns, at)} ends, got none")
+        raise columns.refuse(row, at, "no-end", noun=_noun(columns, at))
     start, end = [0.0, *times][-_ENDS:]
     if start is None or end is None:
-        raise WrongCell
+        return None
     return [([start, end], latest)]
 
 
@@ -262,8 +263,7 @@ def _bounds_in(columns: Columns, row: int, at: int) -> list[list[str]]:
     for found in (several, [one]):
         if all(len(bounds) == _ENDS for bounds in found):
             return [[_with_unit(begin, end), end] for begin, end in found]
-    demand = "must be two times, as 8:00-12:30, or several as 8:00-10:00; 14:00-16:00"
-    raise columns.refuse(row, at, demand, columns.text(row, at))
+    raise columns.refuse(row, at, "no-window", came=columns.text(row, at))
 
 
 def _with_date(begin: str, end: str) -> str:
@@ -328,12 +328,9 @@ def seconds_in(
     unit = own or seconds_of(columns.names[at]) or columns.units.get(at)
     is_doubtful = at in columns.hours and not unit and 0 < (number or 0) < _LEAST_SECONDS
     if number is None or number < 0 or is_doubtful:
-        raise columns.refuse(row, at, "must be seconds, or a time as 10:30 or 5 min", text)
+        raise columns.refuse(row, at, "no-time-in-cell", came=text)
     if columns.on_earth and field not in DURATIONS and number * (unit or 1) > _LONGEST:
-        demand = (
-            "must be seconds from midnight, or a time as 10:30, and not milliseconds or Unix time"
-        )
-        raise columns.refuse(row, at, demand, text)
+        raise columns.refuse(row, at, "unix-time", came=text)
     return number * (unit or 1)
 
 

@@ -46,13 +46,13 @@ def read_geojson(source: Source, value: dict[str, Any]) -> Reading:
     _check_crs(source, value)
     features = [value] if value["type"] == "Feature" else value.get("features")
     if not isinstance(features, list):
-        raise source.refusal("a FeatureCollection must have a list of features")
+        raise source.refusal("no-features", "a FeatureCollection")
     source.check_count("features", source.bounds.cities, len(features))
     records = [each for at, feature in enumerate(features) for each in _points(source, feature, at)]
     if any(_id(each, _properties(each)) is None for each in features):
         source.note("ids", "Features without an id, or a property id or name, are numbered from 1.")
     if not records:
-        raise source.refusal("a FeatureCollection must have a point for each stop, got none")
+        raise source.refusal("no-points", "a FeatureCollection")
     structure = value.keys() if value["type"] == "Feature" else _STRUCTURE
     rest = {name: member for name, member in value.items() if name not in structure}
     check_lists(source, rest)
@@ -107,10 +107,7 @@ def _clock(columns: Columns, objectives: Sequence[Mapping[str, Any]]) -> str:
         or _TIMED.search(str(each.get("name", ""))[:_LONGEST_CRS])
     ]
     if len(timed) != 1:
-        raise columns.source.refusal(
-            "must have the member clock, the name of the objective that is time, as the stops have"
-            " times"
-        )
+        raise columns.source.refusal("no-member-clock")
     return timed[0]
 
 
@@ -189,12 +186,8 @@ def _check_crs(source: Source, value: dict[str, Any]) -> None:
             return
         case {"properties": {"name": str(name)}} if _DEGREES.search(name[:_LONGEST_CRS]):
             return
-        case {"properties": {"name": name}}:
-            came = quoted(name)
-        case other:
-            came = quoted(other)
-    demand = "crs must be WGS 84 (EPSG:4326 or CRS84)"
-    raise source.refusal(f"{demand}, got {came}: export it in EPSG:4326, as RFC 7946 demands")
+        case {"properties": {"name": came}} | came:
+            raise source.refusal("other-crs", "crs", came=came)
 
 
 def _points(source: Source, feature: Any, at: int) -> Iterator[_Record]:
@@ -205,13 +198,13 @@ def _points(source: Source, feature: Any, at: int) -> Iterator[_Record]:
         case {"geometry": {"type": "MultiPoint", "coordinates": [*several]}} if several:
             places = [tuple(each[:2]) if isinstance(each, list) else () for each in several]
         case {"geometry": {"type": kind}}:
-            raise source.refusal(f"features/{at} must be a Point", kind)
+            raise source.refusal("no-feature-point", f"features/{at}", came=kind)
         case _:
-            raise source.refusal(f"features/{at} must be a Point with a longitude and a latitude")
+            raise source.refusal("no-degrees-of-point", f"features/{at}")
     named = _properties(feature)
     for number, place in enumerate(places, 1):
         if not is_place(list(place)):
-            raise source.refusal(f"features/{at} must have a place of numbers", place)
+            raise source.refusal("no-place-of-numbers", f"features/{at}", came=place)
         name = _id(feature, named) or str(at + 1)
         own_id = name if len(places) == 1 else f"{name}-{number}"
         properties = dict(members_of(named))

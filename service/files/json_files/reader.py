@@ -41,21 +41,22 @@ def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
     if isinstance(value, list):
         return _read_list(source, value)
     if not isinstance(value, dict):
-        raise source.refusal("must be a request, an object, or its coordinates, a list")
+        raise source.refusal("no-object-or-list")
     if value.get("type") in ("FeatureCollection", "Feature"):
         return read_geojson(source, value)
     refuse_others(source, value)
     if is_vroom(value):
         return read_vroom(source, value)
     if value.get("type") == "Topology":
-        raise source.refusal("must be GeoJSON, got TopoJSON: export it as GeoJSON")
+        topology = "TopoJSON: export it as GeoJSON"
+        raise source.refusal("another-format", wanted="GeoJSON", given=topology)
     if {"info", "data"} <= value.keys():
         return source.reading("coverage", {"occupancy_grid": value})
     check_lists(source, value)
     kind = _kind_of(value) or wanted
     if kind is None:
         names = ", ".join(map(quoted, list(value)[:5])) or "none"
-        raise source.refusal(f"must be a request, GeoJSON or VROOM's, got members {names}")
+        raise source.refusal("unknown-json", given=names)
     return source.reading(kind, value)
 
 
@@ -67,7 +68,7 @@ def read_object(source: Source) -> dict[str, Any]:
     """
     value = _parsed(source, text_of(source))
     if not isinstance(value, dict):
-        raise source.refusal("must be a request, an object")
+        raise source.refusal("no-object")
     return value
 
 
@@ -78,11 +79,11 @@ def _parsed(source: Source, text: str) -> Any:
     except (ValueError, RecursionError) as error:
         _check_characters(source, text)
         came = _NOT_A_NUMBER.search(text)
-        hint = f". {came[1]} is not JSON: write null where there is no way" if came else ""
-        raise source.refusal(f"must be JSON: {str(error)[:200]}{hint}") from None
+        code, given = ("nan-in-json", {"given": came[1]}) if came else ("not-json", {})
+        raise source.refusal(code, reason=str(error)[:200], **given) from None
     for found in _LARGE.finditer(text):
         if not isfinite(float(found[0])):
-            raise source.refusal("must have numbers that are finite", found[0])
+            raise source.refusal("infinite-number", came=found[0])
     return value
 
 
@@ -90,7 +91,7 @@ def _check_characters(source: Source, text: str) -> None:
     """Raise UnreadableFile if a text that is not JSON has half of a character of UTF-16."""
     halves = _HALF.search(text)
     if halves:
-        raise source.refusal(f"must be text, got {halves[0].lower()}, which is half a character")
+        raise source.refusal("half-a-character", given=halves[0].lower())
 
 
 def _kind_of(request: dict[str, Any]) -> Kind | None:
@@ -109,5 +110,5 @@ def _read_list(source: Source, value: list[Any]) -> Reading:
     source.check_count("cities", source.bounds.cities, len(value))
     for each in value:
         if not isinstance(each, list):
-            raise source.refusal(f"must be a list of rows, or of objects, got {quoted(each)[1:-1]}")
+            raise source.refusal("no-rows-or-objects", given=quoted(each)[1:-1])
     return source.reading("front", {"coordinates": value})

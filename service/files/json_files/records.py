@@ -62,14 +62,14 @@ def check_lists(source: Source, request: dict[str, Any]) -> None:
         for name in names & request.keys():
             items = request[name]
             if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
-                raise source.refusal(f"{name} must be a list of {what}", items)
+                raise source.refusal("not-a-list-of", name, items=what, came=items)
     layers = dict(_layers(source, request))
     for name, rows in layers.items():
         if not rows or not rows[0]:
-            raise source.refusal(f"{name} must have a cell or more")
+            raise source.refusal("no-cell", name)
     for name, rows in layers.items():
         if "grid" in layers and len(rows) != len(layers["grid"]):
-            raise source.refusal(f"{name} and grid must have as many rows")
+            raise source.refusal("not-as-many-rows", f"{name} and grid")
 
 
 def _layers(source: Source, request: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:
@@ -80,5 +80,5 @@ def _layers(source: Source, request: dict[str, Any]) -> Iterator[tuple[str, list
     for index, item in enumerate(request.get("cost_layers", ())):
         rows, name = item.get("layer"), f"cost_layers/{index}/layer"
         if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows):
-            raise source.refusal(f"{name} must be a list of rows", rows)
+            raise source.refusal("not-a-list-of", name, items="rows", came=rows)
         yield name, rows

@@ -21,8 +21,10 @@ def costs_of_cells(source: Source, table: Table, grid: Rows) -> Rows:
     for at, row in enumerate(rows):
         negative = [column for column, cost in enumerate(row) if cost < 0] if min(row) < 0 else []
         for column in negative:
-            demand = f"row {at + 1}, column {column + 1} of its costs must be 0 or more"
-            source.refuse_cell(costs.rows[at][0], column, f"{demand}, got {row[column]:g}")
+            place = {"row": at + 1, "column": column + 1}
+            part = f"row {at + 1}, column {column + 1} of its costs"
+            fault = source.fault("no-cost-of-cell", part, **place, came=row[column])
+            source.refuse_cell(costs.rows[at][0], column, fault)
     return rows
 
 
@@ -46,8 +48,7 @@ def _without_counts(source: Source, table: Table, grid: Rows) -> Table:
 def check_size_of_layer(source: Source, layer: Rows, grid: Rows) -> None:
     """Raise UnreadableFile where a layer has not a cost for each cell of a grid."""
     if (len(layer), len(layer[0])) != (len(grid), len(grid[0])):
-        demand = f"must have {_size(grid)} costs, one for each cell of the map"
-        raise source.refusal(f"{demand}, got {_size(layer)}")
+        raise source.refusal("cost-each-cell", size=_size(grid), given=_size(layer))
 
 
 def _size(rows: Rows) -> str:

@@ -39,18 +39,18 @@ def read_octile(source: Source) -> list[list[int]]:
     most = source.bounds.cells
     if not 0 < height * width <= most:
         came = f"{height} x {width}"
-        raise FileTooLarge(f"{source.name}: must have 1 to {most} cells, got {came}")
+        raise FileTooLarge(source.fault("number-of-cells", most=most, given=came))
     rows = text[header.end() :].split("\n")
     while rows and not rows[-1].strip():
         rows.pop()
     if len(rows) != height:
-        raise source.refusal(f"must have {height} rows, as its header says, got {len(rows)}")
+        raise source.refusal("other-rows", rows=height, came=len(rows))
     for number, row in enumerate(rows, 1):
         if len(row) != width:
-            demand = f"row {number} must have {width} cells, as its header says"
-            raise source.refusal(f"{demand}, got {len(row)}")
+            raise source.refusal("other-cells", row=number, cells=width, came=len(row))
         if wrong := set(row) - {*_FREE, *_BLOCKED}:
-            raise source.refusal(f"row {number} must have cells {_FREE}{_BLOCKED}", min(wrong))
+            known = f"{_FREE}{_BLOCKED}"
+            raise source.refusal("unknown-cell", row=number, known=known, came=min(wrong))
     cells = np.array([list(row) for row in rows])
     grid: list[list[int]] = np.isin(cells, list(_BLOCKED)).astype(int).tolist()
     return grid

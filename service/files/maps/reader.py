@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic_core import to_json
 
-from service.errors import Refusal
+from service.errors import Fault, Refusal
 from service.files.maps.layers import Rows, check_size_of_layer, costs_of_cells, names_of_layers
 from service.files.maps.octile import is_octile, read_octile
 from service.files.reading import (
@@ -80,9 +80,8 @@ def _octile_map(grids: Sequence[Source], sources: Sequence[Source]) -> tuple[Sou
     """Return the map of MovingAI, and its file."""
     others = [source for source in sources if source.file.is_yaml]
     if len(grids) > 1 or others:
-        demand = "a map must come once, got it as"
         names = " and as ".join(each.name for each in [*grids, *others])
-        raise UnreadableFile(f"{sources[0].name}: {demand} {names}")
+        raise sources[0].refusal("grid-twice", "a map", given=names)
     [source] = grids
     source.note("cell-size", f"A cell is taken to be {_OCTILE_CELL:g} m wide; water is blocked.")
     return source, _Map({"grid": read_octile(source), "cell_size": _OCTILE_CELL}, None)
@@ -100,8 +99,7 @@ def _pictured_map(
         how, image = _interpretation(said[0])
         named = [each for each in pictures if each.file.name == image] or pictures
     if len(named) != 1:
-        demand = "a map is a picture, or a map.yaml and its picture: open both together"
-        raise UnreadableFile(f"{sources[0].name}: {demand}, got {len(sources)} files")
+        raise sources[0].refusal("no-map", "a map", came=len(sources))
     [picture] = named
     if not said:
         picture.note("cell-size", f"A cell is taken to be {_CELL} m wide, and dark to be blocked.")
@@ -121,11 +119,8 @@ def _second_yaml(said: Sequence[Source]) -> UnreadableFile:
     (_, map_image, main), (_, image, other), *_ = sorted(
         read, key=lambda each: each[0]["mode"] != "trinary"
     )
-    return UnreadableFile(
-        f"{other.name}: a map has one map.yaml, got {main.name} as well. To read the mask"
-        f" {quoted(image)} as a cost layer, white 0 to black 1 for each metre, open it without"
-        f" {other.name}. To keep robots out of cells, draw them black in {quoted(map_image)}"
-    )
+    named = {"given": main.name, "mask": image, "name": other.name, "map": map_image}
+    return other.refusal("second-map", "a map", **named)
 
 
 def with_grid(reading: Reading, cells: int) -> Reading:
@@ -162,16 +157,23 @@ def _rows(mask: np.ndarray[Any, np.dtype[np.bool_]]) -> list[list[int]]:
 
 
 def _unreadable(name: str, refusal: Refusal) -> UnreadableFile:
+    """Return the exception for a file of which a request would be refused."""
     kind = FileTooLarge if refusal.status == 413 else UnreadableFile
-    return kind(f"{name}: {refusal.detail.removeprefix('grid ')}")
+    return kind(*(_of_file(name, fault) for fault in refusal.errors))
+
+
+def _of_file(name: str, fault: Fault) -> Fault:
+    """Return a fault of a request as that of the file which is its grid."""
+    part = f"{name}:" if fault.part == "grid" else f"{name}: {fault.part}"
+    return replace(fault, part=part, pointer=None, values={"file": name, **fault.values})
 
 
 def _refuse_other_pictures(pictures: Sequence[Source]) -> None:
     for picture in pictures:
         for begin, named in _OTHER_PICTURES.items():
             if picture.file.data.startswith(begin):
-                demand = f"must be PNG or PGM, got {named}: save it as PNG, without loss"
-                raise picture.refusal(demand)
+                given = f"{named}: save it as PNG, without loss"
+                raise picture.refusal("another-format", wanted="PNG or PGM", given=given)
 
 
 def _shades(source: Source) -> Rows:
@@ -190,8 +192,8 @@ def _shades(source: Source) -> Rows:
 def _layers(layers: Sequence[tuple[Source, Rows]], grid: Rows) -> Request:
     """Return the member of a request that has these cost layers; none without layers."""
     if len(layers) > _MOST_LAYERS:
-        demand = f"a map must have at most {_MOST_LAYERS} cost layers, got {len(layers)}"
-        raise UnreadableFile(f"{layers[-1][0].name}: {demand}")
+        counts = {"limit": _MOST_LAYERS, "actual": len(layers)}
+        raise layers[-1][0].refusal("too-many", "a map", noun="cost layers", **counts)
     for source, layer in layers:
         check_size_of_layer(source, layer, grid)
     names = names_of_layers([PurePath(source.name).stem for source, _ in layers])
@@ -207,5 +209,5 @@ def _interpretation(source: Source) -> tuple[dict[str, Any], str]:
         members, image = parse_ros_map(source.file.data)  # the file that it names is not read
     except ValueError as error:
         came = " ".join(str(error).split())[:200]
-        raise source.refusal(f"must be a map.yaml of ROS: {came}") from None
+        raise source.refusal("no-map-yaml", reason=came) from None
     return {**members}, PurePath(image).name

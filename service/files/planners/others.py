@@ -100,5 +100,4 @@ def refuse_others(source: Source, value: dict[str, Any]) -> None:
     """Raise UnreadableFile if an object is that of another planner, with what to do."""
     for other in _OTHERS:
         if other.is_it(value):
-            demand = f"must be a request, GeoJSON or VROOM's, got {other.whose} JSON"
-            raise source.refusal(f"{demand}, which is not read: {other.instead}")
+            raise source.refusal("another-planner", whose=other.whose, instead=other.instead)

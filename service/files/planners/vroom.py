@@ -30,7 +30,7 @@ class _Problem:
         stop: Stop = {"id": name}
         if place is not None:
             if not _are_numbers(place, 2):
-                raise self.source.refusal(f"{where} must be longitude and latitude", place)
+                raise self.source.refusal("no-pair-of-degrees", where, came=place)
             check_range(self.source, place, where)
             stop["location"] = list(place)
         stop |= {k: v for k, v in members.items() if v}
@@ -111,7 +111,7 @@ def _items(
     """Yield the objects in a member, and the position of each for sentences."""
     items = value.get(name) or []
     if not isinstance(items, list) or not all(isinstance(each, dict) for each in items):
-        raise source.refusal(f"{name} must be a list of objects")
+        raise source.refusal("no-list-of", name, items="objects")
     note_others(source, items, name)
     for at, each in enumerate(items):
         yield each, f"{name}/{at}"
@@ -122,7 +122,7 @@ def _vehicles(problem: _Problem, value: dict[str, Any]) -> list[Vehicle]:
     source = problem.source
     items = list(_items(source, value, "vehicles"))
     if not items:
-        raise source.refusal("vehicles must be a list of one or more")
+        raise source.refusal("no-list-of", "vehicles", items="one or more")
     vehicles = [_vehicle(problem, each, where) for each, where in items]
     _number_same(source, vehicles)
     if value.get("shipments") and any("max_stops" in each for each in vehicles):
@@ -174,7 +174,7 @@ def _breaks(source: Source, vehicle: dict[str, Any], where: str) -> list[dict[st
     """Return the breaks of a vehicle that have one time window, by ascending time."""
     breaks = vehicle.get("breaks") or []
     if not isinstance(breaks, list) or not all(isinstance(each, dict) for each in breaks):
-        raise source.refusal(f"{where}/breaks must be a list of objects", breaks)
+        raise source.refusal("not-a-list-of", f"{where}/breaks", items="objects", came=breaks)
     note_others(source, breaks, "breaks of vehicles")
     found = []
     for index, each in enumerate(breaks):
@@ -184,7 +184,7 @@ def _breaks(source: Source, vehicle: dict[str, Any], where: str) -> list[dict[st
             continue
         part = f"{where}/breaks/{index}"
         if not _are_numbers([length], 1):
-            raise source.refusal(f"{part}/service must be a time in seconds", length)
+            raise source.refusal("no-seconds", f"{part}/service", came=length)
         window = _window(source, windows[0], f"{part}/time_windows/0")
         found.append({"window": window, "length": length})
     return sorted(found, key=lambda each: each["window"][0])
@@ -197,14 +197,14 @@ def _shipment(problem: _Problem, shipment: dict[str, Any], where: str) -> dict[s
     for role in ("pickup", "delivery"):
         task = shipment.get(role)
         if not isinstance(task, dict):
-            raise source.refusal(f"{where} must have a {role}, an object")
+            raise source.refusal("no-step", where, role=role)
         note_others(source, [task], "steps of shipments")
         load = shipment.get("amount") if role == "pickup" else None
         name = f"{role} {task.get('id', len(problem.stops))}"
         windows = _windows(source, task, f"{where}/{role}")
         if "windows" in windows:
-            demand = f"{where}/{role}/time_windows must be one window: several are for jobs alone"
-            raise source.refusal(demand, task["time_windows"])
+            part = f"{where}/{role}/time_windows"
+            raise source.refusal("several-windows", part, came=task["time_windows"])
         members = {"id": name, "demand": load, "skills": skills, **windows}
         pair[role] = problem.add_task(task, "steps of shipments", f"{where}/{role}", **members)
     return pair
@@ -214,7 +214,7 @@ def _skills(source: Source, task: dict[str, Any], where: str) -> list[str]:
     """Return the skills of a task or a vehicle, which are numbers, as texts."""
     skills = task.get("skills") or []
     if not isinstance(skills, list) or not all(_is_skill(each) for each in skills):
-        raise source.refusal(f"{where}/skills must be a list of numbers", skills)
+        raise source.refusal("not-a-list-of", f"{where}/skills", items="numbers", came=skills)
     return [str(each) for each in skills]
 
 
@@ -226,7 +226,8 @@ def _windows(source: Source, task: dict[str, Any], where: str) -> dict[str, Any]
     """Return the windows of a task as members of a stop."""
     windows = task.get("time_windows") or []
     if not isinstance(windows, list):
-        raise source.refusal(f"{where}/time_windows must be a list of windows", windows)
+        part = f"{where}/time_windows"
+        raise source.refusal("not-a-list-of", part, items="windows", came=windows)
     found = [_window(source, each, f"{where}/time_windows/{at}") for at, each in enumerate(windows)]
     return spans("window", found)
 
@@ -234,7 +235,7 @@ def _windows(source: Source, task: dict[str, Any], where: str) -> dict[str, Any]
 def _window(source: Source, window: Any, where: str) -> list[float]:
     """Return a window, which must be two times."""
     if not _are_numbers(window, 2):
-        raise source.refusal(f"{where} must be two times in seconds", window)
+        raise source.refusal("no-two-times", where, came=window)
     return list(window)
 
 

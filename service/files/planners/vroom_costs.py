@@ -41,11 +41,10 @@ def rates_of(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> VroomRate
     costs = [each.get("costs") or {} for each in vehicles]
     for at, each in enumerate(costs):
         if not isinstance(each, dict):
-            raise source.refusal(f"vehicles/{at}/costs must be an object", each)
+            raise source.refusal("not-an-object", f"vehicles/{at}/costs", came=each)
         for name in ("fixed", "per_hour", "per_km"):
             if not _is_cost(each.get(name, 0)):
-                demand = f"vehicles/{at}/costs/{name} must be a number from 0"
-                raise source.refusal(demand, each[name])
+                raise source.refusal("not-from-0", f"vehicles/{at}/costs/{name}", came=each[name])
     note_others(source, costs, _OF)
     hours = {each.get("per_hour", _PER_HOUR) for each in costs}
     kilometres = {each.get("per_km", _PER_KM) for each in costs}
@@ -86,7 +85,7 @@ def objectives_of(
     matrices = _matrices(source, problem)
     if matrices is None:
         if any("location" not in stop for stop in stops):
-            raise source.refusal("each task must have a location, as there are no matrices")
+            raise source.refusal("task-without-location", "each task")
         note_places(source, stops)
         if any(each.get("profile", "car") != "car" for each in items):
             why = "without matrices all vehicles drive as cars do"
@@ -153,14 +152,12 @@ class _Cut:
         source.check_count("stops with a matrix", source.bounds.matrix_cities, len(indexes))
         for at, index in enumerate(indexes):
             if not isinstance(index, int) or isinstance(index, bool) or index < 0:
-                known = quoted(self.stops[at]["id"])
-                raise source.refusal(f"{known} must have a location_index, as there are matrices")
+                raise source.refusal("no-location-index", quoted(self.stops[at]["id"]))
         try:
             cut = [[matrix[row][column] for column in indexes] for row in indexes]  # type: ignore[index]
         except (TypeError, IndexError, KeyError):
             where = f"matrices/{self.profile[:60]}/{name}"
-            demand = f"{where} must have a row and a column for each location_index"
-            raise source.refusal(f"{demand}, up to {max(indexes)}") from None
+            raise source.refusal("matrix-too-small", where, most=max(indexes)) from None
         return cut if scale == 1 else [[_scaled(each, scale) for each in row] for row in cut]
 
 
@@ -253,7 +250,7 @@ def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[
         source.note("left-out", text)
     given = matrices[profile]
     if not isinstance(given, dict):
-        raise source.refusal(f"matrices/{profile[:60]} must be an object", given)
+        raise source.refusal("not-an-object", f"matrices/{profile[:60]}", came=given)
     note_others(source, [given], "matrices")
     return profile, given
 

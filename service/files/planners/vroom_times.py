@@ -57,11 +57,11 @@ def _time(source: Source, task: VroomTask, name: str, types: set[str]) -> Any:
     """Return a time of a task: for the types of all vehicles, or by itself."""
     usual, of_types = task.task.get(name) or 0, task.task.get(f"{name}_per_type") or {}
     if not isinstance(of_types, dict):
-        raise source.refusal(f"{task.where}/{name}_per_type must be an object", of_types)
+        raise source.refusal("not-an-object", f"{task.where}/{name}_per_type", came=of_types)
     found = [of_types.get(each, usual) for each in sorted(types)] or [usual]
     for value in found:
         if not isinstance(value, int | float) or isinstance(value, bool):
-            raise source.refusal(f"{task.where}/{name} must be a time in seconds", value)
+            raise source.refusal("no-seconds", f"{task.where}/{name}", came=value)
     if len(set(found)) > 1:
         note_unused(source, f"{name}_per_type", task.of, _LONGEST_TAKEN)
     return max(found)

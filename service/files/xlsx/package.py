@@ -46,7 +46,7 @@ class Package:
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(source.file.data))
         except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-            raise source.refusal(f"must be XLSX: {error}") from None
+            raise source.refusal("not-xlsx", reason=str(error)) from None
         self._parts = {_plain(each.filename): each for each in self._zip.infolist()}
         self._earned_at_most = _MOST_EARNED * len(source.file.data)
         self.root = self._root()
@@ -58,9 +58,8 @@ class Package:
         if found is not None and _plain(found).endswith(".xml") and _plain(found)[:4] != "word":
             return found
         named = (what for part, what in _OTHERS.items() if part in self._parts)
-        raise self.source.refusal(
-            f"must be XLSX, got {next(named, 'another zip file: unpack it first')}"
-        )
+        given = next(named, "another zip file: unpack it first")
+        raise self.source.refusal("another-format", wanted="XLSX", given=given)
 
     def relations(self, part: str) -> list[tuple[str, str, str]]:
         """Return the id, the kind and the part of each relation of a part."""
@@ -100,18 +99,18 @@ class Package:
             return
         parser.StartDoctypeDeclHandler = self._refuse_doctype
         if info.compress_type not in _COMPRESSIONS:
-            raise self.source.refusal("must be XLSX, packed as zip files usually are (deflate)")
+            raise self.source.refusal("not-deflated")
         try:
             with self._zip.open(info) as file:
                 self._feed(parser, file)
         except UnreadableFile:  # which is a ValueError
             raise
         except (zipfile.BadZipFile, OSError, EOFError, RuntimeError, ValueError) as error:
-            raise self.source.refusal(f"must be XLSX: {error}") from None
+            raise self.source.refusal("not-xlsx", reason=str(error)) from None
         except Exception as error:
             if type(error).__module__ not in ("zlib", "pyexpat", "xml.parsers.expat"):
                 raise
-            raise self.source.refusal(f"must be XLSX: {part}: {error}") from None
+            raise self.source.refusal("not-xlsx", reason=f"{part}: {error}") from None
 
     def _feed(self, parser: "expat.XMLParserType", file: Any) -> None:
         fed = 0
@@ -125,7 +124,8 @@ class Package:
         parser.Parse(b"", True)
 
     def _refuse_doctype(self, *_: object) -> None:
-        raise self.source.refusal("must be XLSX, got XML with a DOCTYPE, which it never has")
+        given = "XML with a DOCTYPE, which it never has"
+        raise self.source.refusal("another-format", wanted="XLSX", given=given)
 
 
 def _attach(parser: "expat.XMLParserType", start: Start, end: End | None) -> None:

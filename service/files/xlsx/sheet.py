@@ -198,13 +198,13 @@ class _SheetReader:
             if self._is_hidden:
                 self.sheet.hidden_rows.append(self._row)
         if self._column in self._cells:
-            raise self._source.refusal(f"cell {self._name()} must come once, got it twice")
+            raise self._source.refusal("cell-twice", f"cell {self._name()}")
         self._cells[self._column] = cell
 
     def _content(self, text: str, kind: str) -> Cell:
         if kind == "s":
             if not text.isdecimal() or len(text) > _MOST_DIGITS:
-                raise self._source.refusal(f"cell {self._name()} must be a shared text", text)
+                raise self._source.refusal("no-shared-text", f"cell {self._name()}", came=text)
             return int(text)
         if kind == "n":
             return self._number(text)

@@ -45,7 +45,7 @@ def sheets_of(source: Source, *, several: bool) -> list[Source]:
     book = Workbook(source)
     seen = [found for each in book.sheets[:_MOST_SHEETS] if (found := _look(source, book, each))]
     if not seen:
-        raise source.refusal("must have a sheet with rows that is not hidden, got none")
+        raise source.refusal("no-sheet")
     ranks = [min(each.rank, _NUMBERS if several else _PLACED) for each in seen]
     stops = seen[ranks.index(max(ranks))]
     vans = [] if several else [each for each in seen if each.of_vehicles and each is not stops][:1]
@@ -120,10 +120,7 @@ def _check_formulas(source: Source, book: Workbook, sheet: Sheet) -> None:
             else f"Each formula in the sheet {quoted(sheet.title)} has"
         )
         came = "no stored result" if sheet.unstored else "the result 0, to be calculated later"
-        raise source.refusal(
-            f"must have the results of formulas. {which} {came}: open the file in a spreadsheet"
-            " program and save it"
-        )
+        raise source.refusal("no-results", given=f"{which} {came}")
 
 
 def _texts(book: Workbook, sheet: Sheet) -> list[Row]:

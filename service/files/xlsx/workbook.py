@@ -86,8 +86,7 @@ class Workbook:
         if self._texts is None:
             self._texts = self._shared_texts()
         if cell >= len(self._texts):
-            demand = f"must have the shared text {cell} of a cell"
-            raise self.source.refusal(f"{demand}, got {len(self._texts)} texts")
+            raise self.source.refusal("too-few-texts", number=cell, came=len(self._texts))
         return self._texts[cell]
 
     def _shared_texts(self) -> list[str]:
