@@ -80,12 +80,22 @@ function columnsOf(rows) {
 
 const isNumber = (field) => /^[-+\u2212]?[\d.,]*\d[\d.,]*(e[-+]?\d+)?$/i.test(field);
 
+// What is wrong with rows, where the page says it in other words, by the code of the fault.
+const DEMANDS = {
+  "other-fields": ({ fields, came }) => `must have ${fields} items, as the first row, got ${came}`,
+  "row-of-one": ({ fields, came }) => `must have ${fields} item, as the first row, got ${came}; a text with a separator in it needs quotation marks`,
+};
+
 /** The same refusal, of the stop and the number that it is about. */
-function aboutRow({ message }) {
-  const detail = message.replace(/^rows: /, "").replace(/^must say where each stop is.*/s, FOUR).replace(/(?<=must have \d+ )field/, "item");
-  const [place, row, column] = /^row (\d+)(?:, column '([1-4])')?/.exec(detail) ?? [];
-  if (!place) return refusal(detail);
-  return refusal(detail.replace(place, nameOf(["coordinates", row - 1, ...(column ? [column - 1] : [])])), row - 1);
+function aboutRow({ message, errors: [{ code, detail, demand, values }] }) {
+  const more = message.slice(detail.length); // how many others there are
+  if (["no-places", "which-places"].includes(code)) return refusal(FOUR);
+  if (!values.row) return refusal(`${detail.slice(values.file.length + 2)}${more}`);
+  const { row, column } = values;
+  const number = ["1", "2", "3", "4"].includes(column) ? [column - 1] : [];
+  const other = column && !number.length ? `, column '${column}'` : "";
+  const name = nameOf(["coordinates", row - 1, ...number]);
+  return refusal(`${name}${other} ${DEMANDS[code]?.(values) ?? demand}${more}`, row - 1);
 }
 
 function refusal(detail, row = "") {
