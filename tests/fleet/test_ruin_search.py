@@ -32,9 +32,8 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
 def plainer(fleet: Fleet) -> Fleet:
     """Return a fleet without the rules that the search does not know."""
     rules = fleet.rules
-    visits = tuple(replace(each, windows=each.windows[:1]) for each in rules.visits)
     vehicles = tuple(replace(each, reload=(), max_trips=None, breaks=()) for each in rules.vehicles)
-    rules = replace(rules, visits=visits, vehicles=vehicles, shipments=())
+    rules = replace(rules, vehicles=vehicles, shipments=())
     return Fleet(rules=rules, costs=fleet.costs)
 
 

@@ -15,6 +15,7 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.route import (
     Values,
+    begin_at,
     head_at,
     joined,
     route_cost,
@@ -160,8 +161,9 @@ def insertion_cost(state: State, stop: int, slot: int, before: int, most: float)
     late = plan.value[slot, LATENESS]
     cost = route_cost(state, kind, Values(first, second, overtime, late, loaded))
     cost -= plan.cost[slot]
-    if cost < most and direction.lateness > 0:
-        cost += direction.lateness * (_lateness(problem, plan, slot, stop, before) - late)
+    if cost < most and (problem.choice or direction.lateness > 0):
+        later = _lateness(problem, plan, slot, stop, before)
+        return np.inf if later == np.inf else cost + direction.lateness * (later - late)
     return cost
 
 
@@ -196,7 +198,7 @@ def _timed(
 
 @inlined
 def _lateness(problem: Problem, plan: WorkingPlan, slot: int, stop: int, before: int) -> float:
-    """Return the lateness of a route with a stop after a node."""
+    """Return the lateness of a route with a stop after a node; infinite if a window is missed."""
     end = len(problem.demand) + 2 * slot + 1
     late, ready, node = plan.late[before], plan.ready[before], before
     released = problem.release[stop]
@@ -213,7 +215,9 @@ def _lateness(problem: Problem, plan: WorkingPlan, slot: int, stop: int, before:
         if ready <= plan.ready[node]:
             return late + plan.late[end] - plan.late[node]
         here, node = node, plan.next[node]
-    return late
+    ready += leg(problem, problem.place[here], problem.place[end], problem.clock)
+    missed = ready == np.inf or _is_over(ready, problem.returns[problem.kind[slot]])
+    return np.inf if missed else late
 
 
 @inlined
@@ -222,7 +226,7 @@ def _visited(
 ) -> tuple[float, float]:
     """Return when the visit of a stop ends, and the lateness after it."""
     way = leg(problem, problem.place[node], stop, problem.clock)
-    begin = max(ready + way, problem.opens[stop])
+    begin = begin_at(problem, stop, ready + way)
     if _is_over(begin, problem.due[stop]):
         late += begin - problem.due[stop]
     return begin + problem.service[stop], late

@@ -1,5 +1,6 @@
 """A fleet as the arrays that the search reads, and what a direction of the search asks for."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Rules
+from service.fleet.vehicles import Visit
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -47,8 +49,10 @@ class Problem(NamedTuple):
     demand: Indices  # (n, d)
     service: Array  # (n,)
     release: Array  # (n,)
-    opens: Array  # (n,)
-    closes: Array  # (n,)
+    windows: Array  # (n, w, 2), by ascending begin; the last is repeated
+    choice: bool  # whether a stop has several windows
+    opens: Array  # (n,), the begin of the first
+    closes: Array  # (n,), the end of the last
     due: Array  # (n,)
     prize: Array  # (n,), infinite where a stop must be visited
     near: Nodes  # (n, k), the nearest stops of each stop to visit, from the nearest on
@@ -88,6 +92,8 @@ def problem_of(fleet: Fleet) -> Problem:
         demand=loads.demand,
         service=_floats([visit.service for visit in visits]),
         release=_floats([visit.release for visit in visits]),
+        windows=_windows(visits),
+        choice=any(len(visit.windows) > 1 for visit in visits),
         opens=_floats([visit.windows[0][0] for visit in visits]),
         closes=_floats([visit.windows[-1][1] for visit in visits]),
         due=_floats([visit.due for visit in visits]),
@@ -108,6 +114,13 @@ def problem_of(fleet: Fleet) -> Problem:
         over=np.array([MEASURES.index(over) for over in rules.over]),
         column=np.array([_column(rules, index) for index in range(len(rules.over))]),
     )
+
+
+def _windows(visits: Sequence[Visit]) -> Array:
+    """Return the windows of all visits; where there are fewer than most have, the last again."""
+    most = max(len(visit.windows) for visit in visits)
+    padded = [visit.windows + visit.windows[-1:] * (most - len(visit.windows)) for visit in visits]
+    return np.array(padded, np.float64)
 
 
 def _floats(values: list[float]) -> Array:

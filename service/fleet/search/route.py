@@ -263,29 +263,51 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     span = Span(0.0, departs, problem.leaves_by[kind])
     in_time = not _is_over(departs, problem.leaves_by[kind])
     _set_span(plan.head, start, span)
-    ready, late, waiting, slack = departs, 0.0, 0.0, np.inf
+    ready, late = departs, 0.0
     plan.ready[start], plan.late[start] = ready, late
     node = plan.next[start]
     while node != end:
         way = plan.step[node, problem.clock]
-        begin = max(ready + way, problem.opens[node])
-        waiting += begin - (ready + way)
-        until = min(problem.closes[node], max(problem.due[node], begin))
-        slack = min(slack, until - begin + waiting)
+        begin = begin_at(problem, node, ready + way)
         if _is_over(begin, problem.due[node]):
             late += begin - problem.due[node]
         ready = begin + problem.service[node]
-        span, kept = joined(span, way, stay(problem, node))
-        in_time &= kept
+        span, _ = joined(span, way, stay(problem, node))
         _set_span(plan.head, node, span)
         plan.ready[node], plan.late[node] = ready, late
         node = plan.next[node]
-    way = plan.step[end, problem.clock]
-    ready += way
-    _, kept = joined(span, way, Span(0.0, 0.0, problem.returns[kind]))
+    ready += plan.step[end, problem.clock]
     plan.ready[end], plan.late[end] = ready, late
-    slack = min(slack, problem.returns[kind] - ready + waiting, problem.leaves_by[kind] - departs)
-    return ready - departs - max(0.0, min(waiting, slack)), in_time and kept
+    if not in_time or ready == np.inf or _is_over(ready, problem.returns[kind]):
+        return ready - departs, False
+    leaves = min(_latest_departure(problem, plan, start), problem.leaves_by[kind])
+    return ready - max(departs, leaves), True
+
+
+@inlined
+def begin_at(problem: Problem, stop: int, arrival: float) -> float:
+    """Return when a visit begins, in the first window that is not over; infinite after all."""
+    for number in range(problem.windows.shape[1]):
+        if not _is_over(arrival, problem.windows[stop, number, 1]):
+            return max(arrival, problem.windows[stop, number, 0])
+    return np.inf
+
+
+@inlined
+def _latest_departure(problem: Problem, plan: WorkingPlan, start: int) -> float:
+    """Return the latest departure of a route that neither ends later nor is later than due."""
+    time = plan.ready[start + 1] - plan.step[start + 1, problem.clock]
+    node = plan.previous[start + 1]
+    while node != start:
+        begin = plan.ready[node] - problem.service[node]
+        limit = min(time - problem.service[node], max(problem.due[node], begin))
+        latest = begin
+        for number in range(problem.windows.shape[1]):
+            if problem.windows[node, number, 0] <= limit:
+                latest = max(latest, min(limit, problem.windows[node, number, 1]))
+        time = latest - plan.step[node, problem.clock]
+        node = plan.previous[node]
+    return time
 
 
 @inlined

@@ -44,10 +44,7 @@ _IDLE_STEPS = 72  # steps without a new plan, after which it ends
 def is_searched(rules: Rules) -> bool:
     """Return whether the search knows all rules of a fleet."""
     return not (
-        rules.shipments
-        or rules.reloads
-        or any(len(visit.windows) > 1 for visit in rules.visits)
-        or any(vehicle.breaks for vehicle in rules.vehicles)
+        rules.shipments or rules.reloads or any(vehicle.breaks for vehicle in rules.vehicles)
     )
 
 
