@@ -38,15 +38,14 @@ def plan_fleet(
         options: The options of the front and the search.
         constructor: The network whose tours are cut into plans where the time limit is 0; it must
             read matrices. A search does not ask it: its fronts are as good without.
-        watch: Asked after each iteration of PyVRP, that is every few milliseconds, whether to
-            stop; planning then ends with the best front so far. It also says when to report. The
-            time limit is that of the options.
+        watch: Asked every few milliseconds whether to stop; planning then ends with the best front
+            so far. It also says when to report. The time limit is that of the options.
 
     Raises:
         NoTour: Some stops cannot be visited under the rules. The refusal names them.
         Refusal: `no-plan`: no plan keeps every rule, or none was found in time. If no rule can be
             broken, a plan is always found. `no-actor`: the time limit is 0 and there is no network.
-            `invalid-instance`: costs, prizes and times are too far apart for whole numbers.
+            `invalid-instance`: costs, prizes and times are too far apart.
         InvalidInstance: The time limit is 0, and costs are too far apart for the network.
         Cancelled: The watch said to stop before a plan was found.
         ValueError: A component of the reference point is not positive, or the size is below 1.
