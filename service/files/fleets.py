@@ -85,13 +85,34 @@ def all_demand(stops: Sequence[Stop]) -> list[int]:
 
 
 def fleet_request(
-    stops: list[Stop], vehicles: list[Vehicle], objectives: list[dict[str, Any]]
+    stops: list[Stop],
+    vehicles: list[Vehicle],
+    objectives: list[dict[str, Any]],
+    shipments: list[dict[str, str]] | None = None,
 ) -> Request:
     """Return the request of a fleet, with a clock if stops or vehicles have times."""
     request: Request = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
     if have_times(stops, vehicles):
         request["clock"] = objectives[1]["name"]
-    return request
+    return request if shipments is None else {**request, "shipments": shipments}
+
+
+def fleet_of_tables(
+    source: Source, stops: list[Stop], vehicles: list[Vehicle], plane: list[list[float]] | None
+) -> Request:
+    """Return the request of a fleet with the objectives that its data are for.
+
+    Args:
+        source: The file of the stops.
+        stops: The stops.
+        vehicles: The vehicles.
+        plane: The points of the stops in the plane, if they are not on the earth.
+    """
+    if plane:
+        objectives = planar({"coordinates": plane})
+    else:
+        objectives = measured(source, have_times(stops, vehicles), stops)
+    return with_measure(source, fleet_request(stops, vehicles, objectives))
 
 
 def with_measure(source: Source, request: Request) -> Request:

@@ -13,7 +13,7 @@ from service.files.cells.times import read_calendar
 from service.files.column_names import FLEET, PLANES
 from service.files.columns import Columns, columns_of, place_in
 from service.files.depots import for_stops
-from service.files.fleets import Stop, fleet_request, have_times, measured, planar, with_measure
+from service.files.fleets import Stop, fleet_of_tables
 from service.files.places import note_places, out_of_range, weighted
 from service.files.planes import (
     called_planes,
@@ -162,10 +162,7 @@ def _fleet(columns: Columns) -> Reading:
     add_visits(columns, stops)
     stops, vehicles = for_stops(columns, stops, plane)
     columns.report()
-    clock = have_times(stops, vehicles)
-    objectives = planar({"coordinates": plane}) if plane else measured(source, clock, stops)
-    request = with_measure(source, fleet_request(stops, vehicles, objectives))
-    return source.reading("fleet", request)
+    return source.reading("fleet", fleet_of_tables(source, stops, vehicles, plane))
 
 
 def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:

@@ -13,16 +13,7 @@ from service.files.cells.times import (
 from service.files.column_names import fields_of, is_about_vehicles
 from service.files.columns import Columns, columns_of, columns_of_vehicles
 from service.files.depots import with_depots
-from service.files.fleets import (
-    Stop,
-    Vehicle,
-    fleet_request,
-    have_times,
-    measured,
-    planar,
-    spans,
-    with_measure,
-)
+from service.files.fleets import Stop, Vehicle, fleet_of_tables, have_times, spans
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
@@ -63,11 +54,10 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     stops, vehicles = with_depots(visits, stops, vehicles, plane)
     add_bounds(columns, vehicles)
     clock = have_times(stops, vehicles)
-    objectives = planar({"coordinates": plane}) if plane else measured(source, clock, stops)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)
     columns.report()
-    request = with_measure(source, fleet_request(stops, vehicles, objectives))
+    request = fleet_of_tables(source, stops, vehicles, plane)
     return reading_of_several("fleet", request, (source, other))
 
 

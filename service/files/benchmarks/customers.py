@@ -50,12 +50,12 @@ def read_customers(source: Source, text: str) -> Reading:
         "shift": depot[4:6],
     }
     objectives = planar({"coordinates": [row[1:3] for _, row in customers]})
-    request = fleet_request(stops, [vehicle], objectives)
+    shipments = None
     if width == _WITH_PAIRS:
         pairs = [(f"{row[0]:g}", f"{row[8]:g}") for row in others if row[8]]
-        request["shipments"] = [{"pickup": one, "delivery": other} for one, other in pairs]
+        shipments = [{"pickup": one, "delivery": other} for one, other in pairs]
     source.note("objectives", "Distances are time as well, and are not rounded.")
-    return source.reading("fleet", request)
+    return source.reading("fleet", fleet_request(stops, [vehicle], objectives, shipments))
 
 
 def _customer(source: Source, row: list[float]) -> dict[str, Any]:

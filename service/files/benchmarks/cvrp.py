@@ -39,9 +39,8 @@ def read_cvrp(file: TsplibFile) -> Reading:
     kept = [at for at in range(file.dimension) if at not in depots.stops or at in fleet.used]
     matrix = plain(costs(file)[np.ix_(kept, kept)])
     note_rounded(file)
-    request = fleet_request([stops[at] for at in kept], fleet.types, planar({"matrix": matrix}))
-    if shipments:
-        request["shipments"] = shipments
+    objectives = planar({"matrix": matrix})
+    request = fleet_request([stops[at] for at in kept], fleet.types, objectives, shipments or None)
     fleet.check_distances(file, timed="clock" in request)
     if "clock" in request and "DISTANCE" in file.header:
         text = "DISTANCE limits the time of a route, which service and waiting are part of."

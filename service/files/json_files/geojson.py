@@ -9,14 +9,7 @@ from service.files.chosen import IGNORED
 from service.files.column_names import FLEET, field_of_each
 from service.files.columns import Columns, columns_of, place_in
 from service.files.depots import for_stops
-from service.files.fleets import (
-    Stop,
-    Vehicle,
-    fleet_request,
-    have_times,
-    measured,
-    with_measure,
-)
+from service.files.fleets import Stop, Vehicle, fleet_of_tables, have_times
 from service.files.json_files.records import check_lists, is_place, members_of
 from service.files.reading import Reading, Request, Source, quoted
 from service.files.stop_tables import reading_of_columns, visits_of
@@ -82,12 +75,10 @@ def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Request:
     if "vehicles" not in rest:
         stops, vehicles = for_stops(columns, stops, None)
     columns.report()
-    has_times = have_times(stops, vehicles)
     if "objectives" not in rest:
-        objectives = measured(columns.source, has_times, stops)
-        return with_measure(columns.source, fleet_request(stops, vehicles, objectives))
+        return fleet_of_tables(columns.source, stops, vehicles, None)
     request: Request = {"stops": stops, "vehicles": vehicles}
-    if has_times and "clock" not in rest:
+    if have_times(stops, vehicles) and "clock" not in rest:
         request["clock"] = _clock(columns, rest["objectives"])
     return request
 

@@ -88,9 +88,7 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
     timed = have_times(problem.stops, vehicles)
     stops, indexes = problem.stops, problem.indexes
     objectives = objectives_of(source, value, (stops, indexes), vehicles, timed)
-    request = fleet_request(stops, vehicles, objectives)
-    if shipments:
-        request["shipments"] = shipments
+    request = fleet_request(stops, vehicles, objectives, shipments or None)
     return source.reading("fleet", request)
 
 
