@@ -119,7 +119,7 @@ def swept(fleet: Fleet, seconds: float) -> Sequence[Plan]:
 def alone(fleet: Fleet, seconds: float) -> Sequence[Plan]:
     """The plan of the least total that PyVRP finds."""
     translation = Translation(fleet)
-    translation.scales = [1e4 / max(1.0, fleet.costs.max() / 1e3)] * 2
+    translation.scales = [1e4 / fleet.costs.max()] * 2  # its penalties are made for this
     data = translation.data(Goal(weights=translation.sum_weights))
     with warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning):
         result = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False, display=False)

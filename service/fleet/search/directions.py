@@ -20,7 +20,7 @@ from service.objectives import OBJECTIVES
 _FIRST_SHARE = 0.25  # of all rounds, for each objective alone
 _DEEP_SHARE = 0.45  # of all rounds, for evenly spread directions
 _DEEP = 12  # directions
-_SHALLOW = 20, 300  # the most and the least share of the rounds left, in each further direction
+_SHALLOW = 20, 300  # a further direction takes one round in at least and at most so many left
 _LEAST_ROUNDS = 2
 _LESSER = 1e-6  # weight of the other objectives beside one alone
 _STRICT = 100.0  # what a unit over a limit costs, in units of the first objective
@@ -28,10 +28,9 @@ _DEAR = 10.0  # what a stop outside that must be visited costs at first, in the 
 _HOTTEST, _COLDEST = 0.1, 0.001  # temperatures, in the largest leg of each direction
 _HEAT, _POWER = 0.0008, 0.65  # the first temperature after one ruin per stop, and how it grows
 _UNLIMITED = 0.25  # share of the directions under three objectives that leave out a limit
-_BOUNDED = 0.5  # share of the further directions under two sums with a bound on one of them
+_BOUNDED = 0.5  # share of the further directions with bounds on sums
 _UNLIMITED_AGAIN = 0.1  # share of the further directions under two objectives without a limit
-_ANY_START = 0.25  # share of those that start from a random plan
-
+_ANY_START = 0.25  # share of those under three objectives that start from a random plan
 _BELOW = 0.95  # how far below the least longest route limits go
 
 _LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
@@ -159,10 +158,9 @@ class Directions:
         lengths = np.sort(points[:, limited])[::-1]
         greatest, least = lengths[0], lengths[-1]
         if self._over[limited] == "vehicles":
-            limit = greatest if place is None else greatest - place * (greatest - least)
-            limit = self._random.integers(int(least) - 1, int(greatest) + 1)
+            limit = float(self._random.integers(int(least) - 1, int(greatest) + 1))
         elif place is not None:
-            limit = greatest - place * (greatest - self._lower(least))
+            limit = greatest - place * (greatest - min(least, self._bound))
         elif self._random.random() < _UNLIMITED_AGAIN:
             limit = inf
         else:
@@ -170,7 +168,7 @@ class Directions:
             at = int(self._random.choice(len(lengths), p=self._chances(points, lengths - lower)))
             limit = self._random.uniform(lower[at], lengths[at])
         weights = np.where(self._by_limit, _LESSER, 1.0) / self._scale
-        return self._step(weights, {limited: float(limit)}, rounds)
+        return self._step(weights, {limited: limit}, rounds)
 
     def _lower(self, least: float) -> float:
         """Return a limit somewhat below the least length found, but not below what can be."""
@@ -301,4 +299,6 @@ def _least_longest(fleet: Fleet) -> float:
         for each in rules.vehicles
     ]
     required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
-    return float(np.min(ways, axis=0)[required].max(initial=0.0))
+    served = np.array([rules.visits[stop].service for stop in required])
+    alone = np.min(ways, axis=0)[required] + (served if rules.swept == rules.clock else 0.0)
+    return float(alone.max(initial=0.0))

@@ -202,7 +202,7 @@ def _most(problem: Problem, plan: WorkingPlan, stop: int) -> float:
 
 @inlined
 def _sort(problem: Problem, plan: WorkingPlan, order: int) -> None:
-    """Sort the removed stops by a random key; those that were outside before come first."""
+    """Sort the removed stops in an order."""
     count = plan.counts[REMOVED]
     for place in range(count):
         plan.key[place] = _key(problem, plan, plan.removed[place], order)

@@ -123,12 +123,12 @@ class RuinSearch(FleetSearch):
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or the watch says to stop."""
-        self._began = self._watch.spent
         if self._watch.stopped():
             self._cancelled = True
             return "cancelled"
         if not len(self):
             self._insert_all()
+        self._began = self._watch.spent
         for step in self._steps():
             if self._search(step):
                 return "cancelled" if self._cancelled else "time_limit"
