@@ -148,7 +148,8 @@ def open_page(
 
     page.on("pageerror", note_error)
     page.on("console", note_line)
-    page.goto(address)
+    if page.url != address:
+        page.goto(address)
     yield page
     if not page.is_closed():
         page.unroute_all()
