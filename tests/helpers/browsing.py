@@ -104,7 +104,7 @@ DRAFT = json.dumps(
 # Have a page keep nothing of what it shows in its window.
 FORGET_DRAFT = "sessionStorage.clear(); Storage.prototype.setItem = () => {}"
 
-expect.set_options(timeout=30 * SECOND)  # five seconds are too few on a busy machine
+expect.set_options(timeout=60 * SECOND)  # five seconds are too few on a busy machine
 
 needs_chromium = pytest.mark.skipif(
     MAY_BE_MISSING and not CHROMIUM.exists(),
