@@ -39,7 +39,6 @@ from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner, make_runner
-from service.kinds.parsing import read_task
 from service.mcp import check_mcp
 from service.roads.client import RoadClient
 from service.settings import Settings
@@ -85,7 +84,7 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
     metrics = Metrics()
     roads = None if settings.roads is None else RoadClient(settings.roads, metrics.routed)
     if settings.redis_url is None:
-        store, engine = _local_engine(settings, metrics, infos, roads, ending)
+        store, engine = _local_engine(settings, metrics, roads, ending)
     else:
         store, engine = _redis_engine(settings, metrics)
     metrics.watch(engine)
@@ -216,13 +215,12 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     from service.cluster.worker import CeleryWorker, RecordWorker
 
     wait_for_redis(redis_url)
-    actors = _checked_actors(settings)
+    _checked_actors(settings)
     configure_logging()
     worker = CeleryWorker(
         celery=make_celery(redis_url, settings.request_seconds),
         records=RecordWorker(
             _make_runner(settings),
-            partial(read_task, limits=settings.limits, actors=actors),
             redis_url,
             workers=settings.workers,
             seconds=settings.request_seconds,
@@ -258,7 +256,6 @@ def takes_work(settings: Settings) -> bool:
 def _local_engine(
     settings: Settings,
     metrics: Metrics,
-    actors: Mapping[str, ActorInfo],
     roads: RoadClient | None,
     ending: Ending,
 ) -> tuple[Store, Engine]:
@@ -280,8 +277,7 @@ def _local_engine(
         max_bytes=settings.store_bytes,
     )
     ending.back_up = store.back_up
-    read = partial(read_task, limits=settings.limits, actors=actors)
-    return store, LocalEngine(workers, store, read)
+    return store, LocalEngine(workers, store)
 
 
 def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:

@@ -45,7 +45,7 @@ from service.kinds.table import empty_document
 from service.requests.fields import Geometry
 from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
 from service.requests.task import Task, TaskKind, TaskSource
-from service.requests.task_codec import stored
+from service.requests.task_codec import encode_task
 from service.webhooks.targets import Targets
 
 _QUICK = 8  # times as fast as a request stored tours are read
@@ -181,12 +181,12 @@ class PlanRoutes:
         record = await find_record(self._store, request, front)
         if not record.finished:
             raise not_replannable(record.id, "it is still being planned")
-        source = await self._store.source(record)
-        if source is None:
+        task = await self._store.task(record)
+        if task is None:
             reason = "what it was planned from is not kept; plan what is left with POST /front"
             raise not_replannable(record.id, reason)
-        stored = StoredFront(record.id, source, record.front)
-        length = body.length + source.length + len(record.front.tours) // _QUICK
+        stored = StoredFront(record.id, task, record.front)
+        length = body.length + len(task) + len(record.front.tours) // _QUICK
         asked = ReplanSource(body.body, stored)
         return await self._parser.replan(asked, length, client_of(request))
 
@@ -253,7 +253,7 @@ class PlanRoutes:
             request_id=request.scope["request_id"],
             status="queued",
             front=empty_document(task),
-            source=await asyncio.to_thread(stored, task) if long else stored(task),
+            task=await asyncio.to_thread(encode_task, task) if long else encode_task(task),
             key=key,
             digest=await asyncio.to_thread(_digest, body, front) if key else "",
             client=client_of(request),

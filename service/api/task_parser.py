@@ -99,7 +99,7 @@ class TaskParser:
 
     async def replan(self, source: ReplanSource, length: int, client: str = "") -> Task:
         """Return the rest of the way of a checked request; `length` is the bytes to parse."""
-        quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
+        quotes = source.body.count(b'"') + source.front.task.count(b'"')
         if length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
         return await self._in_turn(parse_replan, source, length, client)

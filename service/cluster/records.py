@@ -17,16 +17,15 @@ from service.jobs.listing import ListedFront
 from service.jobs.outbox import Delivery
 from service.jobs.record import Record, Status, StopReason
 from service.jobs.store import (
-    SOURCE_COLUMNS,
+    TASK_COLUMNS,
     UnreadableRecord,
     front_columns,
     listed_from,
     record_columns,
     record_from,
-    source_from,
+    task_from,
 )
 from service.kinds.front_document import FrontDocument
-from service.requests.task import TaskSource
 from service.watch import Progress
 
 # Fields beside the columns. The script sets the first two.
@@ -58,10 +57,10 @@ def record_arguments(record: Record) -> list[Argument]:
     """Return a record as arguments of the script.
 
     They are the number of arguments for its hash, these arguments, and those for the hash of its
-    source.
+    task.
     """
     columns = {name: value for name, value in record_columns(record).items() if value is not None}
-    source = {name: columns.pop(name) for name in SOURCE_COLUMNS if name in columns}
+    task = {name: columns.pop(name) for name in TASK_COLUMNS if name in columns}
     if record.front.gained is not None:
         columns[GAINED] = record.front.gained
     if record.client:
@@ -69,7 +68,7 @@ def record_arguments(record: Record) -> list[Argument]:
     if record.webhook is not None:
         columns[WEBHOOK] = record.webhook.json()
     fields = _names_and_values(columns)
-    return [len(fields), *fields, *_names_and_values(source)]
+    return [len(fields), *fields, *_names_and_values(task)]
 
 
 def report_arguments(
@@ -83,7 +82,7 @@ def report_arguments(
 
 
 def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:
-    """Return the record in a hash, and optionally that of its source, as HGETALL gives them.
+    """Return the record in a hash, and optionally that of its task, as HGETALL gives them.
 
     Raises:
         UnreadableRecord: They are damaged, or of another program.
@@ -107,11 +106,11 @@ def listed_front(row: Iterable[bytes], members: bytes) -> ListedFront:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
 
 
-def stored_source(source: Iterable[bytes]) -> TaskSource | None:
-    """Return the source in a hash, as HGETALL gives it; None where it is empty or damaged."""
+def stored_task(task: Iterable[bytes]) -> bytes | None:
+    """Return the task in a hash, as HGETALL gives it; None where it is empty or damaged."""
     try:
-        return source_from(_fields(source))
-    except (LookupError, ValueError):
+        return task_from(_fields(task))
+    except ValueError:
         return None
 
 

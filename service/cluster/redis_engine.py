@@ -202,7 +202,7 @@ class RedisEngine:
         return JobState(record)
 
     async def release(self, record: Record) -> None:
-        """Return at once: the source of a job is in Redis."""
+        """Return at once: the task of a job is in Redis."""
 
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """Yield the state of a job now and after each change, until it is finished."""

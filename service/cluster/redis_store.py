@@ -13,7 +13,7 @@ from service.cluster.records import (
     delivery_from,
     listed_front,
     record_arguments,
-    stored_source,
+    stored_task,
 )
 from service.cluster.script import RecordScript
 from service.errors import (
@@ -28,7 +28,6 @@ from service.jobs.listing import ListedFront
 from service.jobs.outbox import Delivery
 from service.jobs.record import Record
 from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
-from service.requests.task import TaskSource
 
 NOBODY = "none of the cluster was there in the last 5 s"
 
@@ -81,9 +80,9 @@ class RedisStore(RecordScript):
         """Return the caller's record with this id."""
         return (await self.find("get", caller, id)).record
 
-    async def source(self, record: Record) -> TaskSource | None:
-        """Return the source of a finished record; None if it is not kept."""
-        return stored_source(await self.call("source", record.id))
+    async def task(self, record: Record) -> bytes | None:
+        """Return the task of a finished record; None if it is not kept."""
+        return stored_task(await self.call("source", record.id))
 
     async def latest(self, caller: str, client: str) -> Record:
         """Return the caller's record that was finished last for this client."""

@@ -116,11 +116,11 @@ class RecordScript:
             id: Its id, which may be missing in the hashes.
             hashes: The fields and values that HGETALL gives.
             caller: Its caller, if known.
-            whole: Whether an unfinished record must have its source.
+            whole: Whether an unfinished record must have its task.
         """
         try:
             stored = stored_record(*hashes)
-            if whole and stored.record.source is None:
+            if whole and stored.record.task is None:
                 raise UnreadableRecord("what to plan is missing")
         except UnreadableRecord as error:
             log_dropped(id.decode(errors="replace")[:80], error)

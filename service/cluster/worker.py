@@ -10,7 +10,7 @@ import logging
 import os
 import uuid
 from asyncio import AbstractEventLoop
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from contextlib import suppress
 from dataclasses import dataclass, field
 from socket import gethostname, socketpair
@@ -32,7 +32,7 @@ from service.jobs.record import as_failed
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner
-from service.requests.task import Task, TaskSource
+from service.requests.task_codec import decode_task
 from service.roads.client import RoadClient
 
 _CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted
@@ -50,7 +50,6 @@ class RecordWorker:
 
     Args:
         make_runner: Called in each process; it must be picklable.
-        read: Reads the stored task of a record.
         redis_url: The Redis with the records.
         workers: How many processes there are.
         seconds: The time limit of a record.
@@ -60,7 +59,6 @@ class RecordWorker:
     def __init__(
         self,
         make_runner: MakeRunner,
-        read: Callable[[TaskSource], Task],
         redis_url: str,
         *,
         workers: int,
@@ -84,7 +82,6 @@ class RecordWorker:
         ]
         self._free = list(self._stores)
         self.workers = workers
-        self._read = read
         self._draining = False
 
     async def start(self) -> None:
@@ -143,9 +140,9 @@ class RecordWorker:
             Draining: The worker shuts down; the record is queued again.
         """
         record = stored.record
-        assert record.source is not None
+        assert record.task is not None
         try:
-            task = await asyncio.to_thread(self._read, record.source)
+            task = await asyncio.to_thread(decode_task, record.task)
             submission = self._pool.submit(task)
         except Exception as error:
             await store.finish(as_failed(record, error, record.front))

@@ -77,8 +77,8 @@ class WorkerStore(RecordScript):
 
     async def finish(self, record: Record) -> None:
         """Store a finished record, unless it was finished before."""
-        # Its source is in Redis already.
-        arguments = record_arguments(replace(record, source=None))
+        # Its task is in Redis already.
+        arguments = record_arguments(replace(record, task=None))
         await self._call_until_answered("finish", record.id, *arguments)
 
     async def hand_back(self, id: str) -> None:  # noqa: A002

@@ -69,7 +69,7 @@ class Engine(Protocol):
     ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it.
 
-        At the deadline it ends with the best front so far. The task is that of the record's source.
+        At the deadline it ends with the best front so far. The task is that of the record, decoded.
 
         Raises:
             DeadlineExceeded: Nothing was found in time.
@@ -83,7 +83,7 @@ class Engine(Protocol):
     async def submit(self, record: Record, task: Task) -> Record:
         """Store and begin a job and return its record, or that of the job that it repeats.
 
-        The task is that of the record's source.
+        The task is that of the record, decoded.
 
         Storing and beginning succeed together or fail together: every job in the store was begun.
 
@@ -102,7 +102,7 @@ class Engine(Protocol):
         """Yield the state of a job now and after each change, until it is finished."""
 
     async def release(self, record: Record) -> None:
-        """Wait until this process no longer holds the source of a submitted job."""
+        """Wait until this process no longer holds the task of a submitted job."""
 
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from asyncio import Future
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Coroutine
 from contextlib import suppress
 from dataclasses import replace
 
@@ -24,7 +24,8 @@ from service.jobs.sqlite_store import SqliteStore
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.parts import Compiling
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task
+from service.requests.task_codec import decode_task
 
 _PAUSE = 0.5  # seconds between tries to resume the job of an earlier process
 _PATIENCE = 600.0  # seconds for which storing a front is tried
@@ -120,18 +121,15 @@ class LocalEngine:
     Args:
         workers: The processes that plan.
         store: Where records are kept.
-        read: Reads the stored task of a job that an earlier process left unfinished.
     """
 
     def __init__(
         self,
         workers: WorkerPool,
         store: SqliteStore,
-        read: Callable[[TaskSource], Task],
     ) -> None:
         self._workers = workers
         self._store = store
-        self._read = read
         self._unsaved = UnsavedRecords(store)
         self._jobs: dict[str, _Job] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -238,7 +236,7 @@ class LocalEngine:
         yield job.state if job else JobState(await self._stored(record))
 
     async def release(self, record: Record) -> None:
-        """Wait until a job is finished: until then its source is in its record."""
+        """Wait until a job is finished: until then its task is in its record."""
         async for _ in self.watch(record):
             pass
 
@@ -284,8 +282,8 @@ class LocalEngine:
         """Begin the jobs of an earlier process, except those cancelled meanwhile."""
         for job in jobs:
             try:
-                assert job.record.source is not None
-                task = await asyncio.to_thread(self._read, job.record.source)
+                assert job.record.task is not None
+                task = await asyncio.to_thread(decode_task, job.record.task)
                 while not job.ended and not self._is_resumed(job, task):
                     await asyncio.sleep(_PAUSE)
             except Exception as error:

@@ -7,7 +7,6 @@ from typing import Any, Literal
 from service.errors import Cancelled, DeadlineExceeded, Refusal
 from service.jobs.webhook import Webhook
 from service.kinds.front_document import FrontDocument
-from service.requests.task import TaskSource
 
 Status = Literal["queued", "running", "done", "cancelled", "failed"]
 UNFINISHED: tuple[Status, ...] = ("queued", "running")
@@ -24,8 +23,8 @@ class Record:
         caller: The name of the API key, which alone may see the record.
         request_id: The id of the request that submitted the job; problem documents name it.
         front: The best front found so far.
-        source: The task as it is stored; None where the job has failed. Stores return the source
-            of a finished job apart from its record, if they have kept it.
+        task: The task, as `encode_task` writes it; None where the job has failed. Stores return
+            that of a finished job apart from its record, if they have kept it.
         key: The Idempotency-Key, if the request had one.
         digest: SHA-256 of the body. A second request with the key is a repeat if it has the same.
         problem: The problem document of a job that failed.
@@ -39,7 +38,7 @@ class Record:
     request_id: str
     status: Status
     front: FrontDocument
-    source: TaskSource | None = None
+    task: bytes | None = None
     key: str | None = None
     digest: str = ""
     problem: dict[str, Any] | None = None
@@ -95,4 +94,4 @@ def as_failed(record: Record, error: Exception, front: FrontDocument) -> Record:
         _LOG.warning("front %s failed", record.id, exc_info=error)
         refusal = Refusal("internal-error")
     problem = refusal.document(record.request_id)
-    return replace(record, status="failed", front=front, problem=problem, source=None)
+    return replace(record, status="failed", front=front, problem=problem, task=None)

@@ -17,37 +17,21 @@ from service.jobs.store import COLUMNS
 IN_MEMORY = ":memory:"
 UNFINISHED = "status IN ('queued', 'running')"
 _PRIVATE = stat.S_IRUSR | stat.S_IWUSR  # others must not read the requests
-_LENGTHS = " + ".join(f"ifnull(length(CAST({name} AS BLOB)), 0)" for name in COLUMNS)
 
+_FIRST = 4  # the version of files that 0.2.0 wrote
 STEPS = (
-    # From version 0, an empty file or one of the releases that wrote no version.
+    # From no file to the first version.
     f"""
-    CREATE TABLE IF NOT EXISTS front (number INTEGER PRIMARY KEY, kept REAL, {", ".join(COLUMNS)});
-    CREATE UNIQUE INDEX IF NOT EXISTS by_id ON front (id);
-    CREATE UNIQUE INDEX IF NOT EXISTS by_key ON front (caller, key) WHERE key IS NOT NULL;
-    CREATE INDEX IF NOT EXISTS by_caller ON front (caller, number);
-    CREATE TABLE IF NOT EXISTS gone (number INTEGER PRIMARY KEY, id, caller);
-    CREATE INDEX IF NOT EXISTS gone_by_id ON gone (id);
-    ALTER TABLE front ADD COLUMN size INTEGER NOT NULL DEFAULT 0;
-    UPDATE front SET size = {_LENGTHS};
-    DROP INDEX IF EXISTS finished;
-    CREATE INDEX finished ON front (caller, number, kept, size) WHERE NOT {UNFINISHED};
-    """,
-    # Records are dropped by client: the caller, or an address where there are no keys.
-    f"""
-    ALTER TABLE front ADD COLUMN client;
-    UPDATE front SET client = caller;
-    DROP INDEX finished;
+    CREATE TABLE front (
+        number INTEGER PRIMARY KEY, kept REAL, {", ".join(COLUMNS)},
+        size INTEGER NOT NULL DEFAULT 0, client, webhook
+    );
+    CREATE UNIQUE INDEX by_id ON front (id);
+    CREATE UNIQUE INDEX by_key ON front (caller, key) WHERE key IS NOT NULL;
+    CREATE INDEX by_caller ON front (caller, number);
     CREATE INDEX finished ON front (client, number, kept, size) WHERE NOT {UNFINISHED};
-    """,
-    # The latest front is that of a client.
-    """
-    ALTER TABLE gone ADD COLUMN client;
-    UPDATE gone SET client = caller;
-    """,
-    # An unfinished record has its webhook; once it is finished, there is a delivery instead.
-    """
-    ALTER TABLE front ADD COLUMN webhook;
+    CREATE TABLE gone (number INTEGER PRIMARY KEY, id, caller, client);
+    CREATE INDEX gone_by_id ON gone (id);
     CREATE TABLE delivery (id PRIMARY KEY, webhook, status, ended REAL, attempts INTEGER, due REAL);
     CREATE INDEX delivery_by_due ON delivery (due);
     """,
@@ -60,7 +44,7 @@ def open_file(path: str) -> sqlite3.Connection:
     Raises:
         OSError: The file cannot be made or opened.
         sqlite3.Error: It is not a file of SQLite, or another process has it.
-        ValueError: It is another program's, of a later release, or damaged.
+        ValueError: It is another program's, damaged, or of a release that is later, or too early.
     """
     if path != IN_MEMORY:
         _create(Path(path))
@@ -69,7 +53,7 @@ def open_file(path: str) -> sqlite3.Connection:
     database.text_factory = partial(str, encoding="utf-8", errors="replace")
     try:
         database.execute("PRAGMA locking_mode = EXCLUSIVE")
-        _check(database, len(STEPS))
+        _check(database)
         if path != IN_MEMORY:
             _make_private(path)
         database.execute("PRAGMA journal_mode = WAL")
@@ -103,10 +87,12 @@ def copy_file(database: sqlite3.Connection, path: str) -> None:
 
 def migrate(database: sqlite3.Connection, steps: Sequence[str]) -> None:
     """Apply the missing steps to a database, all of them or none."""
-    outstanding = "".join(steps[_version(database) :])
+    version = _version(database)
+    outstanding = "".join(steps[version and version - _FIRST + 1 :])
+    latest = _FIRST + len(steps) - 1
     try:
         database.executescript(
-            f"BEGIN IMMEDIATE; {outstanding} PRAGMA user_version = {len(steps)}; COMMIT;"
+            f"BEGIN IMMEDIATE; {outstanding} PRAGMA user_version = {latest}; COMMIT;"
         )
     except BaseException:
         database.rollback()
@@ -118,9 +104,9 @@ def _version(database: sqlite3.Connection) -> int:
     return int(version)
 
 
-def _check(database: sqlite3.Connection, latest: int) -> None:
-    """Raise ValueError if a file is damaged, not the store's, or of a version not known yet."""
-    version = _version(database)
+def _check(database: sqlite3.Connection) -> None:
+    """Raise ValueError if a file is damaged, not the store's, or of a version that is not read."""
+    version, latest = _version(database), _FIRST + len(STEPS) - 1
     if version > latest:
         raise ValueError(
             f"it is of version {version}, of a later release, and this one reads {latest} at most;"
@@ -132,6 +118,8 @@ def _check(database: sqlite3.Connection, latest: int) -> None:
     tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
     if tables and "front" not in tables:
         raise ValueError("it is another program's")
+    if tables and version < _FIRST:
+        raise ValueError("it is of version 0.1; start 0.2 with it once, which this release reads")
 
 
 def _create(path: Path) -> None:

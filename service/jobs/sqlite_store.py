@@ -20,27 +20,25 @@ from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, copy_file, open_fi
 from service.jobs.store import (
     COLUMNS,
     SHORT,
-    SOURCE_COLUMNS,
-    SOURCE_SHARE,
     STORE_BYTES,
+    TASK_COLUMNS,
+    TASK_SHARE,
     UnreadableRecord,
     listed_from,
     log_dropped,
     record_columns,
     record_from,
     record_size,
-    source_from,
+    task_from,
 )
-from service.requests.task import TaskSource
 
 __all__ = ["IN_MEMORY", "SqliteStore"]
 
 T = TypeVar("T")
 _COLUMNS = ", ".join(COLUMNS)
-# The source of a finished record is not read with it: it may be long.
+# The task of a finished record is not read with it: it may be long.
 _READ = ", ".join(
-    f"CASE WHEN {UNFINISHED} THEN {name} END" if name in SOURCE_COLUMNS else name
-    for name in COLUMNS
+    f"CASE WHEN {UNFINISHED} THEN {name} END" if name in TASK_COLUMNS else name for name in COLUMNS
 )
 _AT_ONCE = 16  # records that are written together
 _SLACK = 16  # records may exceed the limits by a sixteenth until some are read
@@ -136,9 +134,9 @@ class SqliteStore:
         """Return the caller's record with this id."""
         return await self._found("caller = ? AND id = ?", caller, id)
 
-    async def source(self, record: Record) -> TaskSource | None:
-        """Return the source of a finished record; None if it is not kept."""
-        return await self._in_thread(self._source, record.id)
+    async def task(self, record: Record) -> bytes | None:
+        """Return the task of a finished record; None if it is not kept."""
+        return await self._in_thread(self._task, record.id)
 
     async def latest(self, caller: str, client: str) -> Record:
         """Return the caller's record that was finished last for this client."""
@@ -153,7 +151,7 @@ class SqliteStore:
         await self._in_thread(self._delete, record.id)
 
     async def unfinished(self) -> list[Record]:
-        """Return all unfinished records with their sources, the oldest first."""
+        """Return all unfinished records with their tasks, the oldest first."""
         return await self._in_thread(self._select, f"{UNFINISHED} ORDER BY number")
 
     async def due_deliveries(self, most: int, seconds: float) -> list[Delivery]:
@@ -233,9 +231,9 @@ class SqliteStore:
     def _put(self, record: Record, kept: float) -> None:
         self._delete(record.id)
         columns = record_columns(record)
-        source_size = record_size({name: columns[name] for name in SOURCE_COLUMNS})
-        if record.finished and source_size > self._max_bytes // SOURCE_SHARE:
-            columns |= dict.fromkeys(SOURCE_COLUMNS)
+        task_size = record_size({name: columns[name] for name in TASK_COLUMNS})
+        if record.finished and task_size > self._max_bytes // TASK_SHARE:
+            columns |= dict.fromkeys(TASK_COLUMNS)
         webhook = record.webhook
         if record.finished and webhook is not None:
             self._outbox.add(record.id, webhook, record.status, kept)
@@ -314,7 +312,7 @@ class SqliteStore:
     ) -> Record | None:
         try:
             record = replace(record_from(columns, webhook), client=client)
-            if not record.finished and record.source is None:
+            if not record.finished and record.task is None:
                 raise UnreadableRecord("it is unfinished, and what to plan is missing")
         except UnreadableRecord as error:
             log_dropped(str(columns["id"])[:80], error)
@@ -322,11 +320,10 @@ class SqliteStore:
             return None
         return record
 
-    def _source(self, id: str) -> TaskSource | None:  # noqa: A002
-        query = f"SELECT {', '.join(SOURCE_COLUMNS)} FROM front WHERE id = ?"
+    def _task(self, id: str) -> bytes | None:  # noqa: A002
+        query = f"SELECT {', '.join(TASK_COLUMNS)} FROM front WHERE id = ?"
         row = self._database.execute(query, (id,)).fetchone()
-        columns = dict(zip(SOURCE_COLUMNS, row or (None,), strict=False))
-        return source_from(columns) if columns["kind"] else None
+        return task_from(dict(zip(TASK_COLUMNS, row, strict=True))) if row else None
 
     def _delete(self, id: str) -> None:  # noqa: A002
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
@@ -360,6 +357,4 @@ class SqliteStore:
 
 def _is_short(record: Record) -> bool:
     """Return whether a record is short enough to be written later, with others."""
-    source = record.source
-    length = 0 if source is None else len(source.body) + len(source.upload or b"")
-    return length + len(record.front.tours) <= SHORT
+    return len(record.task or b"") + len(record.front.tours) <= SHORT

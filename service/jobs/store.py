@@ -18,7 +18,6 @@ from service.jobs.outbox import Outbox
 from service.jobs.record import Record, Status
 from service.jobs.webhook import Webhook
 from service.kinds.front_document import FrontDocument
-from service.requests.task import TaskKind, TaskSource
 
 
 class UnreadableRecord(Exception):
@@ -28,7 +27,7 @@ class UnreadableRecord(Exception):
 class Store(Outbox, Protocol):
     """Keeps records. Unfinished ones are never dropped, unless they cannot be decoded.
 
-    Finished ones are returned without their source, which only `source` reads.
+    Finished ones are returned without their task, which only `task` reads.
 
     When finished records are too many or too large together, the oldest one of the client with the
     most is dropped. A client loses its last one only if no client has two, or if that record alone
@@ -43,11 +42,11 @@ class Store(Outbox, Protocol):
             Expired: It was dropped, or cannot be decoded and is dropped now.
         """
 
-    async def source(self, record: Record) -> TaskSource | None:
-        """Return the source of a finished record; None if it is not kept.
+    async def task(self, record: Record) -> bytes | None:
+        """Return the task of a finished record; None if it is not kept.
 
-        Sources are not kept for records of earlier releases and for failed ones, nor if they are
-        larger than one source's share of the store.
+        Tasks are not kept for failed records, nor if they are larger than one task's share of the
+        store.
         """
 
     async def latest(self, caller: str, client: str) -> Record:
@@ -76,21 +75,21 @@ class Store(Outbox, Protocol):
 
 
 STORE_BYTES = 2**28  # of finished records, by default
-SOURCE_SHARE = 4  # the source of a finished record may take up to a quarter of a store
+TASK_SHARE = 4  # the task of a finished record may take up to a quarter of a store
 FRONT_COLUMNS = ("members", "tours", "ends", "angles")
-SOURCE_COLUMNS = ("kind", "body", "upload")
+TASK_COLUMNS = ("kind", "body")
 COLUMNS = (
     *("id", "caller", "request_id", "status", "key", "digest", "problem"),
     *FRONT_COLUMNS,
-    *SOURCE_COLUMNS,
+    *TASK_COLUMNS,
 )
+_KIND = "task"  # of what stands in `body`: version 0.1 stored requests there
 SHORT = 2**16  # bytes of tours that are not compressed, as there is little to gain
 _LEVEL = 1  # of compression, the fastest: digits shrink to half of their size
 
 
 def record_columns(record: Record) -> dict[str, Any]:
     """Return a record as columns, in their order; those without a value are None."""
-    source = record.source
     return {
         "id": record.id,
         "caller": record.caller,
@@ -100,9 +99,8 @@ def record_columns(record: Record) -> dict[str, Any]:
         "digest": record.digest,
         "problem": to_json(record.problem),
         **front_columns(record.front),
-        "kind": source and source.kind,
-        "body": source and source.body,
-        "upload": source and source.upload,
+        "kind": record.task and _KIND,
+        "body": record.task,
     }
 
 
@@ -164,9 +162,9 @@ def listed_from(
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
 
 
-def source_from(columns: Mapping[str, Any]) -> TaskSource:
-    """Return the source in these columns. The column `upload` may be missing."""
-    return TaskSource(columns["kind"], columns["body"], columns.get("upload"))
+def task_from(columns: Mapping[str, Any]) -> bytes | None:
+    """Return the task in these columns; None where there is none."""
+    return columns.get("body") if columns.get("kind") == _KIND else None
 
 
 def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
@@ -175,7 +173,6 @@ def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
 
 
 def _decode(columns: Mapping[str, Any]) -> Record:
-    kind = columns.get("kind")
     record = Record(
         id=columns["id"],
         caller=columns["caller"],
@@ -189,7 +186,7 @@ def _decode(columns: Mapping[str, Any]) -> Record:
             tours=zlib.decompress(columns["tours"]),
             ends=columns["ends"],
         ),
-        source=source_from(columns) if kind else None,
+        task=task_from(columns),
     )
     _check(record)
     return record
@@ -197,14 +194,12 @@ def _decode(columns: Mapping[str, Any]) -> Record:
 
 def _check(record: Record) -> None:
     """Raise ValueError where a record could not be used later."""
-    front, source = record.front, record.source
+    front = record.front
     texts = (record.id, record.caller, record.request_id, record.status, record.digest)
     if not all(isinstance(text, str) for text in texts):
         raise ValueError("id, caller, request_id, status and digest are not texts")
     ends = np.frombuffer(front.ends, np.int64)
     _check_status(record.status)
-    if source is not None and source.kind not in get_args(TaskKind):
-        raise ValueError(f"kind is {source.kind!r}")
     if not isinstance(record.problem, dict | None):
         raise ValueError("problem is not an object")
     if len(front.lengths) != len(ends):

@@ -1,4 +1,4 @@
-"""Run a task in a worker process: from its source to the JSON of its front."""
+"""Run a task in a worker process: from the Task to the JSON of its front."""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass

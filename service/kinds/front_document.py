@@ -14,7 +14,6 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.choice import balances
 from pydantic_core import from_json, to_json
 
 from service.coverage.frame import CoveragePath
@@ -95,10 +94,9 @@ class FrontDocument:
         Members that this release does not know are dropped.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
-        known.setdefault("kind", _kind_of_earlier_version(members))
         document = cls(**known, **encoded)
         if "lengths" not in members:
-            return document._of_earlier_version()
+            return document._of_version_before()
         return replace(document, lengths=_as_array(members["lengths"]))
 
     def with_notes(self, notes: Iterable[Note]) -> Self:
@@ -109,17 +107,10 @@ class FrontDocument:
         ]
         return replace(self, notes=members) if members else self
 
-    def _of_earlier_version(self) -> Self:
-        """Return a front that was stored without lengths, with them and with balances."""
-        items = [from_json(tour) for tour in self.split()]
-        front = replace(self, lengths=_as_array([item["lengths"] for item in items]))
-        if not items or {"balance", "losses"} & items[0].keys():
-            return front
-        tours, ends = joined(
-            to_json({"angle": tour.pop("angle"), "balance": balance, **tour})
-            for tour, balance in zip(items, balances(front.lengths).tolist(), strict=True)
-        )
-        return replace(front, tours=tours, ends=ends)
+    def _of_version_before(self) -> Self:
+        """Return a front that was stored without its lengths, with them."""
+        lengths = [from_json(tour)["lengths"] for tour in self.split()]
+        return replace(self, lengths=_as_array(lengths))
 
     def stored(self) -> bytes:
         """Return the members of the answer but the tours, and the lengths of these, as JSON."""
@@ -192,14 +183,6 @@ _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 def _as_array(lengths: list[list[float]]) -> NDArray[np.float64]:
     return np.array(lengths or np.empty((0, OBJECTIVES)), np.float64)
-
-
-def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:
-    """Return the kind of a front that version 0.1 stored, without its kind."""
-    on_map = members.get("places") is not None
-    if any("over" in objective for objective in members.get("objectives") or ()):
-        return "robots" if on_map else "fleet"
-    return "coverage" if on_map else "front"
 
 
 def _between(text: bytes, before: bytes, after: bytes) -> bytes:

@@ -1,14 +1,13 @@
-"""Parse the body of a request of any kind into a Task, and read stored Tasks."""
+"""Parse the body of a request of any kind into a Task."""
 
 from service.errors import Refusal
 from service.kinds.kind import Actors
 from service.kinds.table import KINDS, kind_of
-from service.requests.earlier_versions import parse_rest
 from service.requests.limits import Limits, check_structure
 from service.requests.notes.of_task import with_notes
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
-from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
+from service.requests.replan.way import ReplanSource, not_replannable
 from service.requests.task import Task, TaskSource
 from service.requests.task_codec import decode_task
 from service.requests.validation import parse_json
@@ -38,7 +37,11 @@ def parse_replan(source: ReplanSource, limits: Limits, actors: Actors) -> Task:
             be replanned so.
         InvalidInstance: The costs or the map cannot be planned.
     """
-    task = _stored_task(source.front, limits, actors)
+    try:
+        task = decode_task(source.front.task)
+    except ValueError as error:
+        reason = "what it was planned from is damaged"
+        raise not_replannable(source.front.id, reason) from error
     rest = kind_of(task).rest(task.subject, task, source, limits, actors)
     return with_notes(rest, has_parts=False)
 
@@ -49,28 +52,3 @@ def check_replan(body: bytes) -> None:
         parse_json(ReplanFleetRequest, body)
     except Refusal:
         parse_json(ReplanRequest, body)
-
-
-def read_task(source: TaskSource, limits: Limits, actors: Actors) -> Task:
-    """Return a stored task; earlier versions stored the request, which is parsed again.
-
-    Raises:
-        Refusal: The request of an earlier version is refused now.
-        ValueError: The task is damaged.
-    """
-    match source.kind:
-        case "task":
-            return decode_task(source.body)
-        case "replan" | "replan-coverage":
-            return parse_rest(source, limits, actors)
-    return parse_task(source, limits, actors)
-
-
-def _stored_task(stored: StoredFront, limits: Limits, actors: Actors) -> Task:
-    try:
-        return read_task(stored.source, limits, actors)
-    except Refusal as refusal:
-        reason = f"what it was planned from is refused now ({refusal.detail})"
-        raise not_replannable(stored.id, reason) from None
-    except ValueError as error:
-        raise not_replannable(stored.id, "what it was planned from is damaged") from error

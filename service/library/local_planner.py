@@ -69,7 +69,7 @@ class LocalPlanner:
 
     def replan(self, plan: Plan, earlier: Planned, display: Display) -> Planned:
         """Plan the rest of what was planned before, in the same way; raises as `plan` does."""
-        stored = StoredFront("", TaskSource("task", encode_task(earlier.task)), earlier.document)
+        stored = StoredFront("", encode_task(earlier.task), earlier.document)
         source = ReplanSource(plan.json, stored)
         parse = partial(parse_replan, source, self.runner.limits, self.runner.infos)
         return self._planned(parse, plan, display)

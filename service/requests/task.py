@@ -169,17 +169,16 @@ class Task:
         return names if self.earlier is None else replace(names, part=None)
 
 
-TaskKind = Literal["front", "coverage", "fleet", "task", "replan", "replan-coverage"]
+TaskKind = Literal["front", "coverage", "fleet", "replan"]
 
 
 @dataclass(frozen=True)
 class TaskSource:
-    """The bytes from which a task is read: a request as it came, or a task as it is stored.
+    """A request as it came, from which a task is read.
 
     Args:
-        kind: The kind of request, named after its path; or `task`, as `encode_task` writes it.
-            Earlier versions stored requests: those to replan as `replan` or `replan-coverage`.
-        body: The request as JSON, or the task.
+        kind: The kind of request, named after its path.
+        body: The request as JSON.
         upload: The .npy file of matrices, or the PNG or PGM file of a map, where one came with it.
     """
 

@@ -37,7 +37,7 @@ from service.requests.stops import (
     Stops,
     Traffic,
 )
-from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet, VehicleName
+from service.requests.task import SharedCoverage, Task, UnmeasuredFleet, VehicleName
 
 _FIRST_LINE = b"paretour task 4\n"
 _LENGTH = struct.Struct("!Q")
@@ -61,11 +61,6 @@ _FLAT_TYPES: Mapping[str, type[Any]] = {
 _NUMBERS = "biuf"  # kinds of NumPy's types: booleans, integers and floats
 
 Arrays = list[NDArray[Any]]
-
-
-def stored(task: Task) -> TaskSource:
-    """Return a task in the form that stores and queues keep."""
-    return TaskSource("task", encode_task(task))
 
 
 def encode_task(task: Task) -> bytes:

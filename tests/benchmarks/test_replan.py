@@ -10,7 +10,7 @@ from service.instance import Instance, tour_lengths
 from service.kinds.parsing import parse_replan
 from service.requests import stops as request_stops
 from service.requests.limits import Limits
-from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.replan.way import ReplanSource
 from service.requests.task import TaskSource
 from tests.benchmarks.replan import longer_than, removed_and_added, share_of, unmet
 from tests.benchmarks.rests import (
@@ -23,7 +23,7 @@ from tests.benchmarks.rests import (
     with_stops_changed,
 )
 from tests.helpers.actors import info_of
-from tests.helpers.changes import Found
+from tests.helpers.changes import Found, front_of
 
 LIMITS = Limits(body_bytes=2**20, cities=60, cells=100, preferences=99, size=99, seconds=9)
 N = 30
@@ -53,7 +53,7 @@ def test_the_rest_from_nothing_is_that_which_is_replanned(shape: str) -> None:
     stops, front, rest = drawn(shape)
     orders = np.array([each["tour"] for each in front["front"]])
     source = TaskSource("front", json.dumps(stops.request(range(N))).encode())
-    stored = StoredFront("a", source, Found(orders, np.ones((len(orders), 2))))
+    stored = front_of(source, Found(orders, np.ones((len(orders), 2))))
     body = json.dumps(rest.changes).encode()
     task = parse_replan(ReplanSource(body, stored), LIMITS, {"a": info_of("a", "matrices")})
     assert isinstance(task.subject, request_stops.Stops)

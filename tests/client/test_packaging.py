@@ -29,8 +29,8 @@ print(*sorted(imported - sys.stdlib_module_names))
 """
 
 
-def python(code: str, *options: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, *options, "-c", code]
+def python(code: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", code]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
 
 
@@ -52,9 +52,7 @@ def test_the_full_wheel_holds_the_client_once(tmp_path: Path) -> None:
     assert len(files) == len(set(files))
     assert {name.partition("/")[0] for name in files} == {"service", "models", "export", "paretour"}
     assert {name for name in files if name.startswith("paretour/")} == MODULES
-    assert [name for name in files if name.startswith("service/client")] == [
-        "service/client/__init__.py"
-    ]
+    assert not [name for name in files if name.startswith("service/client")]
 
 
 def test_the_client_imports_httpx_and_numpy_only() -> None:
@@ -64,14 +62,6 @@ def test_the_client_imports_httpx_and_numpy_only() -> None:
 def test_the_client_demands_what_it_imports() -> None:
     project = tomllib.loads((CLIENT / "pyproject.toml").read_text())["project"]
     assert {demand.partition(">")[0] for demand in project["dependencies"]} == {"httpx", "numpy"}
-
-
-def test_the_old_name_still_works_and_warns() -> None:
-    code = "from service.client import Client; import paretour; assert Client is paretour.Client"
-    assert (
-        "DeprecationWarning: service.client is now called paretour"
-        in python(code, "-W", "default").stderr
-    )
 
 
 def test_the_readme_of_the_client_runs(url: str, capsys: pytest.CaptureFixture[str]) -> None:

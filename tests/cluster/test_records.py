@@ -6,7 +6,6 @@ from service.cluster.script import CHANNEL, SCRIPT
 from service.errors import Cancelled, DeadlineExceeded
 from service.jobs.record import UNFINISHED
 from service.watch import Progress
-from tests.helpers.released_records import REDIS_HASHES
 from tests.helpers.scripted_runner import document
 from tests.helpers.stores import job, record
 
@@ -27,8 +26,7 @@ def test_fields_of_a_record_keep_their_names() -> None:
         *("id", "caller", "request_id", "status", "key", "digest", "problem"),
         *("members", "tours", "ends", "angles"),
     ]
-    assert arguments[count::2] == ["kind", "body", "upload"]
-    assert set(arguments[:count:2]) <= {name.decode() for name in REDIS_HASHES[_DONE]}
+    assert arguments[count::2] == ["kind", "body"]
     count, *arguments = record_arguments(record("a", front=document("converged", gained=0.5)))
     assert arguments[count - 2 :] == ["gained", 0.5]
 
@@ -52,6 +50,3 @@ def test_the_script_sets_the_fields_that_are_read() -> None:
         "message",
     ):
         assert f"'{name}'" in SCRIPT
-
-
-_DONE = b"paretour:front:done"

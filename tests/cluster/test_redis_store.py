@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import sqlite3
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,12 +14,11 @@ from service.cluster.redis_engine import connect
 from service.cluster.script import connect_redis, wait_for_redis
 from service.cluster.worker_store import WorkerStore
 from service.errors import Expired, StoreUnavailable
-from service.requests.task import TaskSource
-from service.watch import Progress
+from service.requests.task_codec import decode_task
 from tests.helpers.ports import free_port
 from tests.helpers.redis_server import FORGETFUL, Redis, redis_server
-from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS
 from tests.helpers.stores import FullRedisStore, Worker, job, record, redis_store
+from tests.helpers.version_before import ANSWERS, CALLER, NOW, UNFINISHED, write_store
 
 
 def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
@@ -32,25 +32,30 @@ def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
     asyncio.run(test())
 
 
-def test_records_of_the_last_release_are_read(redis: Redis) -> None:
+def test_records_of_the_version_before_are_read(redis: Redis, tmp_path: Path) -> None:
+    database = sqlite3.connect(write_store(tmp_path / "fronts.sqlite"))
+    database.row_factory = sqlite3.Row
+    rows = [dict(row) for row in database.execute("SELECT * FROM front")]
+    database.close()
+
     async def test() -> None:
         connection = AsyncRedis.from_url(redis.url)
         await connection.flushall()
-        for key, fields in REDIS_HASHES.items():
-            await connection.hset(key, mapping=fields)
-        for key, ids in REDIS_SETS.items():
-            await connection.zadd(key, ids)
-        store = FullRedisStore(connection, entries=9, max_age=60, clock=lambda: 1001.0)
-        done = await store.get("us", "done")
-        assert (done.json(), done.front.gained) == (ANSWERS["done"], 0.0625)
-        assert (await store.latest("us", "us")).id == "done"
-        running = await store.find("get", "us", "running")
-        assert running.record.json() == ANSWERS["running"]
-        assert (running.requested_at, running.attempts) == (1000, 1)
-        assert running.progress == Progress(seconds=0.5, hypervolume=0.4375, points=3)
-        waiting, _ = await store.unfinished()
-        assert json.loads(waiting.json()) == json.loads(ANSWERS["waiting"])
-        assert waiting.source == TaskSource("coverage", b'{"cell_size": 1}', b"\x89PNG")
+        for row in rows:
+            id_, number = row["id"], row["number"]
+            given = {name: value for name, value in row.items() if value is not None}
+            work = {name: given.pop(name) for name in ("kind", "body")}
+            await connection.hset(f"paretour:front:{id_}", mapping=given)
+            await connection.hset(f"paretour:work:{id_}", mapping=work)
+            those = "unfinished" if id_ == UNFINISHED else "finished"
+            await connection.zadd(f"paretour:{those}", {id_: number})
+        store = FullRedisStore(connection, entries=99, max_age=60, clock=lambda: NOW)
+        for id_, answer in ANSWERS.items():
+            stored = await store.get(CALLER, id_)
+            assert json.loads(stored.json()) == answer
+            decode_task(await store.task(stored) or b"")
+        [waiting] = await store.unfinished()
+        decode_task(waiting.task or b"")
         await store.close()
 
     asyncio.run(test())
@@ -128,7 +133,7 @@ def test_a_worker_drops_a_record_that_it_cannot_read_and_whoever_waits_is_told(
     async def put() -> None:
         async with redis_store(redis.url, entries=9, max_age=60) as store:
             await store.put(job("a"))
-            await store.put(job("b", source=None))
+            await store.put(job("b", task=None))
 
     asyncio.run(put())
     connection = redis_client.Redis.from_url(redis.url)
@@ -147,33 +152,6 @@ def test_a_worker_drops_a_record_that_it_cannot_read_and_whoever_waits_is_told(
     connection.close()
 
 
-def test_what_replicas_of_the_last_release_store_is_counted(redis: Redis) -> None:
-    async def test() -> None:
-        connection = AsyncRedis.from_url(redis.url)
-        await connection.flushall()
-        for number in range(20):
-            caller = "us" if number == 0 else "them"
-            hash_ = REDIS_HASHES[b"paretour:front:done"] | {
-                b"id": b"%d" % number,
-                b"caller": caller.encode(),
-                b"number": b"%d" % number,
-                b"key": b"%d" % number,
-            }
-            await connection.hset(f"paretour:front:{number}", mapping=hash_)
-            await connection.zadd("paretour:finished", {str(number): number})
-            await connection.zadd(f"paretour:caller:{caller}", {str(number): number})
-        bounds = {"max_age": 60, "clock": lambda: 1001.0}
-        by_entries = FullRedisStore(connection, entries=10, **bounds)
-        assert (await by_entries.latest("us", "us")).id == "0"
-        by_bytes = FullRedisStore(connection, entries=99, max_bytes=3_000, **bounds)
-        assert (await by_bytes.latest("us", "us")).id == "0"
-        assert await connection.zcard("paretour:finished") < 10
-        assert int(await connection.get("paretour:total")) <= 3_000
-        await by_bytes.close()
-
-    asyncio.run(test())
-
-
 def test_without_keys_the_records_of_one_address_leave_those_of_another(redis: Redis) -> None:
     async def test() -> None:
         async with redis_store(redis.url, entries=4, max_age=60) as store:
@@ -187,7 +165,7 @@ def test_without_keys_the_records_of_one_address_leave_those_of_another(redis: R
             await worker.close()
             assert begun is not None
             assert begun.record.client == "192.0.2.1"
-            await store.put(replace(begun.record, status="done", source=None))
+            await store.put(replace(begun.record, status="done", task=None))
             for id_ in ("a", "b", "7", "8"):
                 assert (await store.get("us", id_)).id == id_
             for id_ in map(str, range(7)):

@@ -126,17 +126,17 @@ def test_jobs_that_name_no_client_take_turns_by_their_callers(redis: Redis) -> N
     assert [worker.begin(each) for each in ("a1", "a2", "old")] == ["a1", "old", "a2"]
 
 
-def test_what_a_worker_finishes_keeps_its_source_unless_it_failed(redis: Redis) -> None:
+def test_what_a_worker_finishes_keeps_its_task_unless_it_failed(redis: Redis) -> None:
     worker = Worker(redis.url, "host:1:aa")
     submitted(redis.url, "a", "b")
     for id_, status in (("a", "done"), ("b", "failed")):
         assert worker.begin(id_) == id_
         worker.finish(record(id_, status=status))
 
-    async def sources() -> list[Any]:
+    async def tasks() -> list[Any]:
         store = FullRedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
-        found = [await store.source(record(id_)) for id_ in "ab"]
+        found = [await store.task(record(id_)) for id_ in "ab"]
         await store.close()
         return found
 
-    assert asyncio.run(sources()) == [job("a").source, None]
+    assert asyncio.run(tasks()) == [job("a").task, None]

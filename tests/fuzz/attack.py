@@ -20,6 +20,7 @@ from service.requests.limits import Limits
 from service.requests.replan.way import ReplanSource
 from service.requests.task import TaskSource
 from tests.fuzz.bodies import GENERATORS
+from tests.helpers.changes import FrontOf
 
 
 def parse_many(
@@ -65,6 +66,7 @@ def post_many(url: str, sources: Iterable[TaskSource | ReplanSource]) -> Counter
 def _post(client: httpx.Client, source: TaskSource | ReplanSource) -> httpx.Response:
     if isinstance(source, TaskSource):
         return client.post(f"/{source.kind}", **message_of(source))
+    assert isinstance(source.front, FrontOf)
     front = _post(client, source.front.source).raise_for_status().json()["id"]
     message = message_of(TaskSource("replan", source.body))
     return client.post(f"/front/{front}/replan", **message)

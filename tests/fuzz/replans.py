@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.replan.way import ReplanSource
 from service.requests.task import TaskKind, TaskSource
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
-from tests.helpers.changes import Found
+from tests.helpers.changes import Found, front_of
 
 _CITIES = 5
 _MATRIX = [[abs(i - j) for j in range(_CITIES)] for i in range(_CITIES)]
@@ -36,7 +36,7 @@ def replan(rng: random.Random) -> ReplanSource:
         body = mutated(rng, body, TOKENS, len(body))
     source = TaskSource(kind, json.dumps({**request, "time_limit": 0.02}).encode())
     found = Found(_TOURS, _LENGTHS, request.get("places"))
-    return ReplanSource(body, StoredFront("front", source, found))
+    return ReplanSource(body, front_of(source, found))
 
 
 _TOURS, _LENGTHS = np.arange(_CITIES)[np.newaxis], np.ones((1, 2))

@@ -15,7 +15,7 @@ PAGE = GUIDE / "how-the-code-is-laid-out.md"
 WIDTH = 118
 FOLDERS = {
     "service/actors": "The released networks, an ONNX file each.",
-    "service/client": "The client, a project of its own, and its old import name.",
+    "service/client": "The client, a project of its own.",
     "service/deploy": "Files for Docker Compose, Kubernetes, KEDA, nginx, Prometheus and Grafana.",
     "service/guide": "The pages of this guide, in Markdown.",
     "service/guide/site": "The style sheet and the script of the guide in a browser.",

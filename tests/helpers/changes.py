@@ -9,13 +9,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.requests.replan.way import StoredFront
+from service.kinds.parsing import parse_task
+from service.requests.limits import Limits
+from service.requests.replan.way import FoundTours, StoredFront
 from service.requests.task import TaskSource
+from service.requests.task_codec import encode_task
 from service.roads.great_circle import great_circle_matrix
+from tests.helpers.actors import info_of
 
 Array = NDArray[np.float64]
 MOST = 9  # stops in all, for which the search compares all tours
 KINDS = ("coordinates", "matrices", "mixed", "measured")
+_ROOM = Limits(
+    body_bytes=2**27,
+    cities=9999,
+    cells=10**6,
+    preferences=999,
+    size=9999,
+    seconds=99,
+    path_cells=2**30,
+    roads=True,
+)
+_ACTORS = {inputs: info_of(inputs, inputs) for inputs in ("coordinates", "matrices")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +44,18 @@ class Found:
     def split(self) -> list[bytes]:
         """Return the JSON of each tour; none is needed to replan tours."""
         return []
+
+
+@dataclass(frozen=True, eq=False)
+class FrontOf(StoredFront):
+    """A stored front, and the request that it was planned from."""
+
+    source: TaskSource
+
+
+def front_of(source: TaskSource, found: FoundTours) -> FrontOf:
+    """Return the front of a request as a store keeps it."""
+    return FrontOf("front", encode_task(parse_task(source, _ROOM, _ACTORS)), found, source)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +73,7 @@ class Change:
         driven: What is left of the tour being driven, in indexes of all stops.
     """
 
-    front: StoredFront
+    front: FrontOf
     request: dict[str, Any]
     costs: Array
     ids: list[str]
@@ -188,12 +215,12 @@ def _stored(  # noqa: PLR0913  what is stored of a front
     tours: list[list[int]],
     costs: Array,
     ids: list[str],
-) -> StoredFront:
+) -> FrontOf:
     turns = rng.integers(0, way.n, len(tours)) if way.closed else [0] * len(tours)
     turned = [np.roll(tour, turn) for tour, turn in zip(tours, turns, strict=True)]
     lengths = [[float(each[tour, np.roll(tour, -1)].sum()) for each in costs] for tour in turned]
     source = TaskSource("front", json.dumps(_named(request, ids, kind, way.n)).encode())
-    return StoredFront("front", source, Found(np.array(turned), np.array(lengths)))
+    return front_of(source, Found(np.array(turned), np.array(lengths)))
 
 
 def _name(rng: np.random.Generator, ids: list[str], index: int) -> int | str:

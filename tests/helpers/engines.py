@@ -23,7 +23,6 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.kind import NamedActor
-from service.kinds.parsing import read_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from tests.helpers.cluster_state import ClusterState
@@ -163,13 +162,10 @@ def _work(
     workers: int,
     roads: RouterSettings | None,
 ) -> None:
-    runner = make_runner()
-    read = partial(read_task, limits=runner.limits, actors=runner.infos)
     worker = CeleryWorker(
         celery=make_celery(url, seconds),
         records=RecordWorker(
             make_runner,
-            read,
             url,
             workers=workers,
             seconds=seconds,

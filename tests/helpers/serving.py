@@ -24,7 +24,6 @@ from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner
 from service.kinds.kind import NamedActor
-from service.kinds.parsing import read_task
 from service.kinds.parts import Compiling, Part
 from service.requests.limits import Limits
 from service.server import Ending, build, make_server
@@ -86,9 +85,7 @@ def app_of(
     """Return the application with the engine of one machine and, by default, a store in memory."""
     store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
     workers = workers or workers_of(runner_of(*actors, limits=limits))
-    infos = {actor.info.name: actor.info for actor in actors or ACTORS}
-    read = partial(read_task, limits=limits, actors=infos)
-    return engine_app(store, LocalEngine(workers, store, read), *actors, limits=limits, edge=edge)
+    return engine_app(store, LocalEngine(workers, store), *actors, limits=limits, edge=edge)
 
 
 def engine_app(

@@ -13,7 +13,6 @@ from service.cluster.script import connect_redis
 from service.cluster.worker_store import WorkerStore
 from service.jobs.record import Record
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.requests.task import TaskSource
 from tests.helpers.scripted_runner import document
 
 T = TypeVar("T")
@@ -25,8 +24,7 @@ def record(id_: str, caller: str = "us", **more: Any) -> Record:
 
 
 def job(id_: str, **more: Any) -> Record:
-    source = TaskSource("front", b"{}", b"\0")
-    return record(id_, **{"status": "queued", "source": source, **more})
+    return record(id_, **{"status": "queued", "task": b"{}", **more})
 
 
 class FullRedisStore(RedisStore):
@@ -48,7 +46,7 @@ class FullRedisStore(RedisStore):
         return await self._earlier(record.caller, "repeated", *_identity(record)[1:])
 
     async def unfinished(self) -> list[Record]:
-        """Return all unfinished records with their sources, the oldest first."""
+        """Return all unfinished records with their tasks, the oldest first."""
         found = [await self.read(*each, whole=True) for each in await self.call("unfinished")]
         return [stored.record for stored in found if stored is not None]
 

@@ -12,7 +12,7 @@ from service.jobs.record import Record, as_finished
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument
-from service.requests.task import Task, TaskSource
+from service.requests.task_codec import encode_task
 from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document, task
 
@@ -79,11 +79,6 @@ class Immediate:
         return [record for record in self.records.values() if not record.finished]
 
 
-def read(source: TaskSource) -> Task:
-    del source
-    return task()
-
-
 def new_record(id_: str = "0" * 32) -> Record:
     return Record(
         id=id_,
@@ -91,14 +86,14 @@ def new_record(id_: str = "0" * 32) -> Record:
         request_id="",
         status="queued",
         front=FRONT,
-        source=TaskSource("front", b""),
+        task=encode_task(task()),
     )
 
 
 async def followed(steps: int) -> list[str]:
     """The statuses that a follower sees who begins some steps of the loop after the end began."""
     workers = NoProcesses()
-    jobs = LocalEngine(workers, Immediate(), read)
+    jobs = LocalEngine(workers, Immediate())
     record = new_record()
     await jobs.submit(record, task())
     await asyncio.sleep(0)  # so that the job waits for its front
@@ -122,7 +117,7 @@ def test_the_end_is_told_whenever_it_comes(steps: int) -> None:
 async def full_store() -> None:
     """The store is full as a job ends, and after a while it is not."""
     workers, store = NoProcesses(), Immediate()
-    engine = LocalEngine(workers, store, read)
+    engine = LocalEngine(workers, store)
     first, second = new_record(), new_record("1" * 32)
     await engine.submit(first, task())
     following = asyncio.ensure_future(_statuses(engine, first))
@@ -184,9 +179,9 @@ def test_a_record_that_the_store_never_takes_gives_up_its_front() -> None:
 def test_a_job_that_cannot_be_resumed_ends() -> None:
     async def test() -> None:
         store = Immediate()
-        await store.put(replace(new_record(), source=None))
-        engine = LocalEngine(NoProcesses(), store, read)
-        following = replace(new_record(), source=None)
+        await store.put(replace(new_record(), task=None))
+        engine = LocalEngine(NoProcesses(), store)
+        following = replace(new_record(), task=None)
         await engine.start()
         async with asyncio.timeout(60):
             assert (await _statuses(engine, following))[-1] == "failed"
@@ -199,7 +194,7 @@ def test_a_job_may_be_cancelled_before_it_is_resumed() -> None:
     async def test() -> None:
         store = Immediate()
         await store.put(new_record())
-        engine = LocalEngine(NoProcesses(), store, read)
+        engine = LocalEngine(NoProcesses(), store)
         await engine.start()
         async with asyncio.timeout(60):
             assert (await engine.cancel(new_record())).status == "cancelled"

@@ -113,7 +113,7 @@ def test_a_repeat_of_what_failed_adds_no_delivery_to_the_first(run: Callable[...
     async def test(store: Any, _: Clock) -> None:
         first = job("a", webhook=HOOK, key="k", digest="d")
         await store.admit(first)
-        await store.put(replace(first, status="failed", source=None))
+        await store.put(replace(first, status="failed", task=None))
         [delivery] = await store.due_deliveries(9, LEASE)
         await store.remove_delivery(delivery.id)
         again = job("b", webhook=HOOK, key="k", digest="d")

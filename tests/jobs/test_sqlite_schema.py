@@ -3,27 +3,14 @@
 import os
 import sqlite3
 import stat
-from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from service.jobs.sqlite_schema import STEPS, migrate, open_file
 from service.jobs.sqlite_store import SqliteStore
-from tests.helpers.released_records import SQLITE_ROWS, SQLITE_SCHEMA
-
-
-@contextmanager
-def released_file(path: Path) -> Iterator[sqlite3.Connection]:
-    with closing(sqlite3.connect(path)) as database:
-        database.executescript(SQLITE_SCHEMA)
-        for row in SQLITE_ROWS:
-            places = ", ".join("?" * len(row))
-            database.execute(f"INSERT INTO front VALUES ({places})", tuple(row.values()))
-        database.commit()
-        yield database
+from tests.helpers.version_before import write_store
 
 
 def version(database: sqlite3.Connection) -> int:
@@ -35,49 +22,45 @@ def mode(path: Path) -> int:
     return stat.S_IMODE(path.stat().st_mode)
 
 
-def test_a_file_without_a_version_gets_all_steps_and_keeps_its_records(tmp_path: Path) -> None:
-    with released_file(tmp_path / "old") as database:
-        assert version(database) == 0
-    with closing(open_file(str(tmp_path / "old"))) as database:
-        assert version(database) == len(STEPS)
-        sizes = dict(database.execute("SELECT id, size FROM front").fetchall())
-    stored: list[dict[str, Any]] = SQLITE_ROWS
-    for row in stored:
-        values = [value for name, value in row.items() if name not in ("number", "kept")]
-        assert sizes[row["id"]] == sum(len(value) for value in values if value is not None)
+def test_a_new_file_has_what_one_of_the_version_before_has(tmp_path: Path) -> None:
     with (
-        closing(open_file(str(tmp_path / "old"))) as old,
+        closing(open_file(str(write_store(tmp_path / "old")))) as old,
         closing(open_file(str(tmp_path / "new"))) as new,
     ):
-        columns = "SELECT name FROM pragma_table_info('front')"
-        assert old.execute(columns).fetchall() == new.execute(columns).fetchall()
+        assert version(old) == version(new)
+        for table in ("front", "gone", "delivery"):
+            columns = [
+                {name for (name,) in each.execute("SELECT name FROM pragma_table_info(?)", [table])}
+                for each in (old, new)
+            ]
+            # Requests once had a file beside them.
+            assert columns[0] - {"upload"} == columns[1]
 
 
 def test_steps_are_taken_all_or_none(tmp_path: Path) -> None:
-    with released_file(tmp_path / "old") as database:
-        before = list(database.iterdump())
+    with closing(sqlite3.connect(write_store(tmp_path / "old"))) as database:
+        before, latest = list(database.iterdump()), version(database)
         with pytest.raises(sqlite3.Error):
             migrate(database, (*STEPS, "ALTER TABLE none ADD COLUMN one;"))
-        assert (version(database), list(database.iterdump())) == (0, before)
+        assert (version(database), list(database.iterdump())) == (latest, before)
         migrate(database, (*STEPS, "ALTER TABLE front ADD COLUMN one;"))
-        assert version(database) == len(STEPS) + 1
+        assert version(database) == latest + 1
+        database.execute("SELECT one FROM front")
 
 
 def test_a_file_of_a_later_release_is_refused_and_left_as_it_is(tmp_path: Path) -> None:
     path = tmp_path / "later"
-    open_file(str(path)).close()
-    with closing(sqlite3.connect(path)) as database:
-        database.execute(f"PRAGMA user_version = {len(STEPS) + 1}")
+    with closing(open_file(str(path))) as database:
+        later = version(database) + 1
+        database.execute(f"PRAGMA user_version = {later}")
     before = path.read_bytes()
-    with pytest.raises(ValueError, match=rf"of version {len(STEPS) + 1}, of a later release, and"):
+    with pytest.raises(ValueError, match=rf"of version {later}, of a later release, and"):
         SqliteStore(str(path), entries=1, max_age=1)
     assert path.read_bytes() == before
 
 
 def test_the_file_and_those_beside_it_are_their_owners_alone(tmp_path: Path) -> None:
-    new, old = tmp_path / "new", tmp_path / "old"
-    with released_file(old):
-        pass
+    new, old = tmp_path / "new", write_store(tmp_path / "old")
     wal = tmp_path / "old-wal"
     wal.touch()
     for path in (old, wal):
@@ -99,7 +82,8 @@ def test_the_file_and_those_beside_it_are_their_owners_alone(tmp_path: Path) -> 
     [
         (b"root:x:0:0:", "file is not a database"),
         ("CREATE TABLE notes (text)", "another program's"),
-        (SQLITE_SCHEMA, "damaged"),
+        ("CREATE TABLE front (id); PRAGMA user_version = 3", "of version 0.1; start 0.2"),
+        ("CREATE TABLE front (id); CREATE TABLE gone (id)", "damaged"),
     ],
 )
 def test_a_file_that_is_not_the_stores_is_refused_and_left_as_it_is(

@@ -12,9 +12,17 @@ import pytest
 
 from service.errors import Expired, NotFound, StoreUnavailable
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.requests.task import TaskSource
-from tests.helpers.released_records import ANSWERS, SQLITE_ROWS, SQLITE_SCHEMA
+from service.kinds.parsing import parse_replan
+from service.kinds.table import kind_of
+from service.requests.limits import Limits
+from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.task_codec import decode_task
+from tests.helpers.actors import info_of
 from tests.helpers.stores import job, record
+from tests.helpers.version_before import ANSWERS, CALLER, NOW, UNFINISHED, write_store
+
+LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=99, seconds=99)
+INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
 
 
 def test_what_is_in_a_file_is_there_after_a_restart(tmp_path: Path) -> None:
@@ -96,26 +104,24 @@ def test_a_store_whose_disk_is_full_is_unavailable_until_there_is_room(tmp_path:
     asyncio.run(test())
 
 
-def test_a_file_of_the_last_release_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "fronts.sqlite"
-    with sqlite3.connect(path) as database:
-        database.executescript(SQLITE_SCHEMA)
-        for row in SQLITE_ROWS:
-            places = ", ".join("?" * len(row))
-            database.execute(f"INSERT INTO front VALUES ({places})", tuple(row.values()))
-    database.close()
+def test_fronts_of_the_version_before_are_answered_and_replanned(tmp_path: Path) -> None:
+    path = write_store(tmp_path / "fronts.sqlite")
 
     async def test() -> None:
-        store = SqliteStore(str(path), entries=9, max_age=60, clock=lambda: 1001.0)
-        done = await store.get("us", "done")
-        assert done.json() == ANSWERS["done"]
-        assert json.loads(done.front.tour(1))["tour"] == [0, 2, 1]
-        assert done.front.lengths.tolist() == [[1.0, 2.5], [2.0, 1.0]]
-        for id_ in ("waiting", "lost"):
-            stored = await store.get("us", id_)
-            assert json.loads(stored.json()) == json.loads(ANSWERS[id_])
+        store = SqliteStore(str(path), entries=99, max_age=60, clock=lambda: NOW)
+        for id_, answer in ANSWERS.items():
+            stored = await store.get(CALLER, id_)
+            assert json.loads(stored.json()) == answer
+            task = await store.task(stored)
+            assert task is not None
+            if answer["kind"] != "robots":
+                changes = b'{"now": 26000}' if id_ == "day" else b"{}"
+                asked = ReplanSource(changes, StoredFront(id_, task, stored.front))
+                assert kind_of(parse_replan(asked, LIMITS, INFOS)).name == answer["kind"]
         [waiting] = await store.unfinished()
-        assert waiting.source == TaskSource("coverage", b'{"cell_size": 1}', b"\x89PNG")
+        assert waiting.id == UNFINISHED
+        assert waiting.task is not None
+        assert decode_task(waiting.task).options.time_limit == 60
         await store.close()
 
     asyncio.run(test())
@@ -172,7 +178,7 @@ def test_unfinished_work_without_a_body_is_dropped(tmp_path: Path) -> None:
     async def test() -> None:
         store = SqliteStore(path, entries=9, max_age=60)
         await store.put(job("a"))
-        await store.put(job("b", source=None))
+        await store.put(job("b", task=None))
         assert [each.id for each in await store.unfinished()] == ["a"]
         await store.close()
 

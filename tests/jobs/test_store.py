@@ -11,8 +11,7 @@ import pytest
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
-from service.jobs.store import SOURCE_SHARE
-from service.requests.task import TaskSource
+from service.jobs.store import TASK_SHARE
 from tests.helpers.stores import job, record, redis_store, sqlite_store
 
 Run = Callable[..., None]
@@ -266,9 +265,9 @@ def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_
         for id_ in "bcd":
             await store.put(record(id_))
         [unfinished] = await store.unfinished()
-        assert (unfinished.id, unfinished.source) == ("a", TaskSource("front", b"{}", b"\0"))
+        assert (unfinished.id, unfinished.task) == ("a", b"{}")
         assert (await store.latest("us", "us")).id == "d"
-        await store.put(replace(unfinished, status="done", source=None))
+        await store.put(replace(unfinished, status="done", task=None))
         assert (await store.latest("us", "us")).id == "a"
         assert await store.unfinished() == []
 
@@ -284,7 +283,7 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
             await store.admit(job("c", key="k", digest="2"))
         other = job("d", caller="them", key="k", digest="2")
         assert await store.admit(other) is other
-        await store.put(replace(first, status="done", source=None))
+        await store.put(replace(first, status="done", task=None))
         assert (await store.admit(job("e", key="k", digest="1"))).status == "done"
         await store.delete(first)
         assert (await store.admit(job("f", key="k", digest="2"))).id == "f"
@@ -295,35 +294,34 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
     run(test)
 
 
-def test_a_finished_record_has_its_source_beside_it(run: Run) -> None:
+def test_a_finished_record_has_its_task_beside_it(run: Run) -> None:
     async def test(store: Any) -> None:
-        source = TaskSource("front", b"{}", b"\0")
-        await store.put(record("a", source=source))
+        await store.put(record("a", task=b"{}"))
         await store.put(record("b"))
         a, b = await store.get("us", "a"), await store.get("us", "b")
-        assert (a.source, await store.source(a), await store.source(b)) == (None, source, None)
+        assert (a.task, await store.task(a), await store.task(b)) == (None, b"{}", None)
         await store.delete(a)
-        assert await store.source(a) is None
+        assert await store.task(a) is None
 
     run(test)
 
 
-def test_a_source_too_large_for_its_share_is_not_kept_and_its_record_is(run: Run) -> None:
+def test_a_task_too_large_for_its_share_is_not_kept_and_its_record_is(run: Run) -> None:
     async def test(store: Any) -> None:
-        most = 100_000 // SOURCE_SHARE
-        small = TaskSource("front", b" " * (most - 5), None)
-        await store.put(record("a", source=small))
-        await store.put(record("b", source=TaskSource("front", b" " * most, b" ")))
+        most = 100_000 // TASK_SHARE
+        small = b" " * (most - 5)
+        await store.put(record("a", task=small))
+        await store.put(record("b", task=b" " * most))
         a, b = await store.get("us", "a"), await store.get("us", "b")
-        assert (await store.source(a), await store.source(b)) == (small, None)
+        assert (await store.task(a), await store.task(b)) == (small, None)
 
     run(test, max_bytes=100_000)
 
 
-def test_sources_count_among_the_bytes_of_a_store(run: Run) -> None:
+def test_tasks_count_among_the_bytes_of_a_store(run: Run) -> None:
     async def test(store: Any) -> None:
         for id_ in "abcdef":
-            await store.put(record(id_, source=TaskSource("front", b" " * 24_900, None)))
+            await store.put(record(id_, task=b" " * 24_900))
         assert await kept(store, "us", "abcdef") == ["d", "e", "f"]
 
     run(test, entries=9, max_bytes=100_000)

@@ -15,8 +15,9 @@ from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits
 from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.task import Task, TaskSource
-from service.requests.task_codec import encode_task, stored
+from service.requests.task_codec import encode_task
 from tests.helpers.actors import Shuffler, info_of
+from tests.helpers.changes import front_of
 
 LIMITS = Limits(body_bytes=2**20, cities=20, cells=200, preferences=99, size=9999, seconds=9)
 RUNNER = TaskRunner({"any": Shuffler(info=info_of("any", "matrices"))}, LIMITS)
@@ -65,7 +66,7 @@ class Scene:
         self.tours = [item["tour"] for item in json.loads(b"[" + self.front.tours + b"]")]
 
     def rest(self, **request: Any) -> Task:
-        stored = StoredFront("front", self.source, self.front)
+        stored = front_of(self.source, self.front)
         body = json.dumps({"size": 9999, **request}).encode()
         return rest_of(stored, body)
 
@@ -143,7 +144,7 @@ def test_a_whole_map_and_a_whole_layer_may_be_new() -> None:
     layer = scene.rng.integers(1, 9, (ROWS, COLUMNS)).tolist()
     rest = planned(scene.rest(grid=grid([]), cost_layer=layer))
     assert same_lengths(rest, new_front(scene, grid=grid([]), cost_layer=layer))
-    again = StoredFront("rest", stored(scene.rest(grid=grid([]))), rest)
+    again = StoredFront("rest", encode_task(scene.rest(grid=grid([]))), rest)
     body = json.dumps({"remove": [2], "size": 9999}).encode()
     second = planned(rest_of(again, body))
     places = [cell for i, cell in enumerate(scene.places) if i != 2]
@@ -173,7 +174,7 @@ def test_the_paths_of_a_front_are_not_parsed() -> None:
     expected = scene.rest(done=[1])
     tracemalloc.start()
     try:
-        rest = rest_of(StoredFront("front", scene.source, front), b'{"size": 9999, "done": [1]}')
+        rest = rest_of(front_of(scene.source, front), b'{"size": 9999, "done": [1]}')
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()

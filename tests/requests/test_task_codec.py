@@ -1,19 +1,19 @@
 """A task is the same after it was written and read, and damage is told."""
 
 import json
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 
-from service.kinds.parsing import parse_replan, parse_task, read_task
+from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits
-from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import decode_task, encode_task
 from tests.helpers.actors import info_of
-from tests.helpers.changes import Found, random_change
+from tests.helpers.changes import random_change
 from tests.helpers.sampled import third
 
 LIMITS = Limits(
@@ -98,49 +98,3 @@ def test_damage_is_told() -> None:
                 decode_task(bytes(damaged))
             except ValueError:
                 continue
-
-
-# What version 0.1 stored of the rests of both ways, and what was asked for.
-STORED_REST = TaskSource(
-    "replan",
-    b'{"stops":[{"id":"a","location":[24.9,60.1]},{"id":"b","location":[24.91,60.1]},'
-    b'{"id":"c","location":[24.919999999999998,60.1]},{"id":"d","location":[24.93,60.1]}],'
-    b'"objectives":[{"name":"way","unit":"m","from":"great_circle","changed":[[1,2,7.0]]},'
-    b'{"name":"risk","unit":null,"coordinates":[[0.0,0.0],[1.0,2.0],[2.0,1.0],[3.0,3.0]]}],'
-    b'"closed":false,"start":0,"end":3,"earlier_tours":{"count":3,"stops":'
-    b'"AAAAAAEAAAACAAAAAwAAAAAAAAABAAAAAgAAAAMAAAAAAAAAAgAAAAEAAAADAAAA"},'
-    b'"touched":[0,1,2,3],"balance":0.0,"min_kept":0.0,"arrivals":true,"seed":5}',
-)
-STORED_REST_OF_MAP = TaskSource(
-    "replan-coverage",
-    b'{"cell_size":0.5,"robot_radius":0.0,"origin":[1.0,2.0,0.0],"places":[[0,0],[1,2],[1,0],'
-    b'[0,1]],"cost_layer":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"closed":false,"start":3,"end":0,'
-    b'"earlier_tours":{"count":2,"stops":"AwAAAAEAAAACAAAAAAAAAAMAAAABAAAAAgAAAAAAAAA="},'
-    b'"touched":[0,1,2,3],"balance":0.5,"min_kept":0.0,"paths":true}',
-    b"P5 3 2 255\n\xff\xff\x00\xff\xff\xff",
-)
-
-
-def test_rests_that_an_earlier_version_stored_are_read() -> None:
-    stops = [{"id": name, "location": [24.9 + i / 100, 60.1]} for i, name in enumerate("abcd")]
-    planes = [{"name": "way", "from": "great_circle"}, {"name": "risk", "coordinates": [[0, 0]]}]
-    planes[1]["coordinates"] = [[0, 0], [1, 2], [2, 1], [3, 3]]
-    front = {"stops": stops, "objectives": planes, "closed": False, "end": "d"}
-    found = Found(np.array([[0, 1, 2, 3], [0, 2, 1, 3]]), np.array([[1.0, 2.0], [2.0, 1.0]]))
-    entry = {"objective": 0, "from": "b", "to": "c", "cost": 7}
-    asked: dict[str, Any] = {"done": ["a"], "costs": [entry], "seed": 5, "arrivals": True}
-    _check_read(STORED_REST, "front", front, found, asked)
-    places = {**PLACES, "cost_layer": [[1, 2, 3], [4, 5, 6]]}
-    coverage = {**GRID, **places, "origin": [1, 2, 0], "paths": False}
-    found = Found(np.array([[0, 1, 2]]), np.array([[1.0, 2.0]]), places["places"])
-    asked = {"done": [0], "position": [0, 1], "paths": True}
-    _check_read(STORED_REST_OF_MAP, "coverage", coverage, found, asked)
-
-
-def _check_read(
-    rest: TaskSource, kind: TaskKind, request: dict[str, Any], found: Found, asked: dict[str, Any]
-) -> None:
-    front = StoredFront("f", TaskSource(kind, json.dumps(request).encode()), found)
-    now = parse_replan(ReplanSource(json.dumps(asked).encode(), front), LIMITS, INFOS)
-    # It did not store the parts of the request that name places.
-    assert same(read_task(rest, LIMITS, INFOS), replace(now, parts=()))

@@ -17,7 +17,7 @@ from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
 from service.requests.stops import Hours, Labels, Source, Stop, Stops
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
@@ -47,10 +47,10 @@ class FoundTours(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class StoredFront:
-    """A front as it is stored: its id, what it was planned from, and its tours."""
+    """A front as it is stored: its id, the task that it was planned from, and its tours."""
 
     id: str
-    source: TaskSource
+    task: bytes
     found: FoundTours
 
 

@@ -12,10 +12,10 @@ from service.errors import Refusal
 from service.kinds.parsing import parse_replan
 from service.kinds.tours import survey_map
 from service.requests.limits import Limits
-from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
-from tests.helpers.changes import Found
+from tests.helpers.changes import Found, front_of
 
 LIMITS = Limits(body_bytes=2**20, cities=20, cells=200, preferences=99, size=9999, seconds=9)
 INFOS = {"matrices": info_of("matrices", "matrices")}
@@ -53,7 +53,7 @@ def rest(second: str = "cost_layer", more: dict[str, Any] | None = None, **reque
     }
     came = {name: value for name, value in members.items() if value is not None}
     found = Found(np.array(TOURS), np.array([[1.0, 2.0], [2.0, 1.0]]), PLACES)
-    front = StoredFront("front", TaskSource("coverage", json.dumps(came).encode()), found)
+    front = front_of(TaskSource("coverage", json.dumps(came).encode()), found)
     task = parse_replan(ReplanSource(json.dumps(request).encode(), front), LIMITS, INFOS)
     survey_map(task.subject, task, LIMITS, lambda: False)  # as a worker does before it plans
     return task
