@@ -22,7 +22,7 @@ _LEAST_SECONDS = 1e-3  # for the search, even if completing the earlier tours to
 _ROUNDING = 1e-9  # of a share
 # Of the tours among which those that keep enough legs are chosen: cities of all of them for each
 # second that choosing may take, and tours under four objectives.
-_CITIES_A_SECOND, _MOST_OF_FOUR = 10_000_000, 4_000
+_CITIES_A_SECOND, _MOST_UNDER_FOUR = 10_000_000, 4_000
 
 
 def replan(
@@ -93,7 +93,7 @@ def _from_earlier(
         seconds = selection_limit(options.time_limit)
         most = int(_CITIES_A_SECOND * seconds) // instance.n
         if instance.objectives == MOST_OBJECTIVES:
-            most = min(most, _MOST_OF_FOUR)
+            most = min(most, _MOST_UNDER_FOUR)
         limit = max(0.0, options.time_limit - seconds)
         return replace(options, size=max(options.size, most), time_limit=limit)
     if earlier.balance is None:

@@ -1,8 +1,8 @@
 """Best subsets: of the points of a front, those with the largest joint hypervolume."""
 
 import math
-import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from service.search.several.greedy_choice import (
     make_choice,
 )
 from service.search.thinning import divided, evenly
+from service.watch import Watch
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -99,24 +100,25 @@ def best_subset(
         return np.arange(len(front))
     useful = front.inside
     if len(useful) > size:
-        return np.sort(useful[_chosen(front.shares[useful], size, seconds, stop)])
+        return np.sort(useful[_chosen(front.shares[useful], size, Watch(seconds, stop))])
     spare = np.setdiff1d(np.arange(len(front)), useful)
     return np.sort(np.concatenate((useful, evenly(spare, size - len(useful)))))
 
 
-def _chosen(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
+def _chosen(shares: Array, size: int, watch: Watch[Any]) -> Indices:
     """Return the indices of `size` points, all below 1, of more."""
+    seconds = watch.seconds
     if shares.shape[1] > OBJECTIVES:
         most = int(min(len(shares), max(size, _MOST_DIVIDING * seconds / _DIVIDING)))
         looked_at = evenly(np.arange(len(shares)), most)
-        return looked_at[_greedy(shares[looked_at], size, seconds, stop)]
+        return looked_at[_greedy(shares[looked_at], size, watch)]
     if len(shares) * _for_each(size, OBJECTIVES) <= seconds:
-        return _best_of_front(shares, size, stop)
+        return _best_of_front(shares, size, watch.stopped)
     affordable = max(size, int(seconds / _for_each(size, OBJECTIVES)))
     firsts = np.sort(divided(shares, affordable).firsts)
     if len(firsts) <= size:
         return _with_others(firsts, shares, size)
-    return firsts[_best_of_front(np.ascontiguousarray(shares[firsts]), size, stop)]
+    return firsts[_best_of_front(np.ascontiguousarray(shares[firsts]), size, watch.stopped)]
 
 
 def _needed(size: int, points: int, objectives: int) -> float:
@@ -146,44 +148,35 @@ def _an_exchange(size: int, points: int, objectives: int) -> float:
     return CLOSE * _a_look(size, objectives) + _SEEKING * points
 
 
-def _greedy(shares: Array, size: int, seconds: float, stop: Stop) -> Indices:
+def _greedy(shares: Array, size: int, watch: Watch[Any]) -> Indices:
     """Return the indices of `size` of more points: chosen one after another, then exchanged.
 
     Where there is not enough time to choose all of them, the rest is evenly spread.
     """
-    (points, objectives), wanted = shares.shape, size
-    began = time.monotonic()
-    left = seconds - _DIVIDING * points
-    most = points
-    if points * _for_each(size, objectives) > left:
-        comparing = size * _comparing(points / size, size, objectives)
-        exchanges = size * _an_exchange(size, points, objectives) < (1 - _FIRST) * left
-        first = _FIRST * left if exchanges else left
-        most = max(size, int((first - comparing) / _for_each(size, objectives)))
-        if most == size:
-            wanted = _affordable(size, points, objectives, left)
+    (points, objectives), seconds = shares.shape, watch.seconds
+    most, wanted = _affordable(size, points, objectives, seconds - _DIVIDING * points)
     cells = divided(shares, most)
     choice = make_choice(shares, cells, size)
-    while choice.counts[0] < wanted and not stop():
-        if most > size and time.monotonic() > began + _PATIENCE * seconds:
-            return _greedy(shares, size, _LESS * seconds, stop)
+    while choice.counts[0] < wanted and not watch.stopped():
+        if most > size and watch.spent > _PATIENCE * seconds:
+            return _greedy(shares, size, watch.lasting(_LESS * seconds))
         choose_next(choice)
     if choice.counts[0] == size:
         if seconds < math.inf:
             seconds = min(_ALMOST * seconds, _needed(size, points, objectives))
-        _exchange(choice, began + seconds, stop)
+        _exchange(choice, watch.until(seconds))
     return _with_others(choice.chosen[: choice.counts[0]], shares, size, cells.firsts)
 
 
-def _exchange(choice: Choice, until: float, stop: Stop) -> None:
-    """Exchange chosen points for others, until none changes or the clock shows `until`."""
+def _exchange(choice: Choice, watch: Watch[Any]) -> None:
+    """Exchange chosen points for others, until none changes or the time is over."""
     places, changed = make_places(choice.shares), True
     for _ in range(_PASSES):
         if not changed:
             break
         changed = False
         for point in choice.chosen.copy():
-            if stop() or time.monotonic() > until:
+            if watch.ended():
                 return
             changed |= exchange(choice, places, point)
 
@@ -193,15 +186,26 @@ def _comparing(points: float, size: int, objectives: int) -> float:
     return min(points, MOST_COMPARED) * _a_look(size, objectives)
 
 
-def _affordable(size: int, points: int, objectives: int, seconds: float) -> int:
-    """Return how many of `size` points can be chosen by what they add, from as many cells."""
+def _affordable(size: int, points: int, objectives: int, seconds: float) -> tuple[int, int]:
+    """Return from how many cells points can be chosen by what they add, and how many of `size`.
+
+    There are at least `size` cells. Exchanges get their share of the seconds where they end in it.
+    """
+    for_each = _for_each(size, objectives)
+    if points * for_each <= seconds:
+        return points, size
+    exchanges = size * _an_exchange(size, points, objectives) < (1 - _FIRST) * seconds
+    first = _FIRST * seconds if exchanges else seconds
+    cells = int((first - size * _comparing(points / size, size, objectives)) / for_each)
+    if cells > size:
+        return cells, size
     wanted = size
     while wanted > 1:
         comparing = wanted * _comparing(points / size, wanted, objectives)
         if size * _for_each(wanted, objectives) + comparing <= seconds:
             break
         wanted -= 1 + wanted // 10
-    return wanted
+    return size, wanted
 
 
 def _with_others(

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 # Of four objectives, the points whose hypervolume is computed while a search runs: some 10 ms.
-_MOST_OF_FOUR = 1_000
+_MOST_MEASURED = 1_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +81,8 @@ class FrontPoints:
     def quick_hypervolume(self) -> float:
         """The same, but of four objectives that of some 1,000 points spread over the front."""
         inside = self.shares[self.inside]
-        if inside.shape[1] > OBJECTIVES + 1 and len(inside) > _MOST_OF_FOUR:
-            inside = inside[divided(inside, _MOST_OF_FOUR).firsts]
+        if inside.shape[1] > OBJECTIVES + 1 and len(inside) > _MOST_MEASURED:
+            inside = inside[divided(inside, _MOST_MEASURED).firsts]
         return _hypervolume(inside)
 
 
