@@ -83,7 +83,11 @@ def plans_as_rows(front: FrontOfPlans, kind: Kind, numbers: Iterable[int] | None
         numbers: Those of the plans to return; by default all.
     """
     names = front.names
-    of_routes = [f"route {name}" for name in names]
+    measures = [each.get("measure") for each in front.document["objectives"]]
+    of_routes = [
+        "whole route" if measure == "imbalance" else f"route {name}"
+        for name, measure in zip(names, measures, strict=True)
+    ]
     flat = len(names) == OBJECTIVES
     standing = ("balance",) if flat else ()
     rows: Rows = [("plan", *standing, *names, kind.mover, *of_routes, kind.visits)]

@@ -25,10 +25,12 @@ export function alone({ id, kind, closed, objectives, places, stops }, item) {
  */
 export function csv({ kind, front }, { objectives, asked }, selected) {
   const { movers } = kindNamed({ kind });
-  const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
+  const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(titled);
   if (movers) {
     const plans = front.map((plan) => ({ ...plan, names: moversOf(plan.routes, movers, asked ?? {}) }));
-    return csvOfPlans(plans, titles, movers, selected);
+    // Where the plan compares its routes, each row has the whole of its own.
+    const ofRoutes = objectives.map(({ measure, unit }, axis) => (measure === "imbalance" ? titled({ name: "whole route", unit }) : `route ${titles[axis]}`));
+    return csvOfPlans(plans, titles, ofRoutes, movers, selected);
   }
   const rows = front.map(({ angle, departure, lengths, tour, stops }, at) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
@@ -39,7 +41,7 @@ export function csv({ kind, front }, { objectives, asked }, selected) {
 }
 
 /** A route on each line, after the members of its plan, with the name of its vehicle or robot; with its shift, if its vehicle has several. */
-function csvOfPlans(plans, titles, { one, stops, through }, selected) {
+function csvOfPlans(plans, titles, ofRoutes, { one, stops, through }, selected) {
   const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
   const rows = plans.flatMap(({ balance, lengths, routes, names }, plan) =>
     routes.map((route, at) => {
@@ -49,9 +51,11 @@ function csvOfPlans(plans, titles, { one, stops, through }, selected) {
     }),
   );
   const flat = titles.length === 2 ? ["balance"] : [];
-  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...titles.map((title) => `route ${title}`), stops.toLowerCase(), "selected"];
+  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, stops.toLowerCase(), "selected"];
   return [head, ...rows].map(line).join("");
 }
+
+const titled = ({ name, unit }) => (unit ? `${name} (${unit})` : name);
 
 const yesOrNo = (is) => (is ? "yes" : "no");
 
