@@ -11,34 +11,23 @@ calls has changed. So cached code is valid for one state of all modules with com
 
 If two processes save code of one function at the same time, numba lets both write the same file.
 So they save one after another here, and an index never names a file that is not written yet.
-
-A wheel or an image can carry compiled code in the folder PRECOMPILED. The folder's name says which
-processes can use it; all others use numba's own cache.
 """
 
-import fcntl
 import logging
 import os
 import secrets
-import sys
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Collection
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from itertools import count
 from pathlib import Path
 from typing import Any
 
-import numba
-from llvmlite import binding
-from numba.core import caching, config
+from numba.core import caching
 from numba.core.bytecode import FunctionIdentity
-from numba.core.codegen import get_host_cpu_features
 
-from service.jit.processor import compile_for_the_level
-
-compile_for_the_level()
-
+from service.jit.places import DIGEST, PACKAGE, PRECOMPILED, folder, locked
 
 _LOG = logging.getLogger("paretour")
 _Identity: Any = FunctionIdentity
@@ -73,33 +62,6 @@ def _identity(function: Any) -> Any:
 _Identity.from_function = staticmethod(_identity)
 
 
-_PACKAGE = Path(__file__).parents[1]
-
-
-def _digest() -> str:
-    """Return a digest of the modules whose functions and numbers are compiled."""
-    names = ("coverage", "fleet", "jit", "over_the_day", "replanning", "search")
-    folders = (_PACKAGE / name for name in names)
-    modules = [*_PACKAGE.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
-    return sha256(b"".join(path.read_bytes() for path in sorted(modules))).hexdigest()
-
-
-_DIGEST = _digest()
-
-
-def _precompiled() -> Path:
-    """Return the folder for code of these modules, this numba, this Python and this processor."""
-    settings: Any = config
-    processor = (
-        binding.get_process_triple(),
-        settings.CPU_NAME or binding.get_host_cpu_name(),
-        get_host_cpu_features() if settings.CPU_FEATURES is None else settings.CPU_FEATURES,
-    )
-    described = (_DIGEST, numba.__version__, sys.implementation.cache_tag, *processor)
-    return _PACKAGE / "precompiled" / sha256(repr(described).encode()).hexdigest()[:16]
-
-
-PRECOMPILED = _precompiled()  # does not exist where nothing was compiled in advance
 _NumbaCacheFile: Any = caching.IndexDataCacheFile  # it has no types
 
 
@@ -107,7 +69,7 @@ class CacheFile(_NumbaCacheFile):  # type: ignore[misc]
     """The cache of one function, which processes write in turn."""
 
     def __init__(self, cache_path: str, filename_base: str, source_stamp: object) -> None:
-        super().__init__(cache_path, filename_base, (source_stamp, _DIGEST))
+        super().__init__(cache_path, filename_base, (source_stamp, DIGEST))
 
     def load(self, key: Any) -> Any:
         """Return what was compiled; None where there is nothing, or files are damaged."""
@@ -153,7 +115,7 @@ class _PrecompiledLocator(_NumbaLocator):  # type: ignore[misc]
 
     def __init__(self, function: object, module: str) -> None:
         super().__init__(function, module)
-        self._cache_path = str(PRECOMPILED / Path(module).parent.relative_to(_PACKAGE))
+        self._cache_path = str(PRECOMPILED / Path(module).parent.relative_to(PACKAGE))
 
     def ensure_cache_path(self) -> None:
         with suppress(OSError):
@@ -161,36 +123,10 @@ class _PrecompiledLocator(_NumbaLocator):  # type: ignore[misc]
 
     @classmethod
     def from_function(cls, function: object, module: str) -> "_PrecompiledLocator | None":
-        carried = PRECOMPILED.is_dir() and Path(module).is_relative_to(_PACKAGE)
+        carried = PRECOMPILED.is_dir() and Path(module).is_relative_to(PACKAGE)
         return cls(function, module) if carried else None
 
 
 caching.CacheImpl._locator_classes.insert(0, _PrecompiledLocator)  # noqa: SLF001  # no setter
-
-
-@contextmanager
-def locked(path: str | Path) -> Iterator[None]:
-    """Wait until no other process holds a folder or file, and hold it."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
-    finally:
-        fcntl.flock(descriptor, fcntl.LOCK_UN)  # for a process forked meanwhile too
-        os.close(descriptor)
-
-
-def folder() -> Path | None:
-    """Return the folder that numba finds: in PRECOMPILED, beside this file, or the user's.
-
-    A read-only container may have none, and each start compiles anew. What else later processes
-    need may be kept there too.
-    """
-    try:
-        cached: Any = numba.njit(cache=True)(lambda: None)
-    except RuntimeError:
-        return None
-    return Path(cached._cache.cache_path) if hasattr(cached, "_cache") else None  # noqa: SLF001  # it has no getter
-
 
 CACHED = folder() is not None  # whether later processes load what is compiled
