@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 
 
-class Constructor:
+class ExternalConstructor:
     """A function of another package that builds tours, with the methods of a network.
 
     Args:
@@ -59,7 +59,9 @@ class Constructor:
         """Do nothing: the function cannot be stopped."""
 
 
-def load_constructors(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, Constructor]:
+def load_constructors(
+    names: Iterable[str], taken: Iterable[str] = ()
+) -> dict[str, ExternalConstructor]:
     """Import constructors, and return them by their names.
 
     Args:
@@ -71,7 +73,7 @@ def load_constructors(names: Iterable[str], taken: Iterable[str] = ()) -> dict[s
     """
     names = tuple(names)
     constructor_infos(names, taken)
-    return {name: Constructor(name) for name in names}
+    return {name: ExternalConstructor(name) for name in names}
 
 
 def constructor_infos(names: Iterable[str], taken: Iterable[str] = ()) -> Mapping[str, ActorInfo]:

@@ -66,7 +66,7 @@ class NamedFile:
 
 
 @dataclass(frozen=True)
-class Note:
+class FileNote:
     """One thing that was assumed, as a sentence, with a code for programs."""
 
     file: str
@@ -131,7 +131,7 @@ class Reading:
     kind: Kind
     request: Request
     name: str
-    notes: tuple[Note, ...] = ()
+    notes: tuple[FileNote, ...] = ()
     columns: tuple[Column, ...] = ()
     choices: Mapping[str, Sequence[str]] = field(default_factory=dict)
     planes: list[list[float]] | None = None  # rows of x, y, x, y, if distances are to be rounded
@@ -177,7 +177,7 @@ class Source:
     bounds: Bounds
     work: Work = field(default_factory=Work)
     rows: list[tuple[int, list[str]]] | None = None  # of a sheet that was read
-    notes: list[Note] = field(default_factory=list)
+    notes: list[FileNote] = field(default_factory=list)
     columns: list[Column] = field(default_factory=list)
     choices: list[str] = field(default_factory=list)  # fields that its columns may be taken for
     supposed: list[Column] = field(default_factory=list)  # columns, while they are being read
@@ -194,7 +194,7 @@ class Source:
 
     def note(self, code: str, text: str) -> None:
         """Add a note on something that is assumed."""
-        self.notes.append(Note(self.name, printable(text), code))
+        self.notes.append(FileNote(self.name, printable(text), code))
 
     def note_left_out(self, what: str) -> None:
         """Note something in the file that is not supported for fleets."""

@@ -14,7 +14,7 @@ from service.search import warm_up as search
 Compile = Callable[[], None]
 
 
-class Work(NamedTuple):
+class Compilation(NamedTuple):
     """The functions that compile a part, or load it.
 
     Args:
@@ -34,16 +34,20 @@ def _maps() -> None:
     import_module("scipy.ndimage")
 
 
-WORK: Mapping[Part, Work] = {
-    Part.FEW_CITIES: Work(search.few_cities, (search.two_opt, search.beside_two_opt), 12),
-    Part.FEWEST_CITIES: Work(search.fewest_cities, (search.fewest_cities,), 1),
-    Part.MORE_CITIES: Work(search.more_cities, (search.three_opt, search.beside_three_opt), 13),
-    Part.MAPS: Work(_maps, (detours.warm_up,), 2),
-    Part.CHANGES: Work(insertion.warm_up, (insertion.warm_up,), 1),
-    Part.FLEETS: Work(fleet.warm_up, (fleet.warm_up,), 11),
-    Part.SEVERAL_OBJECTIVES: Work(search.several_objectives, (search.several_objectives,), 4),
-    Part.OVER_THE_DAY: Work(day.warm_up, (day.warm_up,), 8),
-    Part.MANY_CITIES: Work(search.many_cities, (search.many_cities,), 5),
-    Part.BOUNDS: Work(search.bounds, (search.bounds,), 4),
+WORK: Mapping[Part, Compilation] = {
+    Part.FEW_CITIES: Compilation(search.few_cities, (search.two_opt, search.beside_two_opt), 12),
+    Part.FEWEST_CITIES: Compilation(search.fewest_cities, (search.fewest_cities,), 1),
+    Part.MORE_CITIES: Compilation(
+        search.more_cities, (search.three_opt, search.beside_three_opt), 13
+    ),
+    Part.MAPS: Compilation(_maps, (detours.warm_up,), 2),
+    Part.CHANGES: Compilation(insertion.warm_up, (insertion.warm_up,), 1),
+    Part.FLEETS: Compilation(fleet.warm_up, (fleet.warm_up,), 11),
+    Part.SEVERAL_OBJECTIVES: Compilation(
+        search.several_objectives, (search.several_objectives,), 4
+    ),
+    Part.OVER_THE_DAY: Compilation(day.warm_up, (day.warm_up,), 8),
+    Part.MANY_CITIES: Compilation(search.many_cities, (search.many_cities,), 5),
+    Part.BOUNDS: Compilation(search.bounds, (search.bounds,), 4),
 }
 PIECES = [(part, piece) for part, work in WORK.items() for piece in work.pieces]

@@ -21,7 +21,7 @@ from service.roads.answers import (
 )
 from service.roads.great_circle import great_circle_distances
 from service.roads.polyline import decode_polyline
-from service.roads.router import Answer, Array, Line, Location, NoWay, Question, Unintelligible
+from service.roads.router import Answer, Array, Line, Location, NoWay, RouterRequest, Unintelligible
 
 _NO_WAY = frozenset({"NoRoute", "NoTable", "NoSegment"})
 _PRECISION = 6  # decimals of a line
@@ -70,7 +70,7 @@ class Osrm:
     profile: str
     most_route_stops: int = 50  # its default limit is 500, and a line to ask is some thousand long
 
-    def ask_snapped(self, places: Sequence[Location]) -> Question:
+    def ask_snapped(self, places: Sequence[Location]) -> RouterRequest:
         """Return the question which roads are nearest to places: a table of times to the first."""
         # Once more, since a table is of two places or more.
         everywhere = [*places, places[0]]
@@ -85,7 +85,7 @@ class Osrm:
             raise Unintelligible(f"{len(places)} sources must come back, got {len(snapped)}")
         return great_circle_distances(np.array(places), np.array(snapped))
 
-    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> Question:
+    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> RouterRequest:
         """Return the question for the times and distances from each source to each target."""
         places = [*sources, *targets]
         rows, columns = range(len(sources)), range(len(sources), len(places))
@@ -101,7 +101,7 @@ class Osrm:
         table = read(_Table, answer.content)
         return costs_of(table.durations, table.distances, shape)
 
-    def ask_route(self, places: Sequence[Location]) -> Question:
+    def ask_route(self, places: Sequence[Location]) -> RouterRequest:
         """Return the question for the way through places in this order."""
         options = "overview=false&steps=true&geometries=polyline6"
         return self._question("route", places, options, BYTES_OF_ROUTE)
@@ -116,11 +116,11 @@ class Osrm:
 
     def _question(
         self, service: str, places: Sequence[Location], options: str, size: int
-    ) -> Question:
+    ) -> RouterRequest:
         coordinates = ";".join(f"{lon:.6f},{lat:.6f}" for lon, lat in places)
         profile = quote(self.profile, safe="")
         path = f"/{service}/v1/{profile}/{coordinates}?generate_hints=false&{options}"
-        return Question(path, BYTES_OF_ANSWER + size)
+        return RouterRequest(path, BYTES_OF_ANSWER + size)
 
 
 def _check(answer: Answer) -> None:

@@ -43,7 +43,7 @@ class RouterSettings:
     positions: int = 2**20
 
 
-class Question(NamedTuple):
+class RouterRequest(NamedTuple):
     """A request to a routing engine: a POST where it has a body of JSON, else a GET.
 
     `most_bytes` is how long the answer may be.
@@ -79,13 +79,13 @@ class RouterInterface(Protocol):
     def most_route_stops(self) -> int:
         """The most places that the engine finds a route through at once."""
 
-    def ask_snapped(self, places: Sequence[Location]) -> Question:
+    def ask_snapped(self, places: Sequence[Location]) -> RouterRequest:
         """Return the question for the roads nearest to places."""
 
     def read_snapped(self, answer: Answer, places: Sequence[Location]) -> Array:
         """Return the metres from each place to its road, shape (n,); infinity if it has none."""
 
-    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> Question:
+    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> RouterRequest:
         """Return the question for the times and distances from each source to each target."""
 
     def read_table(self, answer: Answer, shape: tuple[int, int]) -> Array:
@@ -95,7 +95,7 @@ class RouterInterface(Protocol):
             NoWay: The engine refuses the whole table because some pair has no way.
         """
 
-    def ask_route(self, places: Sequence[Location]) -> Question:
+    def ask_route(self, places: Sequence[Location]) -> RouterRequest:
         """Return the question for the way through places in this order."""
 
     def read_route(self, answer: Answer, legs: int) -> list[Line]:

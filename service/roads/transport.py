@@ -15,7 +15,7 @@ from typing import Literal
 import httpx
 
 from service.errors import RouterUnavailable, RouterUnusable
-from service.roads.router import Answer, Question
+from service.roads.router import Answer, RouterRequest
 
 Outcome = Literal["answered", "unavailable", "unusable"]
 Observe = Callable[[Outcome, float], None]
@@ -52,7 +52,7 @@ class RouterTransport:
             limits=httpx.Limits(max_connections=AT_ONCE, keepalive_expiry=_IDLE_SECONDS),
         )
 
-    async def ask(self, question: Question) -> Answer:
+    async def ask(self, question: RouterRequest) -> Answer:
         """Return the engine's answer. The caller bounds the time.
 
         Raises:
@@ -70,7 +70,7 @@ class RouterTransport:
         """Close the connections."""
         await self._client.aclose()
 
-    async def _attempt(self, question: Question) -> Answer:
+    async def _attempt(self, question: RouterRequest) -> Answer:
         outcome: Outcome = "unavailable"
         async with self._turn:
             began = time.perf_counter()
@@ -87,7 +87,7 @@ class RouterTransport:
                 self._observe(outcome, time.perf_counter() - began)
         return answer
 
-    async def _exchange(self, question: Question) -> Answer:
+    async def _exchange(self, question: RouterRequest) -> Answer:
         method = "GET" if question.body is None else "POST"
         headers = {} if question.body is None else {"Content-Type": "application/json"}
         async with self._client.stream(

@@ -22,7 +22,7 @@ from service.roads.answers import (
 )
 from service.roads.great_circle import great_circle_distances
 from service.roads.polyline import decode_polyline
-from service.roads.router import Answer, Array, Line, Location, NoWay, Question, Unintelligible
+from service.roads.router import Answer, Array, Line, Location, NoWay, RouterRequest, Unintelligible
 
 # "Locations are in unconnected regions", "no suitable edges near location", "path distance exceeds
 # the maximum", and "no path could be found": each about some of the places, unnamed.
@@ -88,7 +88,7 @@ class Valhalla:
     departure: str | None = None
     most_route_stops: int = 20  # its default limit, of the costing models for cars
 
-    def ask_snapped(self, places: Sequence[Location]) -> Question:
+    def ask_snapped(self, places: Sequence[Location]) -> RouterRequest:
         """Return the question which roads are nearest to places."""
         return self._question("/locate", BYTES_OF_PLACE * len(places), {"locations": places})
 
@@ -102,7 +102,7 @@ class Valhalla:
             [_nearest(place, each.edges) for place, each in zip(places, located, strict=True)]
         )
 
-    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> Question:
+    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> RouterRequest:
         """Return the question for the times and distances from each source to each target."""
         size = BYTES_OF_PAIR * len(sources) * len(targets)
         members = {"sources": sources, "targets": targets}
@@ -119,7 +119,7 @@ class Valhalla:
         costs[1] = (_METRES * costs[1]).round(3)
         return costs
 
-    def ask_route(self, places: Sequence[Location]) -> Question:
+    def ask_route(self, places: Sequence[Location]) -> RouterRequest:
         """Return the question for the way through places in this order."""
         members = {"locations": places}
         return self._question("/route", BYTES_OF_ROUTE, members, directions_type="none")
@@ -142,14 +142,14 @@ class Valhalla:
 
     def _question(
         self, path: str, size: int, places: dict[str, Sequence[Location]], **options: Any
-    ) -> Question:
+    ) -> RouterRequest:
         cutoff = math.ceil(self.snap)
         members = {
             name: [{"lon": lon, "lat": lat, "search_cutoff": cutoff} for lon, lat in each]
             for name, each in places.items()
         }
         body = {"costing": self.costing, "units": "kilometers", **options, **members}
-        return Question(path, BYTES_OF_ANSWER + size, to_json(body))
+        return RouterRequest(path, BYTES_OF_ANSWER + size, to_json(body))
 
     def _check(self, answer: Answer) -> None:
         if answer.status == 200:

@@ -115,7 +115,7 @@ def test_fronts_of_the_version_before_are_answered_and_replanned(tmp_path: Path)
             task = await store.task(stored)
             assert task is not None
             if answer["kind"] != "robots":
-                changes = b'{"now": 26000}' if id_ == "day" else b"{}"
+                changes = b'{"now": 26000}' if id_ in ("day", "fleet") else b"{}"
                 asked = ReplanSource(changes, StoredFront(id_, task, stored.front))
                 assert kind_of(parse_replan(asked, LIMITS, INFOS)).name == answer["kind"]
         [waiting] = await store.unfinished()
