@@ -6,7 +6,8 @@ import json
 from typing import Any
 
 import pytest
-from paretour import Front, Plan
+from paretour import FleetFront, Front, Plan
+from paretour.kinds import KINDS, parse_any
 from paretour.values import parse_front
 from rich.console import Console
 
@@ -19,11 +20,13 @@ from service.cli.output import (
     front_summary,
     ids_of,
     named_tours,
+    plans_as_rows,
     stops_of,
     tour_as_json,
     tour_summary,
 )
 from tests.helpers.answers import FRONT, NAMED
+from tests.helpers.version_before import ANSWERS
 
 THE_FRONT = parse_front(FRONT)
 NAMED_FRONT = parse_front(NAMED)
@@ -57,6 +60,16 @@ def test_csv_has_a_line_for_each_tour() -> None:
     rows = list(csv.DictReader(io.StringIO(csv_text(front_as_rows(THE_FRONT)))))
     assert rows[0] == {"angle": "60.0", "length_1": "1.0", "length_2": "2.0", "tour": "0 1 2"}
     assert len(rows) == 2
+
+
+def test_csv_names_the_column_of_routes_that_a_plan_compares_after_what_they_have() -> None:
+    way, time = ANSWERS["fleet"]["objectives"]
+    imbalance = {**time, "name": "imbalance", "measure": "imbalance"}
+    front = parse_any({**ANSWERS["fleet"], "objectives": [way, imbalance]})
+    assert isinstance(front, FleetFront)
+    [head, *_] = plans_as_rows(front, KINDS["fleet"])
+    lengths = "way", "imbalance", "vehicle", "route way", "whole route"
+    assert head == ("plan", "balance", *lengths, "stops")
 
 
 def test_csv_has_names_units_and_ids_where_the_request_had_them() -> None:
