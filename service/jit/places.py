@@ -1,4 +1,4 @@
-"""Where compiled code is kept: beside the modules, in a folder of the user, or in a wheel.
+"""The places of compiled code: beside the modules, in a folder of the user, or in a wheel.
 
 A wheel or an image can carry compiled code in the folder PRECOMPILED. The folder's name says which
 processes can use it; all others use numba's own cache.
