@@ -16,7 +16,7 @@ from service.errors.printable import printable, printable_lines
 SERVICE = Path(__file__).parents[1] / "service"
 MAKERS = {
     *("invalid", "invalid_header", "uncoverable", "_refused", "_of_plan", "_fault", "Fault", "of"),
-    *("fault", "refusal", "refuse", "_of_files"),
+    *("fault", "refusal", "refuse", "_of_files", "_invalid"),
 }
 OF_PYDANTIC = {
     *("extra-forbidden", "greater-than-equal", "less-than-equal", "string-pattern-mismatch"),

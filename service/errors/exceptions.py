@@ -45,7 +45,7 @@ class Refusal(Exception):
         code: One of PROBLEMS; by default that of the class.
         pointer: The one field at fault, as a JSON pointer into the body.
         errors: The faults of fields, which have codes and sentences of their own. The sentence has
-            the first in its field `detail`, unless that is given.
+            the first in its fields `detail` and `reason`, unless these are given.
         limit: The most that is allowed.
         actual: The number that came, where it is known.
         headers: Further headers of the response.
@@ -68,7 +68,8 @@ class Refusal(Exception):
         self.code = code or type(self).code
         self.status, sentence, _ = PROBLEMS[self.code]
         if errors:
-            fields = {"detail": summary(errors[0], len(errors)), **fields}
+            first = summary(errors[0], len(errors))
+            fields = {"detail": first, "reason": first, **fields}
         fields = {"limit": limit, "actual": actual, **fields}
         self.detail = said(sentence, fields)
         shown = tuple(errors[:MOST_FAULTS])

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from service.errors.exceptions import Refusal, summary
+from service.errors.exceptions import Refusal
 from service.errors.faults import Fault, quoted
 
 _MOST_NAMED = 5  # cities of one kind in one sentence
@@ -82,7 +82,7 @@ class NoTour(Refusal):
     ) -> None:
         self.obstacles = tuple(obstacles)
         faults = [each.fault(names or CityNames()) for each in self.obstacles]
-        super().__init__(code, errors=faults, reason=summary(faults[0], len(faults)))
+        super().__init__(code, errors=faults)
 
     def named(self, names: CityNames) -> "NoTour":
         """Return this refusal with other names of the cities."""

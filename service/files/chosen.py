@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from service.errors import Refusal
+from service.errors import Fault, Refusal
 from service.errors.printable import printable
 from service.files.reading import LONGEST_NAME, NamedFile, Source, quoted
 from service.files.tables import ColumnLeftOut, Table
@@ -38,17 +38,18 @@ def with_chosen(files: Sequence[NamedFile], part: bytes) -> list[NamedFile]:
     try:
         columns = _COLUMNS.validate_json(without_mark(part))
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        place = "/".join(["columns", *map(str, fault["loc"])])
-        raise Refusal("invalid-parts", reason=f"{place}: {fault['msg']}") from None
+        wrong = error.errors(include_url=False)[0]
+        place = "/".join(["columns", *map(str, wrong["loc"])])
+        fault = Fault(wrong["type"].replace("_", "-"), f"{place}:", said=wrong["msg"])
+        raise Refusal("invalid-parts", errors=[fault]) from None
     names = [printable(file.name) for file in files]
     sheets: dict[str, dict[str, str]] = {}
     for at, column in enumerate(columns):
         if column.file.endswith("]") and column.file.startswith(tuple(f"{n} [" for n in names)):
             sheets.setdefault(column.file, {})[column.name] = column.taken_for
         elif column.file not in names:
-            demand = f"columns/{at}/file must be the name of a file"
-            raise Refusal("invalid-parts", reason=f"{demand}, got {quoted(column.file)}")
+            fault = Fault.of(f"columns/{at}/file", "no-such-file", came=column.file)
+            raise Refusal("invalid-parts", errors=[fault])
     return [
         replace(
             file,

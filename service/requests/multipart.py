@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from python_multipart.multipart import parse_options_header
 
-from service.errors import Refusal
+from service.errors import Fault, Refusal
 from service.errors.faults import shorten
 
 _LONGEST_BOUNDARY = 70  # bytes (RFC 2046)
@@ -31,11 +31,10 @@ def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> di
     contents: dict[str, bytes] = {}
     for name, content, _ in _parts(_delimiter(content_type), body):
         if name not in expected or name in contents:
-            among = " and ".join(expected)
-            raise _invalid(f"the parts must be {among}, once each, got {shorten(name)!r}")
+            raise _invalid("other-parts", among=" and ".join(expected), given=shorten(name))
         contents[name] = content
     if missing := [name for name in expected if name not in contents]:
-        raise _invalid(f"the part {missing[0]} is required")
+        raise _invalid("no-part", name=missing[0])
     return contents
 
 
@@ -61,13 +60,12 @@ def split_files(content_type: str, body: bytes) -> Files:
             columns = content
             continue
         if name != "file" or not filename:
-            demand = "each part must be named file and have a filename, or once be named columns"
-            raise _invalid(f"{demand}, got {shorten(name)!r}")
+            raise _invalid("no-file-part", given=shorten(name))
         if len(files) == _MOST_FILES:
-            raise _invalid(f"there must be at most {_MOST_FILES} parts, got more")
+            raise _invalid("too-many-parts", limit=_MOST_FILES)
         files.append((filename, content))
     if not files:
-        raise _invalid("the part file is required")
+        raise _invalid("no-part", name="file")
     return Files(files, columns)
 
 
@@ -124,5 +122,5 @@ def _malformed(reason: str) -> Refusal:
     return Refusal("malformed-multipart", reason=reason)
 
 
-def _invalid(reason: str) -> Refusal:
-    return Refusal("invalid-parts", reason=reason)
+def _invalid(code: str, **values: object) -> Refusal:
+    return Refusal("invalid-parts", errors=[Fault(code, values=values)])

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from service.actor_info import ActorInfo
-from service.errors import Refusal, invalid
-from service.errors.faults import show
+from service.errors import Fault, Refusal, invalid
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
@@ -91,7 +90,7 @@ class _Rest:
         self._carried = self._carriers()
         self.names, self._types, self._old = self._vehicles()
         if not self._types:
-            raise Refusal("no-plan", reason="no vehicle is left that may drive")
+            raise Refusal("no-plan", errors=[Fault("no-vehicle-left")])
 
     @property
     def _added(self) -> range:
@@ -231,9 +230,8 @@ class _Rest:
         if self._must_be_loaded(stop, visit):
             able = [i for i in able if i >= on_the_way or self._types[i].reload]
         if not able:
-            stop_id = show(self._all.stops[stop].id)
-            reason = f"no vehicle can bring what stop {stop_id} asks for: those that may are on"
-            raise Refusal("no-plan", reason=f"{reason} their way, and load nothing again")
+            fault = Fault("no-vehicle-for-stop", values={"stop": self._all.stops[stop].id})
+            raise Refusal("no-plan", errors=[fault])
         return () if len(able) == len(self._types) else tuple(able)
 
     def _must_be_loaded(self, stop: int, visit: Visit) -> bool:
