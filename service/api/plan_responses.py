@@ -23,6 +23,9 @@ class RouteItem(BaseModel):
     vehicle: str = Field(description="the id of its type")
     stops: list[str] = Field(description="ids in order, with the start and end that are stops")
     lengths: Lengths
+    load: list[int] | SkipJsonSchema[None] = Field(
+        default=None, description="the most that it carries at a time, in each dimension"
+    )
     shift: int | SkipJsonSchema[None] = Field(
         default=None, description="the number of its shift, if its vehicle has several"
     )
@@ -102,6 +105,9 @@ class FleetAnswer(FrontAnswer):
     front: list[PlanItem]  # type: ignore[assignment]  # a list for reading only
     objectives: list[FleetObjectiveName]  # type: ignore[assignment]
     stops: list[NamedStop]
+    clock: ObjectiveName | SkipJsonSchema[None] = Field(
+        default=None, description="the name and unit of all times, if there is a clock"
+    )
 
 
 class RobotRouteItem(BaseModel):

@@ -44,6 +44,7 @@ class FrontDocument:
         closed: False where tours are open routes; None where they are closed.
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
+        clock: Name and unit of all times of a fleet, if it has a clock.
         uncovered: The free cells of a map that are out of reach.
         notes: What is likely to be a mistake in the request; None where nothing is.
         tours: The JSON of all tours, separated by commas, without brackets.
@@ -66,6 +67,7 @@ class FrontDocument:
     closed: bool | None = None
     objectives: list[dict[str, Any]] | None = None
     stops: list[dict[str, Any]] | None = None
+    clock: dict[str, Any] | None = None
     uncovered: dict[str, Any] | None = None
     notes: list[dict[str, str]] | None = None
     tours: bytes = b""

@@ -11,6 +11,7 @@ from service.errors.faults import show
 from service.fleet.fleet import LAYERS
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType
+from service.objectives import Objective
 from service.requests.fields import (
     GEOMETRY,
     Geometry,
@@ -103,7 +104,14 @@ class FleetRequest(SearchFields):
             clock=self._clock(costs, layers),
         )
         stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops))
-        return UnmeasuredFleet(rules, names, stops)
+        return UnmeasuredFleet(rules, names, stops, clock=self._named_clock)
+
+    @property
+    def _named_clock(self) -> Objective | None:
+        """The name and unit of the times, if there is a clock."""
+        if isinstance(self.clock, ClockItem):
+            return self.clock.objective("clock")
+        return next((each for each in self.labels.objectives if each.name == self.clock), None)
 
     def _vehicles(
         self, ids: Mapping[str, int]
@@ -160,7 +168,6 @@ class FleetRequest(SearchFields):
         """
         sources = [self.objectives[each].source(f"objectives/{each}", stops) for each in costs]
         if isinstance(self.clock, ClockItem):
-            self.clock.objective("clock")
             sources.append(self.clock.source("clock", stops))
         return [*sources, *sources[:1]][:LAYERS]
 

@@ -10,6 +10,7 @@ from service.fleet.fleet import Fleet
 from service.fleet.plans import Route
 from service.fleet.rules import Measure, Over, Rules
 from service.front import PlanOptions
+from service.objectives import Objective
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
 from service.requests.notes.note import Note
@@ -52,12 +53,14 @@ class UnmeasuredFleet:
         vehicles: The name of each type of vehicles.
         stops: The stops, with the sources of two costs.
         driven: What is left of the routes of a plan that is being driven.
+        clock: The name and unit of its times, if it has a clock.
     """
 
     rules: Rules
     vehicles: tuple[VehicleName, ...]
     stops: Stops
     driven: tuple[Route, ...] = ()
+    clock: Objective | None = None
 
     @property
     def n(self) -> int:
@@ -70,10 +73,12 @@ class UnmeasuredFleet:
         return self.stops.city_names
 
     def members(self, labels: Labels) -> dict[str, Any]:
-        """Return the members of an answer that name the stops and objectives, ready for JSON."""
+        """Return the members of an answer that name stops, objectives and clock, ready for JSON."""
         members = labels.members
         objectives = zip(members["objectives"], self.rules.over, strict=True)
-        return {**members, "objectives": [_objective(each, over) for each, over in objectives]}
+        named = [_objective(each, over) for each, over in objectives]
+        clock = {} if self.clock is None else {"clock": dict(vars(self.clock))}
+        return {**members, "objectives": named, **clock}
 
     def measured_by_road(self, costs: Mapping[RoadMeasure | Traffic, Array]) -> "UnmeasuredFleet":
         """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""

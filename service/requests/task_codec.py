@@ -47,7 +47,7 @@ _TYPES: Mapping[str, type[Any]] = {
         *(Task, PlanOptions, EarlierTours, Labels),
         *(Stops, Matrix, Plane, Measured, Changed),
         *(OverTheDay, Slices, Traffic, Hours),
-        *(Coverage, SharedCoverage, UnmeasuredFleet, Rules),
+        *(Coverage, SharedCoverage, UnmeasuredFleet, Rules, Objective),
     )
 }
 # A task may hold thousands of these. Their members are numbers, texts, and tuples of numbers.

@@ -47,12 +47,23 @@ def test_every_plan_keeps_the_rules_and_has_the_lengths_that_it_says(
             stops = tuple(indexes[stop] for stop in each["stops"] if stop != "stop-0")
             routes.append(Route(vehicles[each["vehicle"]], stops))
             assert each["stops"][0] == "stop-0"
+            assert each["load"] == [greatest_load(each["stops"])]
             assert each["arrivals"] == list(schedule(fleet, routes[-1]).arrivals)
         plan = Plan(tuple(routes))
         assert violations(fleet, plan) == []
         assert item["lengths"] == pytest.approx(plan_lengths(fleet, plan))
         missing = set(indexes) - {stop for each in item["routes"] for stop in each["stops"]}
         assert set(item["unassigned"]) == missing
+
+
+def greatest_load(stops: list[str]) -> int:
+    """The most that a vehicle holds, of three loads. It takes one from stop-3 to stop-4."""
+    demand = {"stop-1": 2, "stop-2": 1}
+    load = most = sum(demand.get(stop, 0) for stop in stops)
+    for stop in stops:
+        load += {"stop-3": 3, "stop-4": -3}.get(stop, -demand.get(stop, 0))
+        most = max(most, load)
+    return most
 
 
 def test_a_front_of_plans_ascends_and_is_named(answer: dict[str, Any]) -> None:
@@ -62,6 +73,7 @@ def test_a_front_of_plans_ascends_and_is_named(answer: dict[str, Any]) -> None:
         {"name": "distance", "unit": "m", "over": "sum"},
         {"name": "time", "unit": "min", "over": "max"},
     ]
+    assert answer["clock"] == {"name": "time", "unit": "min"}
     assert [stop["id"] for stop in answer["stops"]] == [f"stop-{i}" for i in range(8)]
     assert answer["cities"] == 8
     assert 0 < answer["hypervolume"] <= 1

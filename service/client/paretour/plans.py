@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from paretour.choice import Choice, choose
 from paretour.display import counted, numbers
 from paretour.expect import each, floats, indexes, members, value_of
-from paretour.fronts import Array, StoredFront
+from paretour.fronts import Array, Objective, StoredFront
 from paretour.ros.paths import Path
 from paretour.values import PAIR, Uncovered, objectives_of, stored_members
 
@@ -28,6 +28,7 @@ class FleetRoute:
         breaks: When each break on the way begins.
         shift: The number of its shift, if its vehicle has several.
         route: The number of its route in the plan that is driven, if it is on its way.
+        load: The most that it carries at a time, in each dimension.
     """
 
     vehicle: str
@@ -37,6 +38,7 @@ class FleetRoute:
     breaks: tuple[float, ...] = ()
     shift: int | None = None
     route: int | None = None
+    load: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,7 +170,13 @@ class _FrontOfPlans(StoredFront[Plan]):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FleetFront(_FrontOfPlans[FleetPlan]):
-    """A front of plans for a fleet, with the objectives as the request named them."""
+    """A front of plans for a fleet, with the objectives as the request named them.
+
+    Attributes:
+        clock: The name and unit of all times, if the fleet has a clock.
+    """
+
+    clock: Objective | None = None
 
     def _columns(self) -> dict[str, Sequence[Any]]:
         found: dict[str, Sequence[Any]] = {}
@@ -220,6 +228,7 @@ def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
         **stored_members(answer, answer.read("front", each(members))),
         plans=answer.read("front", each(value_of(FleetPlan))),
         objectives=objectives_of(answer) or (),
+        clock=answer.maybe("clock", value_of(Objective)),
     )
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import WrongChoice, losses
-from paretour.expect import Members, count, each, floats, members
+from paretour.expect import Members, count, each, value_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -193,19 +193,12 @@ def parse_question(answer: Members) -> Question:
         UnexpectedAnswer: A member is missing or wrong.
     """
     return Question(
-        current=_parse_option(answer.document, answer.where),
+        current=value_of(Option)(answer.document, answer.where),
         left=answer.read("left", count),
-        options=answer.read("options", each(_parse_option)),
+        options=answer.read("options", each(value_of(Option))),
         chosen=answer.maybe("number", count),
         document=answer.document,
     )
-
-
-def _parse_option(value: Any, where: str) -> Option:
-    option = members(value, where)
-    point = option.read("point", floats(None))
-    best = option.read("best", floats(len(point)))
-    return Option(point, best, option.read("within_reach", count))
 
 
 def _check(parameter: str, number: int, least: int, most: int) -> None:

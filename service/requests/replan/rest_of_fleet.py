@@ -125,7 +125,8 @@ class _Rest:
             clock=self._rules.clock,
         )
         stops = Stops(locations_of(self.labels.stops), self._sources())
-        return UnmeasuredFleet(rules, self.names, stops, tuple(self._driven()))
+        driven = tuple(self._driven())
+        return UnmeasuredFleet(rules, self.names, stops, driven, self._fleet.clock)
 
     def _carriers(self) -> dict[int, int]:
         """Return, by stop, the vehicle on its way that carries what it brings there."""
