@@ -5,10 +5,13 @@ agents seldom need. All members are passed on, and the service checks them.
 """
 
 from typing import Annotated, Any
+from urllib.parse import parse_qs, urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field
+from paretour.questions import OPTIONS, QUESTIONS
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core.core_schema import ModelSchema, StringSchema
 
+from service.mcp.amounts import TIMED
 from service.requests.fields import SearchFields
 from service.requests.json_schemas import RULES, WithoutNull
 
@@ -28,7 +31,17 @@ _RARE = {
     "ReplanFleetRequest": "size reference_point seed geometry add",
     "NewStop": "coordinates costs",
 }
-Id = Annotated[str, Field(min_length=1, max_length=100)]
+
+
+def _id_in(front: Any) -> Any:
+    """Return the id in a link to a front on the page, or what came if it is none."""
+    if not isinstance(front, str) or "#" not in front:
+        return front
+    return parse_qs(urlsplit(front).fragment).get("front", [front])[0]
+
+
+Id = Annotated[str, BeforeValidator(_id_in), Field(min_length=1, max_length=100)]
+Budgets = Annotated[dict[str, float | str], Field(max_length=4)]
 Numbers = Annotated[dict[str, float], Field(max_length=4)]
 Count = Annotated[int, Field(ge=0, le=2**31 - 1)]
 
@@ -49,16 +62,32 @@ class ChosenColumn(BaseModel):
         description="id, latitude, longitude, demand, service, x, y, second x, second y, ignored or"
         " another one of the choices that an error lists"
     )
+    file: str | None = Field(default=None, description="of several files its name, or the first")
+
+
+class TextOfFile(BaseModel):
+    """The text of a file, and its name."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(min_length=1, max_length=100, description="such as vans.csv")
+    text: str = Field(max_length=_MOST_TEXT)
 
 
 class PlanFile(Arguments):
-    """The text of a file, and its name."""
+    """The text of a file, and its name; or several files."""
 
-    text: str = Field(
+    text: str | None = Field(
+        default=None,
         max_length=_MOST_TEXT,
         description="CSV, GeoJSON, GPX, KML, JSON, TSPLIB, CVRPLIB, Solomon, Li and Lim or VROOM",
     )
     name: str = Field(default="stops.csv", max_length=100, description="such as orders.csv")
+    files: list[TextOfFile] | None = Field(
+        default=None,
+        max_length=10,
+        description="in place of text: files that belong together, such as orders and vans",
+    )
     columns: list[ChosenColumn] | None = Field(
         default=None,
         max_length=1000,
@@ -68,24 +97,40 @@ class PlanFile(Arguments):
         default=None, ge=0, description=SearchFields.model_fields["time_limit"].description
     )
 
+    @property
+    def contents(self) -> dict[str, bytes]:
+        """The content of each file by its name.
+
+        Raises:
+            ValueError: There is none, or there are both a text and files.
+        """
+        if (self.text is None) == (not self.files):
+            raise ValueError("text or files must be given, and not both")
+        files = self.files or [TextOfFile(name=self.name, text=self.text or "")]
+        return {each.name: each.text.encode() for each in files}
+
 
 class StoredFront(Arguments):
     """A front that was planned before."""
 
-    front: Id = Field(description="the id that a planning tool returned")
+    front: Id = Field(description="the id that a planning tool returned, or its link")
 
 
 class ChooseTour(StoredFront):
     """A front and one way to choose: at_most, weights, knee, balance or number."""
 
-    at_most: Numbers | None = Field(
-        default=None, description='a budget for objectives by name, such as {"time": 3600}'
+    at_most: Budgets | None = Field(
+        default=None,
+        description='a budget for objectives by name, such as {"time": 3600}, "2:10 h", "12 km", or'
+        ' "3%" for so much more than the least',
     )
     prefer: str | None = Field(
         default=None, description="with at_most: the objective that is to be least"
     )
     weights: Numbers | None = Field(default=None, description="how much each objective matters")
-    knee: bool | None = Field(default=None, description="true: the tour with the best balance")
+    knee: bool | None = Field(
+        default=None, description="true: the tour with the least sum of losses, a compromise"
+    )
     balance: float | None = Field(
         default=None,
         ge=0,
@@ -97,6 +142,18 @@ class ChooseTour(StoredFront):
         default=0,
         description="for a long tour: how many of its stops to leave out before the first",
     )
+
+
+class AskAbout(StoredFront):
+    """A front, and the options that were picked so far."""
+
+    picks: list[Count] | None = Field(
+        default=None,
+        max_length=10,
+        description="for each question so far the number of the option that the person chose",
+    )
+    questions: int = Field(default=QUESTIONS, ge=1, le=10, description="how many there are")
+    options: int = Field(default=OPTIONS, ge=2, le=6, description="how many each question has")
 
 
 class Members(Arguments):
@@ -114,6 +171,20 @@ class Changes(StoredFront, Members):
     """A front, and the changes since it was planned."""
 
 
+class DayOfFleet(BaseModel):
+    """What an agent says of the vehicles of a fleet in its own words."""
+
+    done: list[int | str] | dict[str, list[str]] | str | None = Field(
+        default=None,
+        description="the stops that were visited, in order. Of a fleet: for each vehicle, by its id"
+        ' or the number of its route, {"van": ["a", "b"]}; or "as planned": what the plan visits'
+        " until now",
+    )
+    broken_down: list[int | str] | None = Field(
+        default=None, description="of a fleet: the vehicles, or routes, that are out of service"
+    )
+
+
 class _ForAgents(WithoutNull):
     """Make JSON schemas without what agents seldom need; forms may have other members, too."""
 
@@ -129,8 +200,20 @@ class _ForAgents(WithoutNull):
         rare = _RARE.get(schema["cls"].__name__, "").split()
         for name in rare:
             del found["properties"][name]
+        for name in TIMED & {*found["properties"]}:
+            found["properties"][name] = _or_text(found["properties"][name])
         left_out = {"title", *RULES, *(["additionalProperties"] if rare else [])}
         return {key: value for key, value in found.items() if key not in left_out}
+
+
+def _or_text(schema: Any) -> Any:
+    """Return the schema of times that may also be texts such as "10:00"."""
+    if isinstance(schema, list):
+        return [_or_text(each) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    found = {key: _or_text(value) for key, value in schema.items()}
+    return {**found, "type": ["number", "string"]} if found.get("type") == "number" else found
 
 
 def schema_of(*forms: type[BaseModel]) -> dict[str, Any]:

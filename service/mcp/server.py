@@ -1,7 +1,8 @@
 """Build the MCP server: it lists the tools, calls them, and returns errors as sentences."""
 
-from collections.abc import Callable
-from contextlib import AbstractAsyncContextManager
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
 from typing import Any
 
 import httpx
@@ -24,10 +25,12 @@ from service.mcp.tools import TOOLS, Planner
 # Returns the service for a call of a tool, given the HTTP request of the call; None over stdio.
 Connect = Callable[[Any], AbstractAsyncContextManager[Planner]]
 _MOST_ERROR = 2000  # characters
+_PAUSE = 5.0  # seconds between two notifications: clients give up after a minute of silence
 _INSTRUCTIONS = (
-    "Paretour plans tours under several objectives and returns the Pareto front: every tour that no"
-    " other beats in everything. Plan first, explain what is traded, ask the person for a budget or"
-    " a preference, then choose. Nothing is dispatched: the tools only plan and read."
+    "Paretour plans tours and fleets under two to four objectives and returns the Pareto front:"
+    " every tour or plan that no other beats in everything. Plan first, explain what is traded, ask"
+    " the person for a budget or a preference, then choose, or let them choose by `ask`. During the"
+    " day, replan. Nothing is dispatched: the tools only plan and read."
 )
 
 
@@ -51,7 +54,7 @@ def make_server(connect: Connect, version: str) -> Server[Any]:
         if tool is None:
             return _answer(f"tool must be one of {', '.join(_BY_NAME)}", is_error=True)
         try:
-            async with connect(context.request) as planner:
+            async with connect(context.request) as planner, _progress(context, planner):
                 return _answer(await tool.call(planner, params.arguments or {}))
         except (Refusal, Refused, ValueError) as error:
             return _answer(str(error), is_error=True)
@@ -68,6 +71,29 @@ def make_server(connect: Connect, version: str) -> Server[Any]:
         on_list_tools=list_tools,
         on_call_tool=call_tool,
     )
+
+
+@asynccontextmanager
+async def _progress(
+    context: ServerRequestContext[Any, Any], planner: Planner
+) -> AsyncIterator[None]:
+    """Tell a client that asked for it every few seconds that a tool still runs, and on what."""
+
+    async def tell() -> None:
+        seconds = 0.0
+        while True:
+            await asyncio.sleep(_PAUSE)
+            seconds += _PAUSE
+            message = await planner.state() if planner.state else "planning"
+            await context.session.report_progress(seconds, message=message)
+
+    telling = asyncio.create_task(tell())
+    try:
+        yield
+    finally:
+        telling.cancel()
+        with suppress(asyncio.CancelledError):
+            await telling
 
 
 def _answer(text: str, *, is_error: bool = False) -> CallToolResult:

@@ -2,15 +2,18 @@
 
 import json
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from paretour import FrontOfAnyKind, Refused
 from paretour.choice import knee
 from paretour.display import shown
-from paretour.kinds import Routes, kind_of
+from paretour.kinds import kind_of
+from paretour.questions import Option, Question
 
+from service.mcp.amounts import amount
+from service.mcp.routes import Way, fairest, measures_of, names_of, ways_of
 from service.objectives import OBJECTIVES
 
 MOST_BYTES = 8000  # of a text
@@ -75,10 +78,37 @@ def tour_text(front: FrontOfAnyKind, number: int, first_stop: int, link: str | N
         "summary": f"{_noun(front)} {number} of {len(front)}: {_lengths_text(front, number)}",
         "front": front.id,
         "number": number,
-        "lengths": _lengths(front, number),
-        "losses": dict(zip(_names(front), losses, strict=True)),
+        **_known(front, number),
+        "losses": dict(zip(names_of(front), losses, strict=True)),
     }
     return _with_stops(_linked(chosen, link), front, number, first_stop)
+
+
+def question_text(front: FrontOfAnyKind, question: Question, picks: Sequence[int]) -> str:
+    """Return the text of a question that is not the end: what each option keeps within reach."""
+    options = [
+        {"option": number, **_reach(front, option)}
+        for number, option in enumerate(question.options)
+    ]
+    return _text(
+        {
+            "summary": f"{question.left} questions are left. Ask the person which option is best",
+            "front": front.id,
+            "picks": list(picks),
+            "where_you_stand": _reach(front, question.current),
+            "options": options,
+            "hint": "every option is at least as good as where you stand, in everything; call again"
+            " with the number of the option that was chosen added to picks",
+        }
+    )
+
+
+def _reach(front: FrontOfAnyKind, option: Option) -> Named:
+    return {
+        "at_most": _amounts(front, option.point),
+        "at_best": _amounts(front, option.best),
+        f"{_noun(front)}s_within_reach": option.within_reach,
+    }
 
 
 def _heading(front: FrontOfAnyKind, link: str | None) -> dict[str, Any]:
@@ -88,7 +118,7 @@ def _heading(front: FrontOfAnyKind, link: str | None) -> dict[str, Any]:
         least, greatest = front.lengths.min(axis=0), front.lengths.max(axis=0)
         found["ranges"] = {
             name: [_short(low), _short(high)]
-            for name, low, high in zip(_names(front), least, greatest, strict=True)
+            for name, low, high in zip(names_of(front), least, greatest, strict=True)
         }
     return _linked(found, link)
 
@@ -99,36 +129,42 @@ def _summary(front: FrontOfAnyKind) -> str:
         count += f" of {front.document['cities']} stops"
     if not len(front):
         return f"{count}, {front.status}"
-    ends = zip(front.labels, front.lengths.min(axis=0), front.lengths.max(axis=0), strict=True)
-    ranges = ", ".join(f"{shown(label)} {low:.6g} to {high:.6g}" for label, low, high in ends)
+    ends = zip(front.lengths.min(axis=0), front.lengths.max(axis=0), strict=True)
+    triples = zip(names_of(front), _units(front), ends, strict=True)
+    ranges = ", ".join(
+        f"{shown(name)} {amount(low, unit)} to {amount(high, unit)}"
+        for name, unit, (low, high) in triples
+    )
     return f"{count}, and none is better than another in everything: {ranges}"
 
 
 def _representatives(front: FrontOfAnyKind) -> list[Named]:
-    """Return a few tours: the least in each objective, the knee and, of two objectives, two more.
+    """Return a few tours: the least in each objective, the knee, of plans the fairest, and others.
 
-    Of two objectives, each of the two further tours is between the knee and an end of the front.
+    Of two objectives there are two more, each between the knee and an end of the front.
     """
     if not len(front):
         return []
     chosen: dict[int, list[str]] = {}
-    names = _names(front)
+    names = names_of(front)
     for index, name in enumerate(names):
         chosen.setdefault(int(front.lengths[:, index].argmin()), []).append(f"least {name}")
     middle = knee(front.lengths)
     chosen.setdefault(middle, []).append("knee")
+    if (equal := fairest(front)) is not None:
+        chosen.setdefault(equal, []).append("fairest")
     if len(names) == OBJECTIVES:
         for end in (0, len(front) - 1):
             chosen.setdefault(round(middle + _NEAR * (end - middle)), []).append("between")
     return [
-        {"number": number, "is": ", ".join(chosen[number]), "lengths": _lengths(front, number)}
+        {"number": number, "is": ", ".join(chosen[number]), **_known(front, number)}
         for number in sorted(chosen)
     ]
 
 
 def _trades(front: FrontOfAnyKind) -> list[str]:
     """Return sentences: how much less of one objective a few per cent more of another buy."""
-    names, lengths = _names(front), front.lengths
+    names, lengths = names_of(front), front.lengths
     slacks = _SLACKS if len(names) == OBJECTIVES else _SLACKS[1:2]
     return [
         sentence
@@ -169,13 +205,13 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
 
     The first `first` stops are left out.
     """
-    routes = kind_of(front.document).routes(front[number])
-    pairs = [(route, stop) for route, (_, stops) in enumerate(routes) for stop in stops]
+    ways = ways_of(front, number)
+    pairs = [(at, place) for at, way in enumerate(ways) for place in range(len(way.stops))]
     rest = pairs[first:]
 
     def text_of(count: int) -> str:
         kept = rest[:count]
-        return _text({**document, **_stops(front, routes, kept), **_left(pairs, first, kept)})
+        return _text({**document, **_stops(front, ways, kept), **_left(pairs, first, kept)})
 
     def bytes_of(count: int) -> int:
         return len(text_of(count).encode())
@@ -187,30 +223,25 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
     return text_of(count) if count > 0 else _fitted(document)
 
 
-def _stops(
-    front: FrontOfAnyKind,
-    routes: Routes,
-    kept: Sequence[tuple[int, Any]],
-) -> Named:
-    """Return the stops that have room, as a member of the document.
+def _stops(front: FrontOfAnyKind, ways: Sequence[Way], kept: Sequence[tuple[int, int]]) -> Named:
+    """Return the stops that have room, with their times, as members of the document.
 
     Args:
-        front: The front. A tour has one list of stops, a plan one for each route.
-        routes: The vehicle and all stops of each route.
-        kept: The stops that have room, each with the number of its route.
+        front: The front.
+        ways: The routes of the plan, or the one of the tour.
+        kept: The stops that have room: the number of the route, and the place in it.
     """
-    if not kind_of(front.document).mover:
-        return {"stops": [stop for _, stop in kept]}
-    found: dict[int, list[Any]] = {}
-    for route, stop in kept:
-        found.setdefault(route, []).append(stop)
-    vehicles = {route: routes[route][0] for route in found}
-    return {
-        "routes": [
-            {"route": route, "vehicle": vehicles[route], "stops": stops}
-            for route, stops in found.items()
-        ]
-    }
+    places: dict[int, list[int]] = {}
+    for at, place in kept:
+        places.setdefault(at, []).append(place)
+    found = []
+    for at, inside in places.items():
+        way = ways[at]
+        times = {} if way.times is None else {"times": [way.times[place] for place in inside]}
+        found.append({**way.known, "stops": [way.stops[place] for place in inside], **times})
+    if kind_of(front.document).mover:
+        return {"routes": found}
+    return found[0] if found else {"stops": []}
 
 
 def _left(pairs: Sequence[Any], first: int, kept: Sequence[Any]) -> Named:
@@ -233,20 +264,28 @@ def _noun(front: FrontOfAnyKind) -> str:
     return kind_of(front.document).item
 
 
-def _names(front: FrontOfAnyKind) -> list[str]:
-    """Return the names of the objectives; their indexes if they have no names."""
-    if front.objectives:
-        return [objective.name for objective in front.objectives]
-    return [str(index) for index in range(front.lengths.shape[1])]
+def _known(front: FrontOfAnyKind, number: int) -> Named:
+    """Return the lengths of a tour or plan, and the measures of a plan."""
+    measures = measures_of(front, number)
+    return {"lengths": _lengths(front, number), **({"measures": measures} if measures else {})}
 
 
 def _lengths(front: FrontOfAnyKind, number: int) -> dict[str, float]:
-    return dict(zip(_names(front), map(_short, front.lengths[number]), strict=True))
+    return dict(zip(names_of(front), map(_short, front.lengths[number]), strict=True))
 
 
 def _lengths_text(front: FrontOfAnyKind, number: int) -> str:
-    pairs = zip(front.labels, front.lengths[number], strict=True)
-    return ", ".join(f"{shown(label)} {length:.6g}" for label, length in pairs)
+    return _amounts(front, front.lengths[number])
+
+
+def _amounts(front: FrontOfAnyKind, lengths: Iterable[float]) -> str:
+    """Return lengths under the objectives in words, as "time 2:10 h, distance 14.2 km"."""
+    triples = zip(names_of(front), _units(front), lengths, strict=True)
+    return ", ".join(f"{shown(name)} {amount(length, unit)}" for name, unit, length in triples)
+
+
+def _units(front: FrontOfAnyKind) -> list[str | None]:
+    return [each.unit for each in front.objectives or ()] or [None] * front.lengths.shape[1]
 
 
 def _short(number: float) -> float:

@@ -15,16 +15,27 @@ from paretour import (
 from paretour.choice import choose
 from pydantic import BaseModel, ValidationError
 
+from service.mcp.amounts import budget_in, clock_unit, with_times
 from service.mcp.arguments import (
     Arguments,
+    AskAbout,
     Changes,
     ChooseTour,
+    DayOfFleet,
     Members,
     PlanFile,
     StoredFront,
     schema_of,
 )
-from service.mcp.summaries import explanation, front_text, tour_text, unreadable_text
+from service.mcp.changes import changes_of
+from service.mcp.routes import names_of
+from service.mcp.summaries import (
+    explanation,
+    front_text,
+    question_text,
+    tour_text,
+    unreadable_text,
+)
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.null_members import without_null_members
@@ -39,10 +50,17 @@ _MOST_TOURS = 100  # of a front by default
 
 @dataclass(frozen=True)
 class Planner:
-    """A service that tools call: its client, and the address of its page if it has one."""
+    """A service that tools call.
+
+    Args:
+        client: Its client.
+        page: The address of its page, if it has one.
+        state: Say what the service does before it plans, as compiling; by default nothing.
+    """
 
     client: AsyncClient
     page: str | None = None
+    state: Callable[[], Awaitable[str]] | None = None
 
     async def planned(self, plan: Plan, stops: int, assumed: Sequence[str] = ()) -> str:
         """Plan a front, and return its text.
@@ -108,11 +126,13 @@ class Tool:
 
 
 async def _plan_front(planner: Planner, asked: Members) -> str:
-    return await planner.planned(Plan("/front", asked.members), _most_stops(asked.members))
+    request = with_times(asked.members, "s")
+    return await planner.planned(Plan("/front", request), _most_stops(request))
 
 
 async def _plan_fleet(planner: Planner, asked: Members) -> str:
-    return await planner.planned(Plan("/fleet", asked.members), _most_stops(asked.members))
+    request = with_times(asked.members, clock_unit(asked.members))
+    return await planner.planned(Plan("/fleet", request), _most_stops(request))
 
 
 def _most_stops(members: Mapping[str, Any]) -> int:
@@ -124,9 +144,11 @@ def _most_stops(members: Mapping[str, Any]) -> int:
 
 
 async def _plan_file(planner: Planner, asked: PlanFile) -> str:
-    columns = [{"file": asked.name, **each.model_dump()} for each in asked.columns or ()]
+    contents = asked.contents
+    first = next(iter(contents))
+    columns = [{**each.model_dump(), "file": each.file or first} for each in asked.columns or ()]
     try:
-        found = await planner.client.read_files({asked.name: asked.text.encode()}, columns)
+        found = await planner.client.read_files(contents, columns)
     except Refused as error:
         raise ValueError(unreadable_text(error)) from None
     request = dict(found["request"])
@@ -155,11 +177,34 @@ def _chosen(front: FrontOfAnyKind, asked: ChooseTour) -> int:
     """Return the number of the tour that is chosen by a budget, weights, the knee or a balance."""
     names = [each.name for each in front.objectives or ()]
     no_angles = np.empty(0)  # agents do not choose by them
-    return choose(front.lengths, no_angles, names, asked.model_dump())
+    ways = asked.model_dump()
+    if asked.at_most:
+        ways["at_most"] = {name: _budget(front, name, most) for name, most in asked.at_most.items()}
+    return choose(front.lengths, no_angles, names, ways)
+
+
+def _budget(front: FrontOfAnyKind, name: str, budget: float | str) -> float:
+    """Return a budget as a number in the unit of its objective, by name or by number."""
+    names = names_of(front)
+    index = names.index(name) if name in names else int(name) if name.isdecimal() else len(names)
+    if index >= len(names) or not len(front):
+        return 0.0  # which is refused by the name
+    unit = front.objectives[index].unit if front.objectives else None
+    return budget_in(budget, float(front.lengths[:, index].min()), unit)
+
+
+async def _ask(planner: Planner, asked: AskAbout) -> str:
+    front, picks = await planner.stored(asked.front), asked.picks or []
+    question = front.ask(picks, questions=asked.questions, options=asked.options)
+    if question.chosen is None:
+        return question_text(front, question, picks)
+    return tour_text(front, question.chosen, 0, planner.link(front))
 
 
 async def _replan(planner: Planner, asked: Changes) -> str:
-    return await planner.planned(replan_plan(asked.front, cast(Any, asked.members)), 0)
+    front = await planner.stored(asked.front)
+    members, assumed = changes_of(front, asked.members)
+    return await planner.planned(replan_plan(asked.front, cast(Any, members)), 0, assumed)
 
 
 TOOLS = (
@@ -175,14 +220,16 @@ TOOLS = (
     Tool(
         name="plan_file",
         description="Plan what the text of a file describes: stops, a fleet, or an instance of"
-        " TSPLIB and the like. The answer is as of plan_front, with what was assumed.",
+        " TSPLIB and the like; or several files together. The answer is as of plan_front, with what"
+        " was assumed.",
         arguments=PlanFile,
         run=_plan_file,
     ),
     Tool(
         name="plan_fleet",
         description="Plan routes of several vehicles, with capacities, time windows and shipments,"
-        " under two or three objectives. The answer is a front of plans.",
+        " under two or three objectives. The answer is a front of plans: of the knee each route"
+        " with its times of day, lengths and load. Times are in the unit of the clock, or 10:00.",
         arguments=Members,
         forms=(FleetRequest,),
         run=_plan_fleet,
@@ -204,12 +251,21 @@ TOOLS = (
         reads_only=True,
     ),
     Tool(
+        name="ask",
+        description="Help a person choose, by three questions: each offers three options, none"
+        " worse in anything than where the person stands. Show the options, ask which is best, and"
+        " call again with all picks; at the end the answer is the tour or plan.",
+        arguments=AskAbout,
+        run=_ask,
+        reads_only=True,
+    ),
+    Tool(
         name="replan",
         description="Plan the rest of a tour or of a fleet's day when stops are done, added or"
-        " removed, the vehicle is elsewhere, or costs have changed. The answer is a new front; the"
-        " earlier one stays as it is.",
+        " removed, the vehicle is elsewhere or broken down, or costs have changed. The answer is a"
+        " new front; the earlier one stays as it is.",
         arguments=Changes,
-        forms=(Changes, ReplanRequest, ReplanFleetRequest),
+        forms=(Changes, DayOfFleet, ReplanRequest, ReplanFleetRequest),
         run=_replan,
     ),
 )

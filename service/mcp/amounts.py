@@ -1,0 +1,126 @@
+"""Read and write times, durations and budgets as people say them: "10:00", "2:10 h", "3%"."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+MINUTE, HOUR, DAY = 60, 3600, 86400
+_TIMES = {"s": 1, "second": 1, "seconds": 1, "min": MINUTE, "minute": MINUTE, "minutes": MINUTE}
+SECONDS = {**_TIMES, "h": HOUR, "hour": HOUR, "hours": HOUR}  # in each unit of time
+_METRES = {"m": 1, "km": 1000}
+_FAR = 10_000  # metres, from which kilometres are said
+_CLOCK = re.compile(r"(\d{1,3}):([0-5]\d)(?::([0-5]\d))?(?: ?h)?")
+_AMOUNT = re.compile(r"(\d+(?:\.\d+)?) ?([^\d\s].*)?")
+_PER_CENT = re.compile(r"(\d+(?:\.\d+)?) ?%")
+# The members of requests that are times or durations, in the unit of the clock.
+TIMED = frozenset(
+    (
+        "departure",
+        "due",
+        "earliest",
+        "latest",
+        "length",
+        "longest",
+        "max_overtime",
+        "now",
+        "release",
+    )
+) | {"service", "shift", "shifts", "window", "windows"}
+# What such members may be in; below other members the same names mean something else.
+_HOLDERS = frozenset(("add", "breaks", "departure", "position", "routes", "stops", "vehicles"))
+
+
+def clock_time(time: float, unit: str | None) -> str | float:
+    """Return a time of the day, as 8:05 or "day 2, 8:05"; the number where the unit is no time."""
+    if unit not in SECONDS:
+        return time
+    minutes = round(time * SECONDS[unit] / MINUTE)
+    days, minutes = divmod(minutes, DAY // MINUTE)
+    text = f"{minutes // MINUTE}:{minutes % MINUTE:02}"
+    return f"day {days + 1}, {text}" if days else text
+
+
+def amount(value: float, unit: str | None) -> str:
+    """Return a value with its unit, as "2:10 h", "12 min", "14.2 km" or "340 EUR"."""
+    if unit in SECONDS:
+        seconds = round(value * SECONDS[unit])
+        minutes = round(seconds / MINUTE)
+        if minutes >= MINUTE:
+            return f"{minutes // MINUTE}:{minutes % MINUTE:02} h"
+        return f"{minutes} min" if seconds >= MINUTE or not seconds else f"{seconds} s"
+    if unit == "m" and value >= _FAR:
+        return f"{value / _METRES['km']:.4g} km"
+    return f"{value:.6g}" + (f" {unit}" if unit else "")
+
+
+def number_in(text: str, unit: str | None) -> float:
+    """Return the number, in a unit, that a text says, as 10:00, "2:10 h", "90 min" or "12 km".
+
+    Raises:
+        ValueError: The text says none, or the unit is of another kind.
+    """
+    if found := _CLOCK.fullmatch(text.strip()):
+        hours, minutes, seconds = (int(part or 0) for part in found.groups())
+        value, given = float(HOUR * hours + MINUTE * minutes + seconds), "s"
+    elif found := _AMOUNT.fullmatch(text.strip()):
+        value, given = float(found[1]), (found[2] or unit or "")
+    else:
+        raise ValueError(f"{text!r:.80} must be a number, a time as 10:00 or a duration as 2:10 h")
+    sizes = next((each for each in (SECONDS, _METRES) if given in each), {given: 1})
+    if (unit or "") not in sizes:
+        known = "no unit" if unit is None else f"the unit {unit}"
+        raise ValueError(f"{text!r:.80} must be in the unit of its objective, which has {known}")
+    return value * sizes[given] / sizes[unit or ""]
+
+
+def budget_in(budget: float | str, least: float, unit: str | None) -> float:
+    """Return the most that a budget allows; "3%" is so much more than the least.
+
+    Raises:
+        ValueError: As of `number_in`.
+    """
+    if not isinstance(budget, str):
+        return budget
+    if found := _PER_CENT.fullmatch(budget.strip()):
+        return least * (1 + float(found[1]) / 100)
+    return number_in(budget, unit)
+
+
+def with_times(members: Mapping[str, Any], unit: str | None) -> dict[str, Any]:
+    """Return the members of a request with numbers, in a unit, for the times that are texts.
+
+    Raises:
+        ValueError: As of `number_in`.
+    """
+    return {
+        name: _numbers(value, unit)
+        if name in TIMED and not isinstance(value, Mapping)
+        else _inside(value, unit)
+        if name in _HOLDERS
+        else value
+        for name, value in members.items()
+    }
+
+
+def _inside(value: Any, unit: str | None) -> Any:
+    if isinstance(value, list):
+        return [_inside(each, unit) for each in value]
+    return with_times(value, unit) if isinstance(value, Mapping) else value
+
+
+def _numbers(value: Any, unit: str | None) -> Any:
+    if isinstance(value, list):
+        return [_numbers(each, unit) for each in value]
+    return number_in(value, unit) if isinstance(value, str) else value
+
+
+def clock_unit(request: Mapping[str, Any]) -> str | None:
+    """Return the unit of the clock in a request for a fleet that is not checked yet."""
+    clock, objectives = request.get("clock"), request.get("objectives")
+    named = [each for each in objectives or () if isinstance(each, Mapping)]
+    found = next((each for each in named if each.get("name") == clock), clock)
+    if not isinstance(found, Mapping):
+        return None
+    measured = "s" if found.get("from") == "road_time" or found.get("speed") is not None else None
+    unit = found.get("unit") or measured
+    return unit if isinstance(unit, str) else None

@@ -1,0 +1,94 @@
+"""Make the members of a request to replan from what an agent says of a fleet's day."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from paretour import FleetFront, FleetPlan, FrontOfAnyKind
+from paretour.choice import knee
+
+from service.mcp.amounts import with_times
+
+AS_PLANNED = "as planned"
+Named = Mapping[str, Any]
+
+
+def changes_of(front: FrontOfAnyKind, asked: Named) -> tuple[dict[str, Any], list[str]]:
+    """Return the members of the request, and what was taken for granted, in sentences.
+
+    Of a fleet `done` says by vehicle which stops were visited, or that all went as planned until
+    now, and `broken_down` which vehicles are out of service.
+
+    Raises:
+        ValueError: A time cannot be read, or a vehicle is not named by its only route.
+    """
+    unit: str | None = "s"
+    if isinstance(front, FleetFront):
+        unit = None if front.clock is None else front.clock.unit
+    members = with_times(asked, unit)
+    if not isinstance(front, FleetFront):
+        return members, []
+    return _of_fleet(front, members)
+
+
+def _of_fleet(front: FleetFront, members: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    number = members.get("plan")
+    number = knee(front.lengths) if number is None else number
+    if not isinstance(number, int) or not 0 <= number < len(front):
+        raise ValueError(f"plan must be below {len(front)}, got {number!r:.80}")
+    plan, done = front[number], members.pop("done", None)
+    ways: dict[int, dict[str, Any]] = {}
+    assumed: list[str] = []
+    if done == AS_PLANNED:
+        ways, assumed = _as_planned(plan, members.get("now"))
+    elif isinstance(done, Mapping):
+        for name, stops in done.items():
+            route = _route(plan, number, name)
+            depots = _depots(plan)
+            visited = [stop for stop in stops if stop not in depots]
+            ways[route] = {"route": route, "done": visited}
+    elif done:
+        raise ValueError(f'done of a fleet must name vehicles or routes, or be "{AS_PLANNED}"')
+    for name in members.pop("broken_down", None) or ():
+        route = _route(plan, number, name)
+        ways.setdefault(route, {"route": route})["broken_down"] = True
+    if ways:
+        members["routes"] = [*members.get("routes", ()), *ways.values()]
+    return {**members, "plan": number}, assumed
+
+
+def _as_planned(plan: FleetPlan, now: float | None) -> tuple[dict[int, dict[str, Any]], list[str]]:
+    """Return what each vehicle has done by now if it drives as planned, and say it."""
+    if now is None:
+        raise ValueError(f'now is needed with done "{AS_PLANNED}", such as "11:00"')
+    ways, assumed, depots = {}, [], _depots(plan)
+    for number, route in enumerate(plan.routes):
+        if route.arrivals is None:
+            raise ValueError("the fleet has no clock, so done must name the stops of each vehicle")
+        if route.arrivals[0] > now:
+            continue
+        pairs = zip(route.stops, route.arrivals.tolist(), strict=True)
+        done = [stop for stop, time in pairs if time <= now and stop not in depots]
+        ways[number] = {"route": number, "done": done}
+        stops = ", ".join(done) or "no stop yet"
+        assumed.append(f"route {number} ({route.vehicle}) has visited as planned: {stops}")
+    return ways, assumed
+
+
+def _depots(plan: FleetPlan) -> set[str]:
+    """Return the first and last stops of routes that other routes, or other ends, have as well."""
+    ends = [stop for route in plan.routes for stop in (route.stops[0], route.stops[-1])]
+    return {stop for stop in ends if ends.count(stop) > 1}
+
+
+def _route(plan: FleetPlan, number: int, name: Any) -> int:
+    """Return the number of a route, by itself or by a vehicle that has no other."""
+    count = len(plan.routes)
+    if str(name).isdecimal() and int(name) < count:
+        return int(name)
+    found = [at for at, route in enumerate(plan.routes) if route.vehicle == name]
+    if len(found) == 1:
+        return found[0]
+    known: Sequence[str] = [f"{at} ({route.vehicle})" for at, route in enumerate(plan.routes)]
+    demand = "is no vehicle with a route" if not found else "has several routes"
+    routes = ", ".join(known)
+    raise ValueError(f"{name!r:.80} {demand} in plan {number}: name one of its routes, {routes}")

@@ -1,0 +1,172 @@
+"""A dispatcher's day with an agent, from the morning to the afternoon, by the SDK's client."""
+
+import asyncio
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+
+from service.api.app import Edge
+from service.mcp.amounts import amount, budget_in, clock_time, number_in
+from tests.helpers.serving import app_of, serving
+from tests.mcp.test_tools import LIMITS, agent, call, said
+
+ORDERS = [
+    {"id": f"o{i}", "location": [24.9 + i * i % 11 / 100, 60.1 + i * 3 % 7 / 100], "demand": [1]}
+    for i in range(1, 13)
+]
+DAY: dict[str, Any] = {
+    "stops": [
+        {"id": "depot", "location": [24.93, 60.13]},
+        *({**order, "service": "10 min", "window": ["8:00", "16:00"]} for order in ORDERS),
+    ],
+    "vehicles": [
+        {
+            "id": name,
+            "start": 0,
+            "end": 0,
+            "capacity": [6],
+            "shift": ["8:00", "18:00"],
+            "reload": ["depot"],
+        }
+        for name in ("Anna", "Pekka", "Sofia")
+    ],
+    "objectives": [
+        {"name": "distance", "from": "great_circle"},
+        {"name": "time", "from": "great_circle", "speed": 20, "over": "max"},
+    ],
+    "clock": "time",
+    "time_limit": 0.2,
+}
+VANS = "id,start,capacity\nvan-1,depot,8\nvan-2,depot,8\n"
+TABLE = "id,lat,lon,demand\ndepot,60.13,24.93,\n" + "".join(
+    f"{order['id']},{order['location'][1]},{order['location'][0]},1\n" for order in ORDERS
+)
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    with serving(app_of(limits=LIMITS, edge=Edge(agents=True))) as address:
+        yield address
+
+
+def check_plan(plan: dict[str, Any]) -> None:
+    """Check that all is there which a dispatcher reads: times of day, lengths, loads, measures."""
+    for route in plan["routes"]:
+        assert len(route["times"]) == len(route["stops"])
+        assert (route["leaves"], route["ends"]) == (route["times"][0], route["times"][-1])
+        minutes = [int(h) * 60 + int(m) for h, m in (time.split(":") for time in route["times"])]
+        assert minutes == sorted(minutes)
+        assert minutes[0] >= 8 * 60
+        assert route["lengths"].keys() == {"distance", "time"}
+        assert route["load"] <= 6
+
+
+def test_a_day_of_a_dispatcher_from_the_morning_to_the_afternoon(url: str) -> None:
+    async def talk() -> None:
+        async with agent(url) as client:
+            morning = await call(client, "plan_fleet", **DAY)
+            check_plan(morning)
+            stored = httpx.get(f"{url}/front/{morning['front']}").json()["front"]
+            explained = await call(client, "explain_front", front=morning["link"])
+            assert explained["front"] == morning["front"]
+            await check_choices(client, morning, stored)
+            chosen = await check_questions(client, morning, stored)
+            rest = await check_replanning(client, morning, stored, chosen)
+            assert await call(client, "explain_front", front=rest["link"])
+            check_plan(await call(client, "choose_tour", front=rest["link"], knee=True))
+
+    asyncio.run(talk())
+
+
+async def check_choices(client: Any, morning: dict[str, Any], stored: list[Any]) -> None:
+    named = {each["is"]: each for each in morning["tours"]}
+    fair = next(each for is_, each in named.items() if "fairest" in is_)
+    imbalances = [plan["measures"]["imbalance"] for plan in stored]
+    assert imbalances[fair["number"]] == min(imbalances)
+    assert fair["measures"]["imbalance"] == amount(min(imbalances), "s")
+    least = min(plan["lengths"][0] for plan in stored)
+    by_share = await call(client, "choose_tour", front=morning["front"], at_most={"distance": "3%"})
+    assert stored[by_share["number"]]["lengths"][0] <= 1.03 * least
+    check_plan(by_share)
+    by_time = await call(client, "choose_tour", front=morning["front"], at_most={"time": "9:00 h"})
+    assert by_time["lengths"]["time"] <= 9 * 3600
+    refused = await said(
+        client, "choose_tour", True, front=morning["front"], at_most={"time": "3 km"}
+    )
+    assert "must be in the unit of its objective" in refused
+
+
+async def check_questions(client: Any, morning: dict[str, Any], stored: list[Any]) -> Any:
+    picks: list[int] = []
+    asked = await call(client, "ask", front=morning["front"])
+    while "options" in asked:
+        assert asked["picks"] == picks
+        picks.append(asked["options"][-1]["option"])
+        asked = await call(client, "ask", front=morning["front"], picks=picks)
+    assert list(asked["lengths"].values()) == pytest.approx(stored[asked["number"]]["lengths"])
+    check_plan(asked)
+    return asked
+
+
+async def check_replanning(
+    client: Any, morning: dict[str, Any], stored: list[Any], chosen: dict[str, Any]
+) -> dict[str, Any]:
+    """Replan at eleven, when one van is out and an order is new, and say by whom what was done."""
+    plan, now = chosen["number"], chosen["routes"][0]["times"][2]
+    added = {"id": "new", "location": [24.95, 60.14], "demand": [1], "window": ["8:00", "17:00"]}
+    routes = stored[plan]["routes"]
+    done = {route["vehicle"]: route["stops"][:2] for route in routes}
+    planned = {"front": morning["front"], "plan": plan, "now": now, "time_limit": 0.2}
+    refused = await said(client, "replan", True, **planned, done={"Ann": []})
+    assert "'Ann' is no vehicle with a route" in refused
+    said_by_van = await call(client, "replan", **planned, done=done, add=[added])
+    visited = {stop for each in said_by_van["routes"] for stop in each["stops"]}
+    assert "new" in visited
+    assert not visited & {route["stops"][1] for route in routes} - {
+        each["stops"][0] for each in said_by_van["routes"]
+    }
+    as_planned: dict[str, Any] = await call(
+        client, "replan", **planned, done="as planned", remove=[routes[-1]["stops"][-2]]
+    )
+    assert f"route 0 ({routes[0]['vehicle']}) has visited as planned" in as_planned["assumed"][0]
+    check_plan(as_planned)
+    return as_planned
+
+
+def test_several_files_are_planned_together(url: str) -> None:
+    async def talk() -> None:
+        async with agent(url) as client:
+            files = [{"name": "orders.csv", "text": TABLE}, {"name": "vans.csv", "text": VANS}]
+            planned = await call(client, "plan_file", files=files, time_limit=0.1)
+            assert {route["vehicle"] for route in planned["routes"]} <= {"van-1", "van-2"}
+            refused = await said(client, "plan_file", True, files=files, text=TABLE)
+            assert "text or files must be given" in refused
+
+    asyncio.run(talk())
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "number"),
+    [
+        ("10:00", "s", 36000),
+        ("10:00", "min", 600),
+        ("2:10 h", "h", 2 + 1 / 6),
+        ("90 min", "s", 5400),
+        ("12.5 km", "m", 12500),
+        ("40 EUR", "EUR", 40),
+        ("40", None, 40),
+    ],
+)
+def test_amounts_are_read_as_people_write_them(text: str, unit: str, number: float) -> None:
+    assert number_in(text, unit) == pytest.approx(number)
+
+
+def test_budgets_and_times_are_read_and_written() -> None:
+    assert budget_in("3%", 200, "m") == 206
+    assert [clock_time(t, "s") for t in (29100, 115500)] == ["8:05", "day 2, 8:05"]
+    assert [amount(t, "min") for t in (130, 12)] == ["2:10 h", "12 min"]
+    assert amount(14200, "m") == "14.2 km"
+    with pytest.raises(ValueError, match="must be a number, a time as 10:00"):
+        number_in("soon", "s")
