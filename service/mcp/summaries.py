@@ -155,7 +155,7 @@ def _representatives(front: FrontOfAnyKind) -> list[Named]:
         chosen.setdefault(equal, []).append("fairest")
     if len(names) == OBJECTIVES:
         for end in (0, len(front) - 1):
-            chosen.setdefault(round(middle + _NEAR * (end - middle)), []).append("between")
+            chosen.setdefault(round(middle + _NEAR * (end - middle)), ["between"])
     return [
         {"number": number, "is": ", ".join(chosen[number]), **_known(front, number)}
         for number in sorted(chosen)

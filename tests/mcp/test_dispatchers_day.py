@@ -2,13 +2,18 @@
 
 import asyncio
 from collections.abc import Iterator
+from contextlib import nullcontext
 from typing import Any
 
 import httpx
 import pytest
+from mcp import Client
+from paretour import AsyncClient
 
 from service.api.app import Edge
+from service.mcp import server
 from service.mcp.amounts import amount, budget_in, clock_time, number_in
+from service.mcp.tools import Planner
 from tests.helpers.serving import app_of, serving
 from tests.mcp.test_tools import LIMITS, agent, call, said
 
@@ -133,6 +138,34 @@ async def check_replanning(
     assert f"route 0 ({routes[0]['vehicle']}) has visited as planned" in as_planned["assumed"][0]
     check_plan(as_planned)
     return as_planned
+
+
+def test_a_client_that_asks_for_progress_hears_what_a_tool_waits_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Compiling(Planner):
+        async def stored(self, front: str) -> Any:
+            await asyncio.sleep(0.5)
+            raise ValueError(front)
+
+    async def state() -> str:
+        return "compiling the search: 40 %"
+
+    monkeypatch.setattr(server, "_PAUSE", 0.1)
+    heard: list[str | None] = []
+
+    async def hear(_: float, __: float | None, message: str | None) -> None:
+        heard.append(message)
+
+    async def talk() -> None:
+        planner = Compiling(AsyncClient("http://nowhere"), state=state)
+        made = server.make_server(lambda _: nullcontext(planner), "test")
+        async with Client(made) as client:
+            await client.call_tool("explain_front", {"front": "x"}, progress_callback=hear)
+
+    asyncio.run(talk())
+    assert heard
+    assert set(heard) == {"compiling the search: 40 %"}
 
 
 def test_several_files_are_planned_together(url: str) -> None:
