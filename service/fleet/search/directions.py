@@ -266,7 +266,7 @@ class Directions:
                 longest = limits.get(index, inf)
                 penalty = _STRICT * unit / self._scale[index]
             elif over == "vehicles":
-                routes = int(limits.get(index, routes))
+                routes = max(0, int(limits.get(index, routes)))
             by_measure[over] = float(weights[index])
         paid = self._over.index("unassigned") if "unassigned" in self._over else 0
         return Direction(

@@ -162,6 +162,19 @@ def _dissolve(state: State, slot: int) -> None:
     measure(state, slot)
 
 
+@compiled
+def limit_routes(state: State) -> None:
+    """Take all stops out of the routes of the fewest, until there are no more than is allowed."""
+    _, plan, direction = state
+    begin_iteration(plan)
+    for _ in range(plan.counts[USED] - direction.routes):
+        shortest = plan.used[0]
+        for number in range(plan.counts[USED]):
+            if plan.size[plan.used[number]] < plan.size[shortest]:
+                shortest = plan.used[number]
+        _dissolve(state, shortest)
+
+
 @inlined
 def recreate(state: State, order: int) -> None:
     """Insert the removed stops, sorted in an order, where each costs the least."""

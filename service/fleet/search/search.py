@@ -24,6 +24,7 @@ from service.fleet.search.ruin_and_recreate import (
     Found,
     anneal,
     insert_all,
+    limit_routes,
     offer,
     set_prices,
 )
@@ -178,6 +179,7 @@ class RuinSearch(FleetSearch):
         else:
             row[:] = self._archives.plans.tours[self._rows[step.start]]
         load_row(state, row)
+        limit_routes(state)
         set_prices(state)
         heat = step.heat
         left, still = step.rounds, max(1, int(_STILL * step.rounds))
