@@ -5,7 +5,6 @@ problems".
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +15,11 @@ from service.fleet.search.changes import (
     restore,
     save_slot,
 )
+from service.fleet.search.found import Found, offer
 from service.fleet.search.insertion import best_place
-from service.fleet.search.problem import Nodes, Problem
+from service.fleet.search.problem import Problem
 from service.fleet.search.route import measure, measure_with
-from service.fleet.search.rows import write_point, write_row
+from service.fleet.search.rows import write_point
 from service.fleet.search.working_plan import (
     BLINKS,
     MISSING,
@@ -37,8 +37,6 @@ from service.fleet.search.working_plan import (
     unlink,
 )
 from service.jit import compiled, inlined
-from service.search.archive.insertion import accepts, insert
-from service.search.archive.layout import Archive
 from service.search.local_search import random_below
 
 Array = NDArray[np.float64]
@@ -297,27 +295,6 @@ def insert_all(state: State, order: int) -> None:
     recreate(state, order)
 
 
-class Driven(NamedTuple):
-    """A plan that is driven, by stop: its vehicle's type, and the stop before it, -1 for none.
-
-    A plan keeps most of it where it keeps at least `most` of these steps; -1 for no plan.
-    """
-
-    kind: Nodes  # (n,); -1 if it is not visited
-    before: Nodes  # (n,)
-    most: int
-
-
-class Found(NamedTuple):
-    """The nondominated plans, and those among the plans that keep most of the driven one."""
-
-    plans: Archive
-    kept: Archive
-    driven: Driven
-    point: Array  # (m,), scratch space
-    row: Nodes  # scratch space
-
-
 @compiled
 def anneal(
     state: State,
@@ -374,31 +351,3 @@ def _beyond(state: State, found: Found) -> float:
             excess = found.point[objective] - direction.bounds[objective]
             cost += direction.strict[objective] * excess
     return cost
-
-
-@compiled
-def offer(problem: Problem, plan: WorkingPlan, found: Found) -> None:
-    """Offer a plan that visits all required stops, with its point, to the archives."""
-    if accepts(found.plans, found.point):
-        write_row(problem, plan, found.row)
-        insert(found.plans, found.point, found.row)
-    if (
-        found.driven.most >= 0
-        and accepts(found.kept, found.point)
-        and _kept_steps(problem, plan, found.driven) >= found.driven.most
-    ):
-        write_row(problem, plan, found.row)
-        insert(found.kept, found.point, found.row)
-
-
-@compiled
-def _kept_steps(problem: Problem, plan: WorkingPlan, driven: Driven) -> int:
-    """Return how many steps of a driven plan are in a plan."""
-    kept, n = 0, len(problem.demand)
-    for number in range(len(problem.clients)):
-        stop = problem.clients[number]
-        slot = plan.route[stop]
-        if slot >= 0 and driven.kind[stop] == problem.kind[slot]:
-            before = plan.previous[stop]
-            kept += (before if before < n else -1) == driven.before[stop]
-    return kept

@@ -13,6 +13,7 @@ from service.fleet.plans import FleetFront, Plan, Route, steps_of
 from service.fleet.rules import Rules
 from service.fleet.scales import Units
 from service.fleet.search.directions import Directions, Step
+from service.fleet.search.found import Driven, Found, offer
 from service.fleet.search.problem import Nodes, Problem, problem_of
 from service.fleet.search.rows import clear, load_row, write_point, write_row
 from service.fleet.search.ruin_and_recreate import (
@@ -20,12 +21,9 @@ from service.fleet.search.ruin_and_recreate import (
     NEAR,
     RANDOM,
     SOON,
-    Driven,
-    Found,
     anneal,
     insert_all,
     limit_routes,
-    offer,
     set_prices,
 )
 from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
