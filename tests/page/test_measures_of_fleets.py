@@ -229,7 +229,7 @@ def test_the_column_of_an_imbalance_is_named_after_what_its_rows_have(
         last = page.locator("#fleet-legend tfoot td").last
         expect(last).to_have_text("13 min, longest minus shortest")
         head, *_ = saved(page, "CSV").decode().splitlines()
-        assert head.endswith(",route distance (m),whole route,stops,selected")
+        assert head.endswith(",route distance (m),whole route (s),stops,selected")
 
 
 def test_lateness_is_said_as_a_time(late: Page) -> None:
