@@ -4,7 +4,7 @@ import { arrange, narrow } from "./result/arrangement.js";
 import { keepDraft, keptDraft } from "./opening/draft.js";
 import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, revealFault, showFaults } from "./planning/faults.js";
-import { formOf, kindOf } from "./common/kinds.js";
+import { formOf, kindNamed, kindOf } from "./common/kinds.js";
 import { detailsByStop } from "./inputs/details.js";
 import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
@@ -27,12 +27,13 @@ import { takeDropped, takePasted } from "./opening/reading.js";
 import { Problem, Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
+const DROPPED = "The plan was not of these stops and vehicles: Undo brings it back. What changes while it is driven is told below the plan.";
 // Charts and maps are most of the page's bytes: the first view does not wait for them.
-const { Result } = await import("./result/result.js");
+const [{ Result }, { Today }] = await Promise.all([import("./result/result.js"), import("./today/today.js")]);
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
 const result = new Result(service, {
-  onClick: (...place) => [placing, replanForm].forEach((each) => each.clicked(...place)),
+  onClick: (...place) => [placing, replanForm, today].forEach((each) => each.clicked(...place)),
   onMove(...moved) {
     input.moveCity(...moved);
     if (input.priced) say("Moved. Costs given as a matrix did not change.");
@@ -40,11 +41,13 @@ const result = new Result(service, {
   onDelete: (city) => input.deleteCity(city),
   ofEnds: { onMove: (...moved) => input.moveEnd(...moved), onRefused: say },
   onServe: (...served) => (input.serve(...served), plan()),
+  onSelected: (...selected) => today.select(...selected),
 });
 const input = new RequestForm(form, service, { onEdited: edited, onEnds: result.showEnds, onShaded: result.shade, settled });
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const exporting = new ExportButtons(service, screen, (problem) => fail(problem, ""));
 const replanForm = new ReplanForm(replan, result.wait);
+const today = new Today(service, result, { onReplan: replanFleet, onBack: showDriven });
 const opening = new Opening(service, result, {
   leave,
   offer,
@@ -67,6 +70,7 @@ let answer = null; // the best front so far
 let answered = null; // its request
 let last = null; // the state in which the last plan was done, its request, and what was chosen in it
 let opened = 0; // how many requests were opened
+let shownOf = 0; // how many there were when the front was shown
 let shown = false; // whether anything was opened or typed
 
 /** Opens a request in the form, and shows its stops under their objectives. */
@@ -113,10 +117,12 @@ function edited(instance, fit) {
   }
   if (answer && answer === last?.state.answer) last.chosen = result.taken;
   result.name((objectives = input.objectives), input.ids);
+  const isDropped = answer && kindNamed(answer).path === "fleet" && shownOf === opened;
   result.clear(instance, { fit });
   way = null;
   take(null);
   if (again) showAgain(last);
+  else if (isDropped) say(DROPPED);
 }
 
 function showAgain({ state, chosen: { balance, limits, selected } }) {
@@ -130,17 +136,19 @@ function take(found) {
   answer = found;
   exporting.show(found);
   placeResult();
-  if (!found) replanForm.show(null);
+  if (!found) [replanForm, today].forEach((each) => each.show(null));
 }
 
 /** What is on the screen; null if what was typed cannot be read. A replanned front has no request in the form. */
 async function screen() {
   if (input.unread && !(await settled())) return null;
   const asked = way?.replanned ? null : answered;
+  const known = way?.asked ?? answered;
   return {
     request: input.request,
     refused: input.refused,
     asked,
+    known,
     example: examples.unchanged(asked),
     objectives,
     details: detailsByStop(input.asked),
@@ -151,7 +159,7 @@ async function screen() {
 const placeResult = () => arrange(form, element("result"), answer || planning);
 
 /** Shows the states of a planning, which `states` asks it for; until the first one, says `waiting`. */
-async function run(states, waiting = "A first try is being made.") {
+async function run(states, waiting = "A first try is being made.", failed = fail) {
   if (input.unread && !(await settled())) return;
   leave();
   const mine = (planning = new Planning(service, mostSeconds));
@@ -165,7 +173,7 @@ async function run(states, waiting = "A first try is being made.") {
       show(state);
     }
   } catch (error) {
-    if (!mine.left) fail(error);
+    if (!mine.left) failed(error);
   } finally {
     if (planning === mine) ended();
   }
@@ -184,11 +192,13 @@ function show(state) {
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered = input.asked;
+    shownOf = opened;
     take(state.answer);
     if (state.stage === "done" && formOf(input.instance)) {
       way ??= new Way(input.instance, input.ids, state.answer.cities);
       replanForm.show(way);
     }
+    if (state.stage === "done" && kindNamed(state.answer).path === "fleet") today.show({ state, way, asked: way?.asked ?? input.asked });
     last = state.stage === "done" && !way?.replanned ? { asked: answered, state } : null;
   }
   tell(state);
@@ -212,7 +222,7 @@ async function* planned(states) {
   for await (const state of states) {
     if (state.answer) {
       way = null;
-      replanForm.show(null);
+      [replanForm, today].forEach((each) => each.show(null));
     }
     yield state;
   }
@@ -231,11 +241,37 @@ async function replan() {
   }
 }
 
+/** Plans what is left of the day of a fleet, beside the plan that is driven. */
+async function replanFleet() {
+  clearFaults();
+  const refused = (error) => {
+    if (!(error instanceof Problem)) throw error;
+    say("Not planned: what is shown is the plan before.");
+    today.refuse(error);
+  };
+  try {
+    const { id, body, way: rest } = today.asked;
+    await run((mine) => replanned(mine.replan(id, body), rest), "What is left of the day is being planned.", refused);
+  } catch (error) {
+    refused(error);
+  }
+}
+
+/** Shows the front of the plan that is driven again, and that plan. */
+function showDriven({ state, way: before }, plan) {
+  leave();
+  way = before;
+  result.clear(way?.instance ?? input.instance, { fit: false, editable: !way });
+  result.want(plan.balance, plan);
+  show(state);
+}
+
 async function* replanned(states, longer) {
   for await (const state of states) {
     if (state.answer) {
       way = longer;
       result.replan(way.instance, way.names);
+      if (way.preferred) result.want(undefined, way.preferred(way.answer(state.answer).front));
     }
     yield state;
   }

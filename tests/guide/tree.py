@@ -34,6 +34,7 @@ FOLDERS = {
     "service/page/planning": "Requests to the service, its progress and errors, and replanning.",
     "service/page/result": "The front that was found: figures, comparison, links, downloads, and"
     " pictures.",
+    "service/page/today": "A fleet's day: what is done by now, what has changed, and the rest.",
     "service/page/vendor": "Libraries of others, as they are released, each with its licence.",
     "service/reference": "The HTTP reference at `/docs`, and the examples in it.",
     "models/checkpoints": "The weights of the released networks, each with its model card.",

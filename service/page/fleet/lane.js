@@ -1,6 +1,5 @@
 /** One vehicle's lane over time: a line while it is under way, and what it does at each stop. */
 
-import { routeStyle } from "./route_styles.js";
 import { svgElement } from "../common/elements.js";
 import { departureNote } from "./visit_sentence.js";
 
@@ -13,12 +12,11 @@ export const LATE = "late-stripes"; // the pattern of what is late
 /**
  * The elements of the lane at this place from the top. Each stop is a button, `g.stop`.
  *
- * @param {{ name: string, visits: object[] }} lane what its vehicle does at each stop, by `visitTimes`
+ * @param {{ name: string, style: object, visits: object[] }} lane what its vehicle does at each stop, by `visitTimes`
  * @param {{ left: number, top: number, place: (time: number) => number, said: (time: number) => string, lasting: (time: number) => string }} axis
  */
-export function laneElements({ name, visits }, at, { left, top, place, said, lasting }) {
+export function laneElements({ name, style, visits }, at, { left, top, place, said, lasting }) {
   const y = top + LANE * at;
-  const style = routeStyle(at);
   const note = departureNote(visits, said);
   const line = { d: `M${place(visits[0].arrival)} ${y + NAME + BAR / 2}H${place(visits.at(-1).leaves)}`, "stroke-dasharray": style.dash.join(" ") };
   const box = (kind, from, to, fill) => {

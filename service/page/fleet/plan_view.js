@@ -19,6 +19,7 @@ export class PlanView {
   #lanes;
   #chosen;
   #asked = {}; // the request, as far as it is known
+  #editable = true;
   #objectives = UNNAMED;
   #plan = null;
   #movers = null; // of its routes
@@ -30,12 +31,13 @@ export class PlanView {
   constructor(onChoose, onServe) {
     const serveBy = new ServeBy(onServe);
     this.#lanes = new Lanes(element("fleet-lanes"), (lane, at) => this.#chosen.choose({ lane, at }));
-    this.#chosen = new ChosenVisit(element("fleet-stop"), this.#lanes, onChoose, (stop) => serveBy.show(stop, knownFleet(this.#asked)));
+    this.#chosen = new ChosenVisit(element("fleet-stop"), this.#lanes, onChoose, (stop) => serveBy.show(stop, knownFleet(this.#editable ? this.#asked : {})));
   }
 
-  /** Takes the request whose plans will be shown. */
-  open(asked) {
+  /** Takes the request whose plans will be shown; `editable` says whether it can be changed. */
+  open(asked, editable) {
     this.#asked = asked;
+    this.#editable = editable;
     this.show(null);
   }
 

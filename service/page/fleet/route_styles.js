@@ -10,10 +10,13 @@ export function routeStyle(at) {
   return { colour: `route-${(at % COLOURS) + 1}`, dash };
 }
 
-/** The style of each route of a plan: a robot has the same one in every plan, by its place in the request. */
+/**
+ * The style of each route of a plan: a robot has the same one in every plan, by its place in the request, and a vehicle
+ * on its way that of the plan before, in which it had this `place`.
+ */
 export function stylesOf(routes, robots = []) {
   const places = new Map(robots.map(({ id }, at) => [id, at]));
-  return routes.map(({ robot }, at) => routeStyle(places.get(robot) ?? at));
+  return routes.map(({ robot, place }, at) => routeStyle(places.get(robot) ?? place ?? at));
 }
 
 /** A piece of its line as SVG, for a legend. */

@@ -2,14 +2,15 @@
 
 import { length } from "../common/numbers.js";
 import { daysOf, knownFleet } from "./known_fleet.js";
+import { isOnTheWay } from "./visit_times.js";
 
 /**
- * The name of each route: that of its vehicle or robot, and its shift.
+ * The name of each route: that of its vehicle or robot, and its shift; or the `name` that it had in the plan before.
  *
  * @param {object} asked the request, as far as it is known
  */
 export const namesOf = (routes, movers, asked) =>
-  moversOf(routes, movers, asked).map((name, at) => (routes[at].shift === undefined ? name : `${name}, ${shiftOf(routes[at], asked)}`));
+  moversOf(routes, movers, asked).map((name, at) => routes[at].name ?? (routes[at].shift === undefined ? name : `${name}, ${shiftOf(routes[at], asked)}`));
 
 /**
  * The name of each route's vehicle or robot: its id, with a number if several routes have the same id and shift.
@@ -43,6 +44,7 @@ export function visits(route, { through }, asked) {
   const round = stops.length > 1 && stops[0] === stops.at(-1);
   const { reload = [] } = knownFleet(asked).types.get(route.vehicle) ?? {};
   const loads = reload.length ? stops.slice(1, -1).filter((stop) => reload.includes(stop)).length : 0;
+  if (isOnTheWay(route)) return stops.length - loads - 1 - (stops.length > 1 && ends?.[1] != null);
   return stops.length - loads - (ends ? ends.filter((end) => end != null).length : round ? 2 : 0);
 }
 
@@ -50,7 +52,9 @@ export function visits(route, { through }, asked) {
  * The most load that a vehicle has on board at once, of its capacity, such as "18 of 20": one for each kind of load.
  * "" if it has no capacity.
  */
-export function loadOf({ vehicle, stops }, { stops: asked, types, pickups }) {
+export function loadOf(route, { stops: asked, types, pickups }) {
+  const { vehicle } = route;
+  const stops = isOnTheWay(route) ? route.stops.slice(1) : route.stops; // where it is, it has been
   const { capacity, reload, initial_load: initial } = types.get(vehicle) ?? {};
   const loads = (capacity ?? []).map((most, kind) => {
     const demand = (stop) => asked.get(stop)?.demand?.[kind] ?? 0;

@@ -3,6 +3,7 @@
 import { amount } from "../common/amounts.js";
 import { SECONDS } from "../common/durations.js";
 import { knownFleet } from "./known_fleet.js";
+import { stylesOf } from "./route_styles.js";
 import { clockOf } from "./times.js";
 import { clockUnit } from "./units.js";
 import { visitTimes } from "./visit_times.js";
@@ -10,7 +11,7 @@ import { visitTimes } from "./visit_times.js";
 const [TIGHT, MINUTE] = [300, 60]; // seconds: looking for a place to park takes as long as the first
 
 /**
- * A lane for each route, `{ name, visits }` by `visitTimes`, and their `clock`, which also says how long something takes.
+ * A lane for each route, `{ name, style, visits }` by `visitTimes`, and their `clock`, which also says how long something takes.
  * A visit says in `closing` how soon its window closes, if that is within minutes of the vehicle's arrival; "" if not.
  * There are no lanes, and no clock, if the plan has no times.
  *
@@ -21,7 +22,8 @@ export function timetable(routes, names, asked) {
   const known = knownFleet(asked);
   const unit = clockUnit(asked);
   const visitsOf = (route) => visitTimes(route, known).map((visit) => ({ ...visit, closing: closing(visit, SECONDS.get(unit)) }));
-  const lanes = routes.map((route, at) => ({ name: names[at], visits: visitsOf(route) }));
+  const styles = stylesOf(routes);
+  const lanes = routes.map((route, at) => ({ name: names[at], style: styles[at], visits: visitsOf(route) }));
   const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, leaves }) => [arrival, leaves]));
   return { lanes, clock: { ...clockOf(times, unit), lasting: (time) => amount(time, { measure: "waiting", unit }) } };
 }

@@ -2,6 +2,7 @@
 
 import { breaksAt } from "./breaks.js";
 
+const UNKNOWN = { reload: [], shifts: [] }; // of a type of vehicles of which nothing is known
 const NEAR = 1e-6; // times that differ by less, relative to them, are equal
 
 /**
@@ -17,8 +18,8 @@ const NEAR = 1e-6; // times that differ by less, relative to them, are equal
  */
 export function visitTimes(route, { stops: asked, types }) {
   const { stops, arrivals, shift = 0 } = route;
-  const type = types.get(route.vehicle) ?? { reload: [], shifts: [] };
-  const kinds = stops.map((stop, at) => kindOf(stop, at, stops.length - 1, type));
+  const type = types.get(route.vehicle) ?? UNKNOWN;
+  const kinds = kindsOf(route, type);
   const breaks = breaksAt(route, type.breaks ?? []);
   const [from, to] = type.shifts[shift] ?? [];
   return stops.map((stop, at) => {
@@ -30,7 +31,7 @@ export function visitTimes(route, { stops: asked, types }) {
     const until = due ?? (kind === "end" ? to : undefined);
     const opens = windows.find(([opening]) => Math.abs(times.begin - opening) <= NEAR * opening)?.[0];
     const closes = openIn(windows, times.begin)?.[1];
-    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, closes, released, shift: kind === "start" ? from : undefined };
+    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, closes, released, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
   });
 }
 
@@ -48,11 +49,17 @@ function timesAt(arrival, ready, service, rests) {
   return { arrival, begin, end, rests, waiting: waiting > NEAR * begin ? waiting : 0, leaves: Math.max(end, rests.at(-1)?.[1] ?? end) };
 }
 
-function kindOf(stop, at, last, { start, end, reload }) {
-  if (at === 0 && stop === start) return "start";
-  if (at === last && stop === end) return "end";
-  return reload.includes(stop) ? "loading" : "visit";
+/** The `kind` of each stop of a route of this type of vehicles. A vehicle that is replanned on its way starts where it is. */
+export function kindsOf(route, { start, end, reload } = UNKNOWN) {
+  return route.stops.map((stop, at) => {
+    if (at === 0 && (stop === start || isOnTheWay(route))) return "start";
+    if (at === route.stops.length - 1 && stop === end) return "end";
+    return reload.includes(stop) ? "loading" : "visit";
+  });
 }
+
+/** Whether a route is the rest of one that was planned before. */
+export const isOnTheWay = ({ route }) => route !== undefined;
 
 /** When a visit may begin after an arrival: in the first window that is not over then. */
 function opened(windows, arrival) {

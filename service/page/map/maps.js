@@ -200,6 +200,18 @@ export class Maps {
     } else if (this.#drawn.length) this.#planes.draw(name, item?.tour ?? null, closed);
   }
 
+  /** Draws in grey what the vehicles of a fleet have driven: see Plane. */
+  pass(driven) {
+    if (this.#drawn.length && !this.#kind.onGrid) this.#planes.pass(driven);
+  }
+
+  /** The places of stops by their ids, and those along the `way` through them as it is drawn; null where there is no map of them. */
+  along(stops) {
+    const cities = stops.map((stop) => this.#ids?.indexOf(stop) ?? -1);
+    const places = this.#planes.placesOf(cities);
+    return this.#drawn.length && !places.includes(undefined) ? { places, way: this.#ways.along(cities) ?? places } : null;
+  }
+
   /** The stops along a tour as one way, or along each route of a plan. */
   waysOf(item, closed) {
     return this.#kind.movers ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];

@@ -13,6 +13,7 @@ import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
 
+const PAST = { colour: "alone", dash: [] };
 const NARROW = 240; // pixels, as a map on a phone
 const CROWD = 300; // stops
 const ROOM = 20; // pixels beside the cities
@@ -34,6 +35,7 @@ export class Plane {
   #waiting = ring("waiting", 12);
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
+  #past = new Routes("past");
   #streets = new Streets();
   #names = L.layerGroup();
   #surroundings = { streets: null, places: [], extent: [] };
@@ -48,7 +50,7 @@ export class Plane {
    */
   constructor(element, { onHover, onClick, onMove }, chosen) {
     this.#map = flatMap(element, { name: "Show all stops", fit: () => this.#fit(this.#boxOf(this.#places)) }, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
-    const layers = [this.#streets, ...Object.values(this.#lines), this.#routes, this.#stops, this.#names];
+    const layers = [this.#streets, ...Object.values(this.#lines), this.#routes, this.#past, this.#stops, this.#names];
     for (const layer of layers) layer.addTo(this.#map);
     this.#map.on("mousemove", (event) => this.#point(this.#near(event.containerPoint, POINTED), onHover));
     this.#map.on("mouseout", () => this.#point(null, onHover));
@@ -76,6 +78,7 @@ export class Plane {
     this.draw("selected", []);
     this.draw("pinned", []);
     this.drawRoutes([]);
+    this.pass([]);
     this.highlight(null);
     if (isFitted) this.#fit(this.#frame.bounds);
   }
@@ -153,6 +156,11 @@ export class Plane {
     const starts = new Set(routes.map(({ stops }) => stops[0]));
     this.#routes.show(drawn.map(([stops, along, style]) => ({ latlngs: this.#latlngs(stops, along), along: along !== null, style })), starts.size > 1);
     this.#mark(this.#start, starts.size === 1 ? [...starts][0] : null);
+  }
+
+  /** Draws in grey what vehicles have driven, each `{ places, tip }`, over their routes, with a disc in the colour of a tip where the vehicle is. */
+  pass(driven) {
+    this.#past.show(driven.map(({ places, tip }) => ({ latlngs: places.map((place) => this.#frame.latlng(place)), style: { ...PAST, tip } })));
   }
 
   /** Rings a city, and says what it is; null removes the ring. */

@@ -96,6 +96,16 @@ export class Planes {
     for (const map of this.#maps) if (map.places.length) map.drawRoutes(routes);
   }
 
+  /** Draws on the first map what vehicles have driven: see Plane. */
+  pass(driven) {
+    this.#maps[0].pass(driven);
+  }
+
+  /** Where these cities lie on the first map. */
+  placesOf(cities) {
+    return cities.map((city) => this.#maps[0].places[city]);
+  }
+
   #highlight(city) {
     const said = city === null ? "" : this.#nameOf(city) + turnOf(city, this.#tour, this.#routes);
     this.#maps.forEach((map) => map.highlight(city, said));

@@ -14,11 +14,14 @@ export class Routes extends CanvasLayer {
   #styles = [];
   #marked = false;
 
-  constructor() {
-    super("routes");
+  constructor(name = "routes") {
+    super(name);
   }
 
-  /** Draws routes, each `{ latlngs, style }`, maybe `along` streets, maybe `marked` with a disc where each starts; open ones have a square where they end. None takes them away. */
+  /**
+   * Draws routes, each `{ latlngs, style }`, maybe `along` streets, maybe `marked` with a disc where each starts; open ones have a square
+   * where they end, or a disc if their style has a `tip`, in that colour; null for none. No routes takes them away.
+   */
   show(routes, marked = false) {
     this.#marked = marked;
     this.lines = routes.map(({ latlngs }) => latlngs);
@@ -36,6 +39,7 @@ export class Routes extends CanvasLayer {
   #mark(context, places, style) {
     const [start, end] = [places[0], places.at(-1)];
     if (this.#marked) fill(context, style, () => context.arc(start.x, start.y, START, 0, 2 * Math.PI));
+    if (style.tip !== undefined) return style.tip && fill(context, { ...style, colour: style.tip }, () => context.arc(end.x, end.y, START, 0, 2 * Math.PI));
     if (start.x !== end.x || start.y !== end.y) fill(context, style, () => context.rect(end.x - END / 2, end.y - END / 2, END, END));
   }
 }

@@ -106,7 +106,7 @@ export function takePasted(openFiles) {
 }
 
 /** The file of text that is pasted; null for rows of numbers, and for a name or a number for a field. */
-function pastedFile(text) {
+export function pastedFile(text) {
   const [first, ...others] = text.trim().split("\n");
   const isFile = /^[{[]/.test(first) || (others.length && /[^-+\d.,;e\s]/i.test(first));
   return isFile ? new File([text], "pasted text") : null;

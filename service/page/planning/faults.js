@@ -10,8 +10,8 @@ const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 const fieldOf = (member) => FIELD_OF[member] ?? member ?? "request";
 
-/** Shows the faults of a problem at their fields, and all others below the buttons. */
-export function showFaults(problem) {
+/** Shows the faults of a problem at their fields, and all others below the buttons; or all of them in one `place`. */
+export function showFaults(problem, place = null) {
   clearFaults();
   const faults = faultsOf(problem);
   let first = null;
@@ -20,8 +20,9 @@ export function showFaults(problem) {
     const [member, row, part] = parts;
     const field = FIELD_OF_CODE[problem.code] ?? fieldOf(member);
     const cell = cellOf(parts);
-    const said = seen(document.getElementById(`${cell?.closest(".stops")?.id ?? field}-fault`)) ?? document.getElementById("request-fault");
+    const said = seen(document.getElementById(`${place ?? cell?.closest(".stops")?.id ?? field}-fault`)) ?? document.getElementById("request-fault");
     said.textContent ||= sentence(inWords(fault, parts, member === "coordinates" ? null : cell?.getAttribute("aria-label")));
+    if (place) continue;
     if (cell) cell.setAttribute("aria-invalid", "true");
     first ??= cell ?? (member === "cities" ? markText(row) : mark(REPLANNED[member] ?? field, member === "matrices" ? undefined : row, part));
   }

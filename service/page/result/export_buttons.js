@@ -25,7 +25,7 @@ export class ExportButtons {
 
   /**
    * @param {Service} service the service that has the front
-   * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, example: string | null, objectives: object[],
+   * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, known: object, example: string | null, objectives: object[],
    *   details: Function, picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
    *   screen, what drivers are told of its stops as of `detailsByStop`, the file of its example, whether its lines can follow the streets, and the selected tour or
    *   plan, as of `routesOf`; null if the form cannot be read. `refused` is what the request would be refused for
@@ -80,8 +80,8 @@ export class ExportButtons {
     return placeIn(this.#shown.front, item);
   }
 
-  #routes({ selected, asked, details }) {
-    return routesOf(selected, this.#shown, asked, details);
+  #routes({ selected, known, details }) {
+    return routesOf(selected, this.#shown, known, details);
   }
 
   #saveGpx(routes) {

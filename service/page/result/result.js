@@ -53,12 +53,15 @@ export class Result {
   #ids = null; // of the stops
   #id = null; // the id of the front, once it is final
   #routed = null; // set if the service has a routing engine
+  #onSelected;
 
   /**
    * @param {Service} service the service that asks which tour is best
-   * @param {object} edited callbacks for clicks on the maps, for stops moved and deleted: see Maps; and `onServe`: see PlanView
+   * @param {object} edited callbacks for clicks on the maps, for stops moved and deleted: see Maps; `onServe`: see PlanView; and
+   *   `onSelected`, called with the tour or plan that is selected, and its number
    */
   constructor(service, edited) {
+    this.#onSelected = edited.onSelected;
     this.#planView = new PlanView((stop) => this.#maps.choose(stop), edited.onServe);
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps({ ...edited, onChoose: (stop) => this.#planView.choose(stop) });
@@ -92,7 +95,7 @@ export class Result {
   clear(instance, { fit = true, editable = true } = {}) {
     cancelAnimationFrame(this.#frame);
     this.#maps.show(instance, fit, editable);
-    this.#planView.open(instance);
+    this.#planView.open(instance, editable);
     this.#asked = instance;
     this.#kind = kindOf(instance);
     showUnreached(null);
@@ -241,10 +244,10 @@ export class Result {
     return roundOf(tour, closed);
   }
 
-  /** Keeps the selected tour on the maps while the rest of it is planned. */
+  /** Keeps the selected tour on the maps while the rest of it is planned; of a plan, what is driven is drawn by `pass`. */
   replan(instance, names) {
     element("result").scrollIntoView();
-    const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };
+    const before = this.#selected?.tour ? { tour: this.#selected.tour, closed: this.#closed } : null;
     this.clear(instance, { fit: false, editable: false });
     this.#ids = names;
     this.#maps.name(this.#objectives, names);
@@ -313,7 +316,14 @@ export class Result {
     }
     this.#order();
     this.#follow();
+    if (this.#selected) this.#onSelected(this.#selected, this.#front.indexOf(this.#selected));
   }
+
+  /** Draws in grey what the vehicles of a fleet have driven: see Maps. */
+  pass = (driven) => this.#maps.pass(driven);
+
+  /** The places along a way through stops by their ids: see Maps. */
+  along = (stops) => this.#maps.along(stops);
 
   /** Requests the ways along the streets of the selected tour or plan, once its front is final. */
   #follow() {

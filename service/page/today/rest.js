@@ -1,0 +1,98 @@
+/** The rest of a fleet's day: as the body of `POST /front/{id}/replan`, and as a request whose plans the page can show. */
+
+import { isMeasured } from "../inputs/stops.js";
+import { doneOf, leftOf } from "./progress.js";
+
+/**
+ * What is asked of the service.
+ *
+ * @param {{ at: number, asked: object }} driven the number of the plan in its front, and the request that it is of
+ * @param {{ vans: object[], now: number | null, out: Set<string>, removed: Set<string>, added: object[] }} day how far its
+ *   vehicles have come, by `progressOf`, where each of them is in `tip`; the time, and in words; the vehicles that are out of
+ *   service, by name; cancelled stops; and new ones
+ */
+export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, added }) {
+  const { time_limit: seconds, seed } = asked;
+  const left = new Set(vans.flatMap(leftOf));
+  const under = vans.flatMap((van, route) => (van.isOut || out.has(van.name) ? [{ route, ...wayOf(van, out.has(van.name), asked, nowSaid) }] : []));
+  return {
+    plan,
+    ...(now !== null && { now }),
+    routes: under,
+    add: added,
+    remove: [...removed].filter((stop) => left.has(stop)),
+    ...(seed !== undefined && { seed }),
+    ...(seconds > 0 && { time_limit: seconds }),
+  };
+}
+
+/** A vehicle that has left: the service has it go on from the last stop done, unless it is somewhere else. */
+function wayOf(van, isBroken, asked, nowSaid) {
+  const position = isBroken ? undefined : positionOf(van, asked, nowSaid);
+  return { done: doneOf(van), ...(position !== undefined && { position }), ...(isBroken && { broken_down: true }) };
+}
+
+function positionOf({ name, visits, at, share, tip }, asked, nowSaid) {
+  if (share > 0 && tip && isMeasured(asked)) return { id: `${name} at ${nowSaid}`, location: tip };
+  return ["loading", "end"].includes(visits[at].kind) ? visits[at].stop : undefined;
+}
+
+/** The rest of the day on the page: it stands in for the form, whose request is that of the whole day. */
+export class FleetRest {
+  replanned = true;
+  #under; // the numbers of the routes whose vehicles have left
+
+  /**
+   * @param {{ routes: object[], names: string[], asked: object }} driven the plan that is driven
+   * @param {object} body what was asked, by `bodyOf`
+   * @param {object} day of which it was asked
+   */
+  constructor(driven, { routes, add }, day) {
+    Object.assign(this, { driven, day });
+    this.#under = new Set(routes.map(({ route }) => route));
+    const { asked } = driven;
+    const positions = routes.map(({ position }) => position).filter((position) => position?.id);
+    const stops = [...asked.stops, ...add, ...positions];
+    this.asked = this.instance = { ...asked, stops, details: undefined };
+    this.names = stops.map(({ id }) => id);
+  }
+
+  /** The answer of the service, whose vehicles have the names and the colours that they have in the plan that is driven. */
+  answer(found) {
+    return { ...found, front: found.front.map((plan) => ({ ...plan, routes: this.#named(plan.routes) })) };
+  }
+
+  /** The plan that changes least, of a front that is shown. */
+  preferred(front) {
+    return front.reduce((best, plan) => (plan.kept > best.kept ? plan : best));
+  }
+
+  #named(routes) {
+    const { routes: before, names } = this.driven;
+    const placeOf = (at) => before[at].place ?? at;
+    const waiting = before.map((_, at) => at).filter((at) => !this.#under.has(at));
+    const taken = new Set(names);
+    let place = Math.max(-1, ...before.map((_, at) => placeOf(at)));
+    return routes.map((route) => {
+      const at = route.route ?? this.#take(waiting, route);
+      if (at !== undefined) return { ...route, name: names[at], place: placeOf(at) };
+      place += 1;
+      return { ...route, name: freeName(route.vehicle, taken), place };
+    });
+  }
+
+  /** The number of a route before whose vehicle is of the same kind and has not left. */
+  #take(waiting, { vehicle, shift }) {
+    const found = waiting.findIndex((at) => this.driven.routes[at].vehicle === vehicle && this.driven.routes[at].shift === shift);
+    return found < 0 ? undefined : waiting.splice(found, 1)[0];
+  }
+}
+
+/** The name of a vehicle that the plan before did without: "van 3" beside "van 1" and "van 2". */
+function freeName(vehicle, taken) {
+  const isNumbered = [...taken].some((each) => each.startsWith(`${vehicle} `));
+  let [name, number] = isNumbered ? [`${vehicle} 1`, 1] : [vehicle, 1];
+  while (taken.has(name)) name = `${vehicle} ${(number += 1)}`;
+  taken.add(name);
+  return name;
+}

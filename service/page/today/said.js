@@ -1,0 +1,47 @@
+/** Say how far a vehicle has come, and what it has on board. */
+
+import { doneOf, leftOf } from "./progress.js";
+
+/**
+ * The sentence about a vehicle beside its name.
+ *
+ * @param {object} van as of `progressOf`
+ * @param {{ isOutOfService: boolean, clock: object | null, known: object, vehicle: string }} day the request by `knownFleet`, and
+ *   the type of the vehicle
+ */
+export function vanSaid(van, { isOutOfService, clock, known, vehicle }) {
+  const load = van.isOut && !van.isBack ? onBoard(van, known, vehicle) : "";
+  const where = whereOf(van, clock);
+  if (!isOutOfService || van.isBack) return load ? `${where}; ${load} on board` : where;
+  return `${where}; ${/[1-9]/.test(load) ? `others bring the ${load} that it has on board` : "others take over what is left"}`;
+}
+
+function whereOf(van, clock) {
+  const { visits, at, share, isOut, isBack } = van;
+  const done = doneOf(van).length;
+  const all = done + leftOf(van).length;
+  if (!isOut) return clock ? `leaves at ${clock.said(visits[0].leaves)}` : "has not left";
+  if (isBack) return `all ${all} done`;
+  const next = visits.slice(at + 1).find(({ done: isDone }) => !isDone);
+  const where = share >= 1 ? `waits at ${next.stop}` : share > 0 ? `on the way to ${next.stop}` : `at ${visits[at].stop}`;
+  return `${done} of ${all} done, ${where}`;
+}
+
+/** What a vehicle has on board for the stops that are left until it loads again, one number for each kind of load; "" without a capacity. */
+export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
+  const { capacity } = types.get(vehicle) ?? {};
+  if (!capacity) return "";
+  const loading = visits.findIndex(({ kind, done }) => kind === "loading" && !done);
+  const trip = loading < 0 ? visits : visits.slice(0, loading);
+  const [done, pickedUp] = [new Set(visits.filter((visit) => visit.done).map(({ stop }) => stop)), new Set(pickups.values())];
+  const carried = trip.filter(({ stop, kind, done: isDone }) => kind === "visit" && !isDone && !pickedUp.has(stop) && (!pickups.has(stop) || done.has(pickups.get(stop))));
+  const demand = ({ stop }, axis) => stops.get(pickups.get(stop) ?? stop)?.demand?.[axis] ?? 0;
+  return capacity.map((_, axis) => carried.reduce((sum, visit) => sum + demand(visit, axis), 0)).join(", ");
+}
+
+/** How many stops are done by now, and how to change that; `isPlanned` says whether all of that is by the plan. */
+export function doneSaid(vans, now, isPlanned) {
+  const [done, left] = [doneOf, leftOf].map((of) => vans.flatMap(of).length);
+  const far = now === null ? "Say what time it is, or mark what is done." : `${done} of ${done + left} stops are done by then${isPlanned ? ", as planned" : ""}.`;
+  return `${far} Press a stop to mark it as done or as not done, and × to cancel it.`;
+}

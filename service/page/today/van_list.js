@@ -1,0 +1,55 @@
+/** The vehicles of the plan that is driven, each with its stops: a press marks one as done or takes it back, another cancels it. */
+
+import { made } from "../common/elements.js";
+import { swatch } from "../fleet/route_styles.js";
+
+export class VanList {
+  #element;
+
+  /** @param {{ onTurn: (stop: string) => void, onCancel: (stop: string) => void, onOut: (name: string) => void }} told */
+  constructor(element, { onTurn, onCancel, onOut }) {
+    this.#element = element;
+    element.addEventListener("click", ({ target }) => {
+      const { turn, cancel } = target.closest("button")?.dataset ?? {};
+      if (turn !== undefined) onTurn(turn);
+      else if (cancel !== undefined) onCancel(cancel);
+    });
+    element.addEventListener("change", ({ target }) => onOut(target.dataset.out));
+  }
+
+  /**
+   * Shows vehicles, each as of `progressOf`, with its `style` and what is `said` of it. The focus stays where it is.
+   *
+   * @param {{ clock: object | null, out: Set<string>, removed: Set<string> }} day
+   */
+  show(vans, { clock, out, removed }) {
+    const focused = this.#element.contains(document.activeElement) && document.activeElement.dataset;
+    this.#element.replaceChildren(...vans.map((van) => vanItem(van, { clock, isOut: out.has(van.name), removed })));
+    const [name, value] = Object.entries(focused || {})[0] ?? [];
+    if (name) this.#element.querySelector(`[data-${name}="${CSS.escape(value)}"]`)?.focus();
+  }
+}
+
+function vanItem({ name, style, said, visits, at, isOut: hasLeft }, { clock, isOut, removed }) {
+  const box = made("input", { type: "checkbox", checked: isOut });
+  box.dataset.out = name;
+  box.setAttribute("aria-label", `${name} is out of service`);
+  const head = made("div", { className: "head" }, made("b", {}, swatch(style), name), made("span", {}, said), made("label", { className: "check" }, box, "out of service"));
+  const stops = visits.flatMap((visit, place) => (visit.kind === "visit" ? [stopItem(visit, { clock, isNext: hasLeft && !visit.done && !visits.slice(at + 1, place).some(({ kind }) => kind === "visit"), removed })] : []));
+  return made("li", { className: "van" }, head, made("ul", { className: "chips" }, ...stops));
+}
+
+function stopItem({ stop, done, begin }, { clock, isNext, removed }) {
+  const isCancelled = !done && removed.has(stop);
+  const when = clock ? ` ${clock.said(begin)}` : "";
+  const turn = made("button", { type: "button", className: "of", disabled: isCancelled }, `${done ? "✓ " : ""}${stop}${when}`);
+  turn.dataset.turn = stop;
+  turn.setAttribute("aria-pressed", String(done));
+  const item = made("li", { className: done ? "done" : isCancelled ? "gone" : isNext ? "here" : "" }, turn);
+  if (done) return item;
+  const cancel = made("button", { type: "button", className: "cancel" }, isCancelled ? "↩" : "×");
+  cancel.dataset.cancel = stop;
+  cancel.setAttribute("aria-label", isCancelled ? `Bring ${stop} back` : `Cancel ${stop}`);
+  item.append(cancel);
+  return item;
+}
