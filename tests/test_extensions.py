@@ -18,7 +18,11 @@ import pytest
 from service.actor import load_actors
 from service.actor_info import RELEASED
 from service.errors import Refusal
-from service.extensions.constructors import Constructor, constructor_infos, load_constructors
+from service.extensions.constructors import (
+    ExternalConstructor,
+    constructor_infos,
+    load_constructors,
+)
 from service.extensions.entry_points import CONSTRUCTORS, SEARCHES
 from service.extensions.searches import load_search
 from service.front import PlanOptions
@@ -116,7 +120,7 @@ def test_the_package_of_the_guide_plans_routes_matrices_and_several_objectives(
         Instance(coordinates=rng.random((1, 4))),
     ]
     with guide_package(packages):
-        constructor, search = Constructor("my-nearest"), load_search("my-search")
+        constructor, search = ExternalConstructor("my-nearest"), load_search("my-search")
         assert search is not None
         for instance in instances:
             directions = np.full((3, instance.objectives), instance.objectives**-0.5)
@@ -171,7 +175,7 @@ def test_what_is_not_a_tour_for_each_preference_is_refused(
 ) -> None:
     own(packages, "own_constructor", returned)
     with pytest.raises(Refusal) as refused:
-        Constructor("own_constructor").tours(SQUARE, from_angles(fan(3)))
+        ExternalConstructor("own_constructor").tours(SQUARE, from_angles(fan(3)))
     assert refused.value.code == "extension-failed"
     assert "constructor own_constructor of own_constructor 1.0, which the op" in str(refused.value)
     assert fault in str(refused.value)
