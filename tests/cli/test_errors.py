@@ -9,6 +9,7 @@ from paretour import Refused, UnexpectedAnswer
 
 from service.cli.errors import UnreadableFile, UsageError, exit_on_error
 from service.cli.output import end_of_search
+from service.errors.faults import Fault
 from tests.helpers.command import EXAMPLE, paretour
 
 
@@ -18,7 +19,7 @@ def refused(status: int) -> Refused:
 
 EXITS = [
     (UsageError("a sentence"), 2, "paretour: a sentence\n"),
-    (UnreadableFile("a.csv: a sentence"), 2, "paretour: a.csv: a sentence\n"),
+    (UnreadableFile(Fault("a-code", said="a.csv: a sentence")), 2, "paretour: a.csv: a sentence\n"),
     (FileNotFoundError(2, "No such file", "a.csv"), 2, "paretour: a.csv: No such file\n"),
     (refused(422), 2, "paretour: a sentence (a-code)\n"),
     (refused(401), 3, "paretour: a sentence (a-code)\n"),

@@ -15,7 +15,7 @@ from paretour import Client, Plan
 from typer.testing import CliRunner
 
 from service.cli.commands import app
-from service.cli.errors import UnreadableFile
+from service.cli.errors import UnreadableFile, UsageError
 from service.cli.inputs import read_layer, read_object, read_request
 from tests.client.test_robots import REQUEST as ROBOTS
 from tests.helpers.fleet_requests import fleet_request
@@ -154,7 +154,7 @@ def test_a_map_is_read_by_its_suffix(tmp_path: Path) -> None:
     members, picture = read_map(tmp_path / "map.yaml")
     assert (members["cell_size"], members["free_thresh"], picture) == (1.0, 0.196, pgm)
     (tmp_path / "broken.yml").write_text("1")
-    with pytest.raises(UnreadableFile, match=r"broken\.yml: a map.yaml must be keys with values"):
+    with pytest.raises(UsageError, match=r"broken\.yml: a map.yaml must be keys with values"):
         read_map(tmp_path / "broken.yml")
 
 
@@ -274,7 +274,7 @@ def test_one_of_several_files_may_be_standard_input(
     monkeypatch.setattr(sys, "stdin", Piped(b"0,0\n1,1\n2,2\n"))
     expected = [[1, 2, 0, 0], [3, 4, 1, 1], [5, 6, 2, 2]]
     assert read_request([file, Path("-")], "front")[0] == {"coordinates": expected}
-    with pytest.raises(UnreadableFile, match="only one of the files can be standard input"):
+    with pytest.raises(UsageError, match="only one of the files can be standard input"):
         read_request([Path("-"), Path("-")], "front")
 
 
@@ -330,7 +330,7 @@ def refusal(read: Callable[[], object]) -> str:
     said: Queue[str] = Queue()
 
     def run() -> None:
-        with pytest.raises(UnreadableFile) as refused:
+        with pytest.raises((UnreadableFile, UsageError)) as refused:
             read()
         said.put(str(refused.value))
 

@@ -206,7 +206,7 @@ def test_faults_in_both_sheets_are_told_with_their_sheet() -> None:
     vans = rows_of(("van", "max stops"), ("V1", "many"))
     with pytest.raises(UnreadableFile) as refused:
         read(book([orders, vans], sheets=["Orders", "Vans"]))
-    first, second = refused.value.cells
+    first, second = (fault.detail for fault in refused.value.faults)
     assert first == "a.xlsx: row 2, column 'lat' must be a number, got 'north'"
     assert second.startswith("a.xlsx [Vans]: row 2, column 'max stops' must be")
 

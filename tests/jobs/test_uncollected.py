@@ -18,6 +18,7 @@ def collections() -> Iterator[list[int]]:
         if phase == "start":
             collected.append(info["generation"])
 
+    gc.unfreeze()  # what the tests themselves have frozen
     gc.callbacks.append(note)
     yield collected
     gc.callbacks.remove(note)

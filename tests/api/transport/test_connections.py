@@ -275,12 +275,12 @@ def test_a_client_that_sends_for_ever_is_cut_off(url: str, close: bool) -> None:
 
 @pytest.mark.parametrize("close", [True, False], ids=["close", "keep-alive"])
 def test_a_client_that_drips_for_ever_is_cut_off(
-    url: str, close: bool, monkeypatch: pytest.MonkeyPatch
+    impatient: str, close: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(protocol, "_LINGER_SECONDS", 0.5)
     end = "Connection: close\r\n" if close else ""
     head = f"POST /nowhere HTTP/1.1\r\nHost: x\r\n{end}Transfer-Encoding: chunked\r\n\r\n"
-    with connected(url) as connection:
+    with connected(impatient) as connection:
         connection.sendall(head.encode())
         assert sent_until_closed(connection, b"1\r\nx\r\n", pause=0.05) < 100 * 6
 
