@@ -73,7 +73,7 @@ def cells(page: Path, heading: str) -> list[list[str]]:
         (r"At most ([\d,]+) wait", [outbox.MOST_DELIVERIES]),
         (r"at most (\d+) bytes after decompression", [bodies.MOST_BYTES]),
         (r"A message may have up to (\d+) MiB", [mcp._MOST_BYTES / 2**20]),
-        (r"several `files` together; up to (\d+) MiB", [arguments._MOST_TEXT / 2**20]),
+        (r"describes; up to (\d+) MiB", [arguments._MOST_TEXT / 2**20]),
         (r"An answer has at most ([\d,]+) bytes", [summaries.MOST_BYTES]),
         (r"a smaller front: ([\d,]+) stops in all its tours", [tools._MOST_STOPS]),
         (r"what (\d+), (\d+) and (\d+) % more", [100 * slack for slack in summaries._SLACKS]),
