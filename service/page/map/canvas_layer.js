@@ -30,6 +30,7 @@ export class CanvasLayer extends L.Layer {
   }
 
   redraw() {
+    this.pixels = pointOn(this._map);
     this.#canvas.hidden = !this.lines.some((latlngs) => latlngs.length);
     if (this.#canvas.hidden) return;
     this.paint(this.#cleared(), this.placed);
@@ -37,8 +38,7 @@ export class CanvasLayer extends L.Layer {
 
   /** The lines in the map's pixels. */
   get placed() {
-    const point = pointOn(this._map);
-    return this.lines.map((latlngs) => latlngs.map(point));
+    return this.lines.map((latlngs) => latlngs.map(this.pixels));
   }
 
   /** The canvas's context, empty and in the map's pixels. */

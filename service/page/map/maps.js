@@ -3,6 +3,7 @@
 import { GridMap } from "./gridmap.js";
 import { pictureOfRoutes, pictureOfTours, startsOf, styleOfTour } from "./map_pictures.js";
 import { wordsOf } from "../common/amounts.js";
+import { made } from "../common/elements.js";
 import { UNNAMED, titled } from "../common/objectives.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { EARTH, mapsOf } from "../inputs/places.js";
@@ -16,6 +17,9 @@ const element = (id) => document.getElementById(id);
 
 const EDITED = ["stops", "coordinates"]; // kinds of instances whose stops can be moved and deleted on the map
 
+/** The source of coasts and towns, and how to have streets in their place. */
+const WORLD_CREDIT = () => ["A rough map by Natural Earth. ", made("a", { href: "guide/use-the-page#streets-under-your-stops", textContent: "Draw streets" })];
+
 /** The maps to draw, as `mapsOf` returns them. */
 const placed = (instance) => (instance.stops ? mapsOf(instance) : { drawn: instance.coordinates ? [0, 1] : [], rows: instance.coordinates ?? [] });
 
@@ -26,8 +30,10 @@ export class Maps {
   #kind = kindOf({});
   #form = null; // of its request
   #drawn = [0, 1]; // the contents of the first map and of the second: see `mapsOf`
+  #hasTiles;
   #tilesCredit = "";
   #streetsCredit = "";
+  #isBare = true; // no streets are drawn, nor awaited
   #onEarth = false;
   #objectives = UNNAMED;
   #ids = null; // of the stops
@@ -57,19 +63,20 @@ export class Maps {
 
   /** Draws map tiles under stops, if there are any; the credit names their source. */
   tile({ url, credit }) {
-    if (!url) return;
-    this.#tilesCredit = credit;
-    this.#planes.tile(url);
+    this.#hasTiles = Boolean(url);
+    this.#tilesCredit = url ? credit : "";
+    this.#planes.tile(url ?? null);
     this.#sayCredit();
   }
 
   /**
-   * Draws what lies around the stops: `streets` where there are no tiles, and `places` by name; and
-   * tours along `legs`, which lie between the corners of an `extent`.
+   * Draws what lies around the stops: `streets` where there are no tiles, or the coasts of the world unless streets are
+   * `awaited`, and `places` by name; and tours along `legs`, which lie between the corners of an `extent`.
    */
-  surround({ streets = null, places = [], legs = null, extent = [] }) {
+  surround({ streets = null, places = [], legs = null, extent = [], awaited = false }) {
     this.#streetsCredit = streets?.credit ?? "";
-    this.#planes.surround({ streets, places, extent });
+    this.#isBare = !streets && !awaited;
+    this.#planes.surround({ streets, places, extent, awaited });
     this.#ways.know(legs);
     this.#sayCredit();
   }
@@ -85,7 +92,9 @@ export class Maps {
   }
 
   #sayCredit() {
-    element("credit").textContent = this.#onEarth ? this.#tilesCredit || this.#streetsCredit : "";
+    const ofWorld = this.#onEarth && this.#hasTiles === false && this.#isBare;
+    if (ofWorld) element("credit").replaceChildren(...WORLD_CREDIT());
+    else element("credit").textContent = this.#onEarth ? this.#tilesCredit || this.#streetsCredit : "";
   }
 
   /** Names the maps after these objectives, and the stops by ids, or by numbers without ids. */

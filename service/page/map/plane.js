@@ -8,8 +8,10 @@ import { Frame } from "./frame.js";
 import { Handling } from "./handling.js";
 import { Mercator } from "./mercator.js";
 import { Routes } from "./routes.js";
+import { ScaleBar } from "./scale.js";
 import { Streets } from "./streets.js";
 import { TourLine } from "./tourline.js";
+import { World } from "./world.js";
 
 const { L } = globalThis;
 
@@ -36,13 +38,15 @@ export class Plane {
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
   #past = new Routes("past");
+  #world = new World();
+  #scale;
   #streets = new Streets();
   #names = L.layerGroup();
-  #surroundings = { streets: null, places: [], extent: [] };
+  #surroundings = { streets: null, places: [], extent: [], awaited: false };
   #places = [];
   #along = () => null; // the places along the streets of a way through cities
   #onEarth = false;
-  #tiles = null;
+  #tiles; // null where the service names none
 
   /**
    * @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told
@@ -50,7 +54,7 @@ export class Plane {
    */
   constructor(element, { onHover, onClick, onMove }, chosen) {
     this.#map = flatMap(element, { name: "Show all stops", fit: () => this.#fit(this.#boxOf(this.#places)) }, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
-    const layers = [this.#streets, ...Object.values(this.#lines), this.#routes, this.#past, this.#stops, this.#names];
+    const layers = [this.#world, this.#streets, ...Object.values(this.#lines), this.#routes, this.#past, this.#stops, this.#names];
     for (const layer of layers) layer.addTo(this.#map);
     this.#map.on("mousemove", (event) => this.#point(this.#near(event.containerPoint, POINTED), onHover));
     this.#map.on("mouseout", () => this.#point(null, onHover));
@@ -58,6 +62,7 @@ export class Plane {
     element.role = "application";
     element.setAttribute("aria-labelledby", `${element.id}-title`);
     element.setAttribute("aria-describedby", "stop-help");
+    this.#scale = new ScaleBar(this.#map);
     new Handling(this.#map, this.#handled(onMove), chosen);
     new ResizeObserver(() => this.#resize()).observe(element);
     this.#fit(this.#frame.bounds);
@@ -92,9 +97,9 @@ export class Plane {
     return this.#places.map((place) => this.#frame.latlng(place).reverse());
   }
 
-  /** Draws map tiles, while places on the earth are shown. */
+  /** Draws map tiles, while places on the earth are shown; null for none. */
   tile(url) {
-    this.#tiles = L.tileLayer(url, { maxNativeZoom: 19, maxZoom: 22, className: "tile", zIndex: 0 });
+    this.#tiles = url && L.tileLayer(url, { maxNativeZoom: 19, maxZoom: 22, className: "tile", zIndex: 0 });
     this.#showTiles();
     this.#showSurroundings();
   }
@@ -110,6 +115,15 @@ export class Plane {
     this.#streets.show(this.#tiles ? null : streets, (place) => this.#frame.latlng(place));
     this.#names.clearLayers();
     for (const { name, at } of places) this.#names.addLayer(nameAt(name, this.#frame.latlng(at)));
+    if (this.#isBare) this.#world.show((place) => this.#frame.latlng(place));
+    else this.#world.hide();
+    this.#scale.show(this.#onEarth && this.#places.length ? (latlng) => this.#frame.place(latlng) : null);
+  }
+
+  /** Whether there are places on the earth, and neither tiles nor streets under them. */
+  get #isBare() {
+    const { streets, awaited } = this.#surroundings;
+    return this.#onEarth && this.#places.length > 0 && this.#tiles === null && !streets && !awaited;
   }
 
   #showTiles() {

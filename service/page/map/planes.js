@@ -50,7 +50,7 @@ export class Planes {
     if (this.#chosen.choosable && city !== this.#chosen.city) this.#chosen.choose(city);
   }
 
-  /** Draws map tiles under the first map, while places on the earth are shown. */
+  /** Draws map tiles under the first map, while places on the earth are shown; null for none. */
   tile(url) {
     this.#maps[0].tile(url);
   }

@@ -13,7 +13,7 @@ export class Surroundings {
   /** Draws the surroundings that come before the stops. */
   begin(example) {
     this.#example = example;
-    this.#result.surround(drawn(example));
+    this.#result.surround({ ...drawn(example), awaited: Boolean(example.streets) });
   }
 
   /** Draws the surroundings that come after the stops. The maps work without them. */
