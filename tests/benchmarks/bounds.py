@@ -23,7 +23,6 @@ import numpy as np
 from paretour.choice import knee
 
 from service.errors import Refusal
-from service.fleet.evaluation import violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.planner import plan_fleet
@@ -32,6 +31,7 @@ from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import ALWAYS, VehicleType, Visit
 from service.watch import Progress, Watch
 from tests.benchmarks.cells import of
+from tests.benchmarks.fleet_fronts import check_plans
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rows import resume
@@ -114,8 +114,7 @@ def measured(n: int, over: Over | Measure, seed: int) -> dict[str, Any]:
     began = time.perf_counter()
     front = plan_fleet(fleet, FleetOptions(time_limit=SECONDS), watch=Watch(report=report))
     found.append((time.perf_counter() - began, front.found))
-    if broken := [each for plan in front.plans for each in violations(fleet, plan)]:
-        raise RuntimeError(f"a plan breaks a rule: {broken[0]}")
+    check_plans(fleet, front.plans)
     return {
         "seconds": round(found[-1][0], 2),
         "first": round(next(at for at, _ in found), 2),

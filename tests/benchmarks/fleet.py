@@ -13,9 +13,7 @@ seventy.
 """
 
 import argparse
-import time
 import warnings
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -37,8 +35,9 @@ from service.fleet.rules import Rules
 from service.fleet.scales import UNBOUNDED
 from service.fleet.translation import Translation
 from service.fleet.vehicles import VehicleType, Visit
-from service.pareto import hypervolume, nondominated
+from service.pareto import hypervolume
 from tests.benchmarks import printed
+from tests.benchmarks.fleet_fronts import Find, timed_front
 from tests.benchmarks.fleet_table import OURS, PLAIN, compared
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals.ortools_fleets import route_fleet
@@ -51,7 +50,6 @@ LIMITS = 12  # of the plain sweeps
 ACTORS = Path(service.__file__).parent / "actors"
 NETWORK = "network alone"
 WITH_NETWORK = (NETWORK, OURS)
-Find = Callable[[Fleet, float], list[Plan]]
 
 
 def main(arguments: list[str]) -> None:
@@ -88,15 +86,9 @@ def bi_cvrp(n: int, seed: int) -> Fleet:
 def measured(find: Find, fleet: Fleet) -> dict[str, Any]:
     """Seconds, the points of the plans found, and their hypervolume in the literature's box."""
     n = fleet.rules.n - 1
-    began = time.perf_counter()
-    plans = find(fleet, SECONDS[n])
-    seconds = time.perf_counter() - began
-    if broken := [each for plan in plans for each in violations(fleet, plan)]:
-        raise RuntimeError(f"a plan breaks a rule: {broken[0]}")
-    points = points_of(fleet, plans)
-    points = points[nondominated(points)]
+    seconds, points = timed_front(find, fleet, SECONDS[n])
     return {
-        "seconds": round(seconds, 3),
+        "seconds": seconds,
         "hypervolume": round(hypervolume(points, np.array(CORNERS[n])), 6),
         "points": points.round(6).tolist(),
     }

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from service.pareto import hypervolume
 from tests.benchmarks import printed
 from tests.benchmarks.cells import mean_seconds, of
+from tests.benchmarks.fleet_fronts import share_of_box
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rows import Points
@@ -43,15 +43,8 @@ def section() -> str:
 
 def in_their_box(ours: list[list[float]], plain: list[list[float]]) -> tuple[float, float]:
     """The hypervolumes of two fronts in the box of both together."""
-    together = np.array([*ours, *plain])
-    least, most = together.min(axis=0), together.max(axis=0)
-    extent = np.where(most > least, most - least, 1.0)
-
-    def share(points: list[list[float]]) -> float:
-        scaled: Points = (np.array(points) - least) / extent
-        return hypervolume(scaled, np.array([1.0 + 1e-9, 1.0 + 1e-9]))
-
-    return share(ours), share(plain)
+    box = np.array([*ours, *plain])
+    return share_of_box(np.array(ours), box), share_of_box(np.array(plain), box)
 
 
 def in_boxes(stored: dict[str, Any], n: int) -> Points:

@@ -14,11 +14,9 @@ Prints a table, and stores `results/fleets.json`; what is stored is not measured
 """
 
 import argparse
-import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +26,6 @@ import vrplib
 from pyvrp.exceptions import PenaltyBoundWarning
 from pyvrp.stop import MaxRuntime
 
-from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.goal import Goal
@@ -39,16 +36,16 @@ from service.fleet.rules import Rules
 from service.fleet.search.search import warm_up
 from service.fleet.translation import Translation
 from service.fleet.vehicles import VehicleType, Visit
-from service.pareto import hypervolume, nondominated
+from service.pareto import nondominated
 from service.watch import Watch
 from tests.benchmarks.cells import of
+from tests.benchmarks.fleet_fronts import Find, share_of_box, timed_front
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rows import resume
 
 SIZES = (100, 250, 480, 1000, 2000)
 SECONDS = 8.0
 OURS, SWEEP, ALONE = "paretour", "sweep of searches by PyVRP", "PyVRP alone"
-Find = Callable[[Fleet, float], Sequence[Plan]]
 
 
 def main(arguments: list[str]) -> None:
@@ -94,14 +91,8 @@ def _fleet(costs: np.ndarray[Any, Any], demands: Sequence[int], capacity: int) -
 
 def measured(find: Find, seconds: float, fleet: Fleet) -> dict[str, Any]:
     """Seconds, and the points of the plans found."""
-    began = time.perf_counter()
-    plans = find(fleet, seconds)
-    spent = time.perf_counter() - began
-    if broken := [each for plan in plans for each in violations(fleet, plan)]:
-        raise RuntimeError(f"a plan breaks a rule: {broken[0]}")
-    points = points_of(fleet, plans)
-    points = points[nondominated(points)]
-    return {"seconds": round(spent, 3), "points": points.round(6).tolist()}
+    spent, points = timed_front(find, fleet, seconds)
+    return {"seconds": spent, "points": points.round(6).tolist()}
 
 
 def ours(fleet: Fleet, seconds: float) -> Sequence[Plan]:
@@ -155,11 +146,9 @@ def lines(n: int, seconds: float) -> list[str]:
         found = {name: np.array(each[instance]["points"]) for name, each in fronts.items()}
         both = np.vstack([found[OURS], found[SWEEP]])
         both = both[nondominated(both)]
-        low, high = both.min(axis=0), both.max(axis=0)
-        width = np.where(high > low, high - low, 1.0)
         least = min(points[:, 0].min() for points in found.values())
         for name, points in found.items():
-            volume = hypervolume((points - low) / width, np.full(2, np.nextafter(1.0, inf)))
+            volume = share_of_box(points, both)
             rows[name].append((volume, points[:, 0].min() / least - 1, len(points)))
     for name, values in rows.items():
         volume, above, plans = np.mean(values, axis=0)

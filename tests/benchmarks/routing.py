@@ -11,7 +11,6 @@ With `--store` it stores `results/routing.json`; what is stored is not measured 
 """
 
 import argparse
-import time
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -23,14 +22,13 @@ from pydantic_core import to_json
 from service.errors import Refusal
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile
-from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.planner import plan_fleet
 from service.fleet.plans import Plan
-from service.pareto import nondominated
 from service.requests.fleet import parse_fleet_request
 from service.settings import Settings
+from tests.benchmarks.fleet_fronts import Find, timed_front
 from tests.benchmarks.rivals.ortools_fleets import route_in_time
 from tests.benchmarks.rivals.pyvrp_fleets import route_by_pyvrp
 from tests.benchmarks.rivals.vroom_fleets import route_by_vroom
@@ -85,17 +83,10 @@ def read_fleet(path: Path) -> Fleet:
     return parse_fleet_request(to_json(request), Settings().limits).subject().fleet()
 
 
-def measured(
-    find: Callable[[Fleet, float], list[Plan]], seconds: float, fleet: Fleet
-) -> dict[str, Any]:
+def measured(find: Find, seconds: float, fleet: Fleet) -> dict[str, Any]:
     """Seconds for each plan or front, and the nondominated points."""
-    began = time.perf_counter()
-    plans = find(fleet, seconds)
-    spent = time.perf_counter() - began
-    if broken := [each for plan in plans for each in violations(fleet, plan)]:
-        raise RuntimeError(f"a plan breaks a rule: {broken[0]}")
-    points = points_of(fleet, plans)
-    return {"seconds": round(spent, 3), "points": points[nondominated(points)].round(3).tolist()}
+    spent, points = timed_front(find, fleet, seconds)
+    return {"seconds": spent, "points": points.round(3).tolist()}
 
 
 def ours(fleet: Fleet, seconds: float) -> list[Plan]:

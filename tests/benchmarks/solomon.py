@@ -10,7 +10,6 @@ Prints a table, and stores `results/solomon.json`; what is stored is not measure
 """
 
 import argparse
-import time
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,7 +17,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import vrplib
 
-from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.planner import plan_fleet
@@ -26,8 +24,8 @@ from service.fleet.plans import Plan
 from service.fleet.rules import Rules
 from service.fleet.translation import Translation
 from service.fleet.vehicles import VehicleType, Visit
-from service.pareto import nondominated
-from tests.benchmarks.fleet import Find, swept
+from tests.benchmarks.fleet import swept
+from tests.benchmarks.fleet_fronts import Find, timed_front
 from tests.benchmarks.fleet_table import OURS, PLAIN
 from tests.benchmarks.rows import resume
 from tests.benchmarks.solomon_table import solomon_table
@@ -81,18 +79,9 @@ def read_solomon(path: Path) -> Solomon:
 
 def measured(find: Find, instance: Solomon) -> dict[str, Any]:
     """Seconds, the points of the plans found, and the best known distance."""
-    began = time.perf_counter()
-    plans = find(instance.fleet, SECONDS)
-    seconds = time.perf_counter() - began
-    if broken := [each for plan in plans for each in violations(instance.fleet, plan)]:
-        raise RuntimeError(f"a plan breaks a rule: {broken[0]}")
-    points = points_of(instance.fleet, plans)
-    points = np.unique(points[nondominated(points)], axis=0)
-    return {
-        "seconds": round(seconds, 3),
-        "best_known": instance.best_known,
-        "points": points.round(3).tolist(),
-    }
+    seconds, points = timed_front(find, instance.fleet, SECONDS)
+    points = np.unique(points, axis=0).round(3)
+    return {"seconds": seconds, "best_known": instance.best_known, "points": points.tolist()}
 
 
 def ours(fleet: Fleet, seconds: float) -> list[Plan]:
