@@ -43,7 +43,7 @@ def _start_fork_server() -> None:
         return
     try:
         fork_server.start()
-    except OSError as error:  # there is no folder for its socket
+    except OSError as error:  # the folder for its socket cannot be used
         sys.stderr.write(f"paretour: TMPDIR must be a folder that can be written: {error}\n")
         sys.exit(_USAGE)
 

@@ -42,14 +42,14 @@ class Instance:
         coordinates: Shape (n, 2 m), plane 1 in columns 0-1, plane 2 in columns 2-3 and so on. The
             cost under an objective is the Euclidean distance in its plane.
         matrices: Shape (m, n, n). The cost under objective k of going from i to j is
-            matrices[k, i, j]. The diagonal is ignored. Infinity means that there is no way from i
-            to j: such a leg is forbidden, and is made infinite under the other objectives too.
+            matrices[k, i, j]. The diagonal is ignored. An infinite cost forbids the leg from i
+            to j: it becomes infinite under the other objectives too.
         closed: Whether tours return to where they began. If not, they are open routes.
         start: The city at which every open route starts; None leaves it free.
         end: The city at which every open route ends; None leaves it free.
 
     Raises:
-        InvalidInstance: A shape is wrong, there is no city, a coordinate is not finite, a cost is
+        InvalidInstance: A shape is wrong, no city is given, a coordinate is not finite, a cost is
             not a number or negative, costs are so large that the length of a tour could overflow,
             a matrix has costs too far apart for doubles in one unit, an end is not a city or is
             given for closed tours, or a route of several cities starts where it ends.

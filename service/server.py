@@ -75,7 +75,7 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
     """Return the application of the service, which shuts down if no worker gets ready.
 
     Raises:
-        ValueError: There are no actors, the store cannot be opened, Redis does not answer, or an
+        ValueError: No actor is found, the store cannot be opened, Redis does not answer, or an
             extra is not installed.
     """
     if settings.mcp:

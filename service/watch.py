@@ -76,11 +76,11 @@ class Watch(Generic[A]):
         return self.stopped() or self.over()
 
     def lasting(self, seconds: float) -> "Watch[A]":
-        """Return a watch over work that begins now and may take so many seconds."""
+        """Return a watch over work that begins now and may take this many seconds."""
         return Watch(seconds, self.stopped, self.report, self._clock)
 
     def until(self, seconds: float) -> "Watch[A]":
-        """Return a watch over a part of this work, which ends so many seconds after all began."""
+        """Return a watch over a part of this work, which ends `seconds` after the whole began."""
         part = copy(self)
         part.seconds = seconds
         return part

@@ -126,7 +126,7 @@ def owner_of(request: Request) -> str:
     It is that of `client_of`, unless that is the address of a proxy, which many clients share.
 
     Raises:
-        Refusal: There is no key, and a proxy that is not trusted hides the address.
+        Refusal: The request has no key, and a proxy that is not trusted hides its address.
     """
     if request.scope["caller"] == ANONYMOUS and request.scope.get(HIDDEN):
         raise Refusal("hidden-client")

@@ -67,7 +67,7 @@ def read_request(
 
     Raises:
         UnreadableFile: A file cannot be read; the message names it.
-        UsageError: It holds what another command plans, or is no file that can be read once.
+        UsageError: The file is for another command, or cannot be read in one pass.
         OSError: The file does not exist.
     """
     files = [path for path in paths if path is not None]

@@ -169,7 +169,7 @@ def _option(made: Mapping[str, Any]) -> Any:
 def _of_forms(
     *forms: str, without: Collection[str] = ()
 ) -> Callable[[type[Members]], type[Members]]:
-    """Return a decorator that makes a group of the options for forms, each of which has a name."""
+    """Return a decorator that makes a group of the options of these forms, given by name."""
     made = {option["name"]: option for form in forms for option in _OPTIONS[form]}
 
     def decorate(group: type[Members]) -> type[Members]:

@@ -42,7 +42,7 @@ def write_path(path: MapPath | None, file: Path) -> None:
     """Write the path of a tour into a file, in the format of its name.
 
     Raises:
-        UsageError: There is no path, or no origin of its map.
+        UsageError: The path is missing, or the origin of its map is.
     """
     file.write_text(_WRITERS[file.suffix](_located(path)), newline="", encoding="utf-8")
 
@@ -51,7 +51,7 @@ def write_paths(front: FrontOfAnyKind, kind: Kind, folder: Path) -> None:
     """Write all paths of a front into a folder, each as JSON and as CSV. Make the folder.
 
     Raises:
-        UsageError: There are no paths, or no origin of their map.
+        UsageError: The paths are missing, or the origin of their map is.
     """
     folder.mkdir(exist_ok=True)
     for name, path in _named_paths(front, kind):

@@ -2,7 +2,7 @@
 
 The pool is that of the local engine. It starts, watches, replaces, stops and kills the processes.
 Here a record is taken from Redis for each message, given to the pool, and followed: its progress
-goes to Redis, and if it is no longer wanted, the pool is told to stop it.
+goes to Redis, and the pool stops it when its caller cancels it.
 """
 
 import asyncio

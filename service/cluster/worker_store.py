@@ -100,7 +100,7 @@ class WorkerStore(RecordScript):
             return await self.call(verb, *arguments)
 
 
-_LOST_AFTER = LEASE + 1  # seconds until a lost process is no longer counted
+_LOST_AFTER = LEASE + 1  # seconds after which a process without a sign of life counts as lost
 _CHECK_EVERY = 0.25  # seconds between two checks
 
 

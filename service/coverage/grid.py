@@ -16,7 +16,7 @@ def free_cells(blocked: Mask, cell_size: float, robot_radius: float) -> Mask:
     """Return the cells that are free for a robot: those outside of the inflated obstacles.
 
     The centre of a free cell is farther than the radius from the centre of every blocked cell.
-    Outside the grid there are no obstacles. O(cells).
+    All cells outside the grid are free. O(cells).
 
     Args:
         blocked: Obstacles, shape (rows, columns).

@@ -128,7 +128,7 @@ def pairwise_paths(
 
     Returns:
         Lengths in cells, shape (n, n), and costs by each layer, shape (layers, n, n), all
-        symmetric. If there is no path, the length is infinite and the cost 0.
+        symmetric. Without a path, the length is infinite and the cost 0.
     """
     n = len(cells)
     lengths, costs = np.zeros((n, n)), np.zeros((1 + len(further), n, n))
@@ -149,7 +149,7 @@ def pairwise_paths(
 
 
 def count_steps(tree: PathTree, cells: Cells) -> NDArray[np.int32]:
-    """Return the number of steps of the paths to cells, shape (n,); 0 if there is no path."""
+    """Return the number of steps of the paths to cells, shape (n,); 0 without a path."""
     length, diagonals = tree.length[cells], tree.diagonals[cells]
     reached = np.isfinite(length)
     straight = np.rint(np.where(reached, length, 0.0) - diagonals * DIAGONAL)
@@ -205,7 +205,7 @@ def unmark(is_target: Mask, targets: Cells) -> None:
 def path_costs(grid: Grid, predecessor: NDArray[np.int32], layer: Array, cells: Cells) -> Array:
     """Return the cost by a layer, shape (cells of the grid,), of the path to each of n cells.
 
-    Shape (n,); 0 if there is no path. O(all steps of the paths).
+    Shape (n,); 0 without a path. O(all steps of the paths).
     """
     costs = np.zeros(len(cells))
     for k in range(len(cells)):

@@ -10,7 +10,7 @@ from service.instance import Instance, tour_lengths
 from service.search.nondominated import nondominated
 from service.watch import Watch
 
-_FEWEST_CITIES = 3  # of a search: with fewer cities there are no other tours than the given ones
+_FEWEST_CITIES = 3  # of a search: with fewer cities, all tours are known already
 _SHARE = 0.95  # of the seconds left that the function gets; the rest is for checks and the choice
 
 

@@ -307,7 +307,7 @@ def _is_numbered(columns: Columns) -> bool:
 
 
 def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:
-    """Return costs; None if a field says that there is no way."""
+    """Return costs; None for a field that forbids the leg."""
     costs: list[list[float | None]] = []
     for row, (_, texts) in enumerate(columns.table.rows):
         fields = [texts[at] for at in free]

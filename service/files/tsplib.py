@@ -254,7 +254,7 @@ def _explicit(file: TsplibFile) -> Array:
 
 
 def plain(costs: Array) -> list[list[Any]]:
-    """Return costs as rows for JSON: whole numbers as integers, None where there is no way."""
+    """Return costs as rows for JSON: whole numbers as integers, None for a forbidden leg."""
     if np.isfinite(costs).all():
         whole = (costs == np.rint(costs)).all() and (np.abs(costs) < 2**53).all()
         rows: list[list[Any]] = (costs.astype(np.int64) if whole else costs).tolist()

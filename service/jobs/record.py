@@ -28,8 +28,8 @@ class Record:
         key: The Idempotency-Key, if the request had one.
         digest: SHA-256 of the body. A second request with the key is a repeat if it has the same.
         problem: The problem document of a job that failed.
-        client: The client whose share of the places it takes: the caller, or an address where
-            there are no keys. It is not stored.
+        client: The client whose share of the places it takes: the caller's name, or the
+            address of a caller without a key. It is not stored.
         webhook: What is told when the job has ended. Stores keep it until then.
     """
 

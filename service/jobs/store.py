@@ -31,7 +31,7 @@ class Store(Outbox, Protocol):
 
     When finished records are too many or too large together, the oldest one of the client with the
     most is dropped. A client loses its last one only if no client has two, or if that record alone
-    is too large for the store. A client is a caller, or an address where there are no keys.
+    is too large for the store. A client is a caller with a key, or an address.
     """
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002

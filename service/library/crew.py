@@ -32,7 +32,7 @@ class Crew:
 
     Args:
         workers: The number of processes; None for one for each processor.
-        tasks: The number of tasks; there are no more processes than that.
+        tasks: The number of tasks, which limits the number of processes.
 
     Raises:
         ValueError: The number of processes is not positive.

@@ -31,7 +31,7 @@ _HOLDERS = frozenset(("add", "breaks", "departure", "position", "routes", "stops
 
 
 def clock_time(time: float, unit: str | None) -> str | float:
-    """Return a time of the day, as 8:05 or "day 2, 8:05"; the number where the unit is no time."""
+    """Return a time of the day, as 8:05 or "day 2, 8:05"; the number in other units."""
     if unit not in SECONDS:
         return time
     minutes = round(time * SECONDS[unit] / MINUTE)

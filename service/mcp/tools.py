@@ -92,7 +92,7 @@ class Tool:
     """A tool: its name and description for an agent, its arguments, and the function it runs.
 
     Args:
-        forms: The forms of which the arguments are members, where the service checks them.
+        forms: The forms that have the arguments as members and check them in the service.
     """
 
     name: str

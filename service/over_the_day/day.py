@@ -24,7 +24,7 @@ class CostsOfDay:
             holds before that too, and the last one without end.
         factors: Shape (s,), positive.
         layers: Shape (s,), the index of the matrix of each slice.
-        matrices: Shape (k, n, n). Infinity means that there is no way from i to j, at any time.
+        matrices: Shape (k, n, n). An infinite cost forbids the leg from i to j at all times.
     """
 
     begins: Array
@@ -113,7 +113,7 @@ class Day:
             left[stop] = False
             steps = np.where(left, matrix[stop], np.inf)
             following = int(steps.argmin())
-            if np.isinf(steps[following]):  # there is no way to any stop that is left
+            if np.isinf(steps[following]):  # all legs to the stops left are forbidden
                 following = int(left.argmax())
             else:
                 seconds += float(steps[following])

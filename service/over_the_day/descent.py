@@ -137,7 +137,7 @@ def descend(search: WeightedSearch, steps: int) -> bool:
 
 @compiled
 def iterate(search: WeightedSearch, steps: int) -> None:
-    """Change the best tour at random and descend, `steps` times; keep what is no worse."""
+    """Change the best tour at random and descend, `steps` times; go back from worse results."""
     for _ in range(steps):
         if not perturb(search):
             return

@@ -112,7 +112,7 @@ def check_size(columns: int, rows: int, most: int) -> None:
 def check_costs(matrix: Array, name: str) -> None:
     """Raise a refusal unless all entries of a matrix, shape (n, n), off its diagonal are costs.
 
-    An infinite entry means that there is no way.
+    An infinite entry forbids its leg.
 
     Raises:
         Refusal: An entry is not a number, negative or too large.

@@ -72,7 +72,7 @@ Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINT
 # Only the type of the numbers is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
 ArrayRows = Items[Items[float]]
-# Costs from each city to each; null where there is no way.
+# Costs from each city to each; null forbids the leg.
 CostRows = Items[Items[float | None]]
 NO_WAY = "null where there is no way; the diagonal is ignored"
 

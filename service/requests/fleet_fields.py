@@ -83,7 +83,7 @@ class FleetStopItem(NamedStop):
         `types` are the types of vehicles by their id: one for each shift.
 
         Raises:
-            Refusal: There is no vehicle of that id, or windows are not in order.
+            Refusal: No vehicle has that id, or windows are not in order.
         """
         if self.vehicle is not None and self.vehicle not in types:
             near = nearest(self.vehicle, types)

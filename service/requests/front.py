@@ -159,7 +159,7 @@ class FrontRequest(DayFields, PlanRequest):
         matrices = [Matrix(matrix) for matrix in self.matrices]
         if not self.objectives:
             return tuple(matrices)
-        # Not strict: _check_objectives() refuses as many matrices as there are no objectives for.
+        # Not strict: _check_objectives() refuses another number of matrices.
         each = zip(self.objectives, matrices, strict=False)
         return tuple(item.over(f"objectives/{m}", base) for m, (item, base) in enumerate(each))
 

@@ -64,7 +64,7 @@ class RoadClient:
 
         Raises:
             OffRoad: Stops lie too far from every road.
-            NoRoad: There is no way between some stops and any others.
+            NoRoad: Some stops cannot be reached from the others, or the others from them.
             RouterUnavailable: The engine does not answer.
             RouterUnusable: Its answer is not as documented.
             RouterTooSlow: It takes too many seconds.

@@ -52,11 +52,11 @@ class Questions:
     async def costs(self, pairs: int) -> Array:
         """Return both matrices, shape (2, n, n), asked for in blocks of a bounded number of pairs.
 
-        They are infinite where there is no way.
+        An infinite entry says that no road leads there.
 
         Raises:
-            NoRoad: There is no way between some stops and any others, or the engine refuses too
-                many pairs one by one.
+            NoRoad: Some stops cannot be reached from the others, or the others from them; or
+                the engine refuses too many pairs one by one.
         """
         parts = _parts(len(self._places), isqrt(pairs))
         blocks = ((sources, targets) for sources in parts for targets in parts)
@@ -79,7 +79,7 @@ class Questions:
             keep: Called with each leg and its line, which is not empty, as they come.
 
         Raises:
-            NoRoad: There is no way along some leg.
+            NoRoad: The engine finds no road for a leg.
             RouterUnusable: Some line does not lead from stop to stop.
         """
 

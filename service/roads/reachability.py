@@ -23,7 +23,7 @@ def missing_ways(missing: NDArray[np.bool_]) -> list[MissingWay]:
     nearly the fewest possible.
 
     Args:
-        missing: Whether there is no way from a stop (row) to another (column), shape (n, n).
+        missing: Whether no road leads from a stop (row) to another (column), shape (n, n).
 
     >>> island = np.array([[0, 0, 1], [0, 0, 1], [1, 1, 0]], dtype=bool)
     >>> missing_ways(island)

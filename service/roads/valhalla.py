@@ -41,7 +41,7 @@ class _Edge(BaseModel):
 
 
 class _Located(BaseModel):
-    # Where there is no road at all, older versions have null.
+    # Older versions send null for a place far from every road.
     edges: Annotated[list[_Edge], Field(max_length=1000)] | None = None
 
 

@@ -40,7 +40,7 @@ class Costs(NamedTuple):
     symmetric: bool
     closing: Array  # (2, n), the costs from city 0 and to it; (2, 0) of closed tours
     largest: Array  # (m,), of any step: what rounding can add to a gain is a share of these
-    plain: bool  # whether no city is invented, and there are no planes to sum up
+    plain: bool  # whether no city is invented, and costs are stored in tables
 
 
 def make_costs(instance: Instance) -> Costs:
@@ -87,7 +87,7 @@ def weighted_costs(costs: Costs, weights: Array) -> Costs:
 
 
 def as_two(costs: Costs, weights: Array) -> tuple[Costs, float, float]:
-    """Return two costs and their weights, of which a weighted sum of all objectives is made."""
+    """Return two costs and their weights whose weighted sum is that of all objectives."""
     if len(weights) == OBJECTIVES:
         return costs, float(weights[0]), float(weights[1])
     return weighted_costs(costs, weights), 1.0, 1.0

@@ -175,7 +175,7 @@ def _too_few_neighbours(legs: Mask) -> tuple[list[int], list[int]] | None:
     """Return cities (rows) that together have legs to fewer cities (columns) than they are.
 
     Hall's theorem, by a matching of the rows with few legs, as only these can be such. None if
-    there are no such cities, or too many rows to search.
+    no such cities exist, or too many rows would have to be searched.
     """
     counts = legs.sum(axis=1)
     order = np.argsort(counts, kind="stable")

@@ -78,8 +78,8 @@ class FrontAnswers:
         """Raise a refusal where a request accepts GeoJSON that cannot be made.
 
         Raises:
-            Refusal: There are no stops with ids, or some have no location; or the lines are to
-                follow streets, but the answer is not GeoJSON or there is no routing engine.
+            Refusal: A stop lacks an id or a location; or the lines are to follow streets, but the
+                answer is not GeoJSON or no routing engine is set.
         """
         if geometry == "roads":
             self._check_roads(request)

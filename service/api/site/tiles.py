@@ -15,7 +15,7 @@ class Tiles:
 
     Args:
         url: The template of a tile's address, with {z}, {x}, {y}, and optionally {s} for one of a,
-            b and c in the server's name; None if there are no tiles.
+            b and c in the server's name; None for a map without tiles.
         credit: The credit for the map, which its licence demands to be shown.
     """
 

@@ -23,7 +23,7 @@ _SIDES = ("rows", "columns")
 _ENDS = 2  # of a window
 _SEPARATOR = re.compile(r"[;|,]")  # between skills in one text
 _MOST_SHOWN = 80  # characters of a wrong value in a sentence
-# A row for each city, with its costs to all cities; None or infinity if there is no way.
+# A row for each city, with its costs to all cities; None or infinity forbids the leg.
 Costs = ArrayLike | Sequence[Sequence[float | None] | ArrayLike]
 _Cells = list[tuple[str, Any]]  # the cells of a column: the position and the value of each
 
@@ -189,7 +189,7 @@ def _plain(cell: Any) -> Any:
 
 
 def _labels(frame: Any) -> list[Any]:
-    """Return the label of each row: that of its index, or a number if there is no index."""
+    """Return the label of each row: that of its index, or its position in a frame without one."""
     return list(getattr(frame, "index", range(len(frame))))
 
 

@@ -157,7 +157,7 @@ def _rows(mask: np.ndarray[Any, np.dtype[np.bool_]]) -> list[list[int]]:
 
 
 def _unreadable(name: str, refusal: Refusal) -> UnreadableFile:
-    """Return the exception for a file of which a request would be refused."""
+    """Return the exception for a file, given the refusal of the request made from it."""
     kind = FileTooLarge if refusal.status == 413 else UnreadableFile
     return kind(*(_of_file(name, fault) for fault in refusal.errors))
 

@@ -220,7 +220,7 @@ def _costs(durations: Matrix, distances: Matrix, rates: VroomRates) -> Matrix:
 
 
 def _sum(second: Any, metre: Any, rates: VroomRates) -> Any:
-    """Return the cost of a leg; None where there is no way."""
+    """Return the cost of a leg; None forbids it."""
     if not _is_cost(second) or not _is_cost(metre):
         return None
     return round(second * rates.per_hour / 3600 + metre * rates.per_km / 1000, 6)

@@ -1,8 +1,8 @@
 """Import the modules of all workers once, in the process that forks them.
 
 Workers then start with these modules, and with the compiled code if an earlier process left it in
-the cache. If not, other processes compile it: that takes most of a minute, and there are no
-workers, not even for requests of the network alone, until this module is imported.
+the cache. If not, other processes compile it, which takes most of a minute. No worker starts
+before this module is imported, not even for requests of the network alone.
 
 The garbage collector waits meanwhile, and later leaves out what was loaded here: to look through
 that is to write to it, and workers share this memory as long as none of them writes.

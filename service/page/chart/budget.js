@@ -48,7 +48,7 @@ export class Budget {
     if (axis >= 0) this.#limit = { axis, most: limits[axis] };
   }
 
-  /** The best tour within the budget, null if there is no budget. */
+  /** The best tour within the budget, null without a budget. */
   get index() {
     if (!this.#limit) return null;
     const { axis, most } = this.#limit;
@@ -56,7 +56,7 @@ export class Budget {
     return Math.max(0, this.#front.findLastIndex(({ lengths }) => lengths[0] <= most));
   }
 
-  /** The most of each objective, null where there is no budget. */
+  /** The budget of each objective, null where none is set. */
   get limits() {
     return [0, 1].map((axis) => (this.#limit?.axis === axis ? this.#limit.most : null));
   }

@@ -11,7 +11,7 @@ export class Growth {
   #unknown;
   #chart;
 
-  /** @param {HTMLElement} unknown is shown in place of the chart if there is no growth */
+  /** @param {HTMLElement} unknown is shown in place of the chart if the search reported nothing */
   constructor(element, unknown) {
     this.#element = element;
     this.#unknown = unknown;

@@ -10,7 +10,7 @@ export class ServeBy {
     element("serve-by").addEventListener("change", ({ target }) => onServe(this.#stop, target.value));
   }
 
-  /** Offers the vehicles of a request for a stop; none where there is no stop, or vehicles start, end or load there. */
+  /** Offers the vehicles of a request for a stop; none without a stop, or for one where vehicles start, end or load. */
   show(stop, known) {
     this.#stop = stop;
     const [asked, types] = [known.stops.get(stop), [...known.types]];

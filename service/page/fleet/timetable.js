@@ -13,7 +13,7 @@ const [TIGHT, MINUTE] = [300, 60]; // seconds: looking for a place to park takes
 /**
  * A lane for each route, `{ name, style, visits }` by `visitTimes`, and their `clock`, which also says how long something takes.
  * A visit says in `closing` how soon its window closes, if that is within minutes of the vehicle's arrival; "" if not.
- * There are no lanes, and no clock, if the plan has no times.
+ * A plan without times has neither lanes nor a clock.
  *
  * @param {object} asked the request, as far as it is known
  */

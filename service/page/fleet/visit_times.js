@@ -2,7 +2,7 @@
 
 import { breaksAt } from "./breaks.js";
 
-const UNKNOWN = { reload: [], shifts: [] }; // of a type of vehicles of which nothing is known
+const UNKNOWN = { reload: [], shifts: [] }; // the rules of a type of vehicles that is not known
 const NEAR = 1e-6; // times that differ by less, relative to them, are equal
 
 /**

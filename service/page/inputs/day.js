@@ -79,7 +79,7 @@ function relative(slices) {
   return known.get(slices);
 }
 
-/** The mean cost of a leg; no leg leads from a stop to itself, or where there is no way. */
+/** The mean cost of the legs that are not forbidden, from each stop to another. */
 function mean(matrix) {
   const costs = matrix.flatMap((row, from) => row.filter((cost, to) => to !== from && cost != null));
   return costs.reduce((sum, cost) => sum + cost, 0) / (costs.length || 1);

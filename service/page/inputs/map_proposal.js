@@ -2,7 +2,7 @@
 
 import { DISTANCE } from "../common/objectives.js";
 
-const REACH = 10; // cells from a wall, beyond which there is no risk
+const REACH = 10; // cells from a wall within which driving is a risk
 const [STRAIGHT, DIAGONAL] = [1, Math.SQRT2];
 const PLACES_ACROSS = 12; // places along the longer side
 const OF_MAP = ["grid", "cell_size", "origin", "cost_layers"];

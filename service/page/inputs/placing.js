@@ -14,7 +14,7 @@ export class Placing {
   /**
    * @param {(row: number[]) => void} onCity called with each city that has all its places
    * @param {(plane: number, place: number[] | null) => void} onWaiting called with the place of a city
-   *   that has one of two places, and with null when there is no such city
+   *   that has one of two places, and with null once no city waits
    * @param {{ once?: boolean }} options whether only one city is placed
    */
   constructor(button, help, onCity, onWaiting, { once = false } = {}) {

@@ -1,9 +1,9 @@
-/** Tell whether requests are the same, each of which is written as text only once. */
+/** Tell whether requests are the same, writing each of them as text only once. */
 
 import { SETTINGS } from "./fields.js";
 import { keyOf, without } from "./instance.js";
 
-const known = new WeakMap(); // the keys of requests, none of which changes
+const known = new WeakMap(); // the keys of requests, which never change
 
 /** Two texts of a request: `planned` is that of all that is planned, without details, and `brought` of all but the settings. */
 export function keysOf(request) {

@@ -70,7 +70,7 @@ export class Maps {
   }
 
   /**
-   * Draws what lies around the stops: `streets` where there are no tiles, or the coasts of the world unless streets are
+   * Draws what lies around the stops: `streets` on a map without tiles, or the coasts of the world unless streets are
    * `awaited`, and `places` by name; and tours along `legs`, which lie between the corners of an `extent`.
    */
   surround({ streets = null, places = [], legs = null, extent = [], awaited = false }) {
@@ -214,7 +214,7 @@ export class Maps {
     if (this.#drawn.length && !this.#kind.onGrid) this.#planes.pass(driven);
   }
 
-  /** The places of stops by their ids, and those along the `way` through them as it is drawn; null where there is no map of them. */
+  /** The places of stops by their ids, and those along the `way` through them as it is drawn; null for stops that no map shows. */
   along(stops) {
     const cities = stops.map((stop) => this.#ids?.indexOf(stop) ?? -1);
     const places = this.#planes.placesOf(cities);

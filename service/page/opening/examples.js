@@ -28,7 +28,7 @@ export class Examples {
     return this.#all.find(({ file }) => file === this.#choice.value);
   }
 
-  /** Chooses an example by its file, and shows its story. Returns false if there is no such file. */
+  /** Chooses an example by its file, and shows its story. Returns false for a file that is not listed. */
   choose(file) {
     this.#choice.value = this.#all.some((example) => example.file === file) ? file : "";
     this.#about.textContent = this.chosen?.about ?? "";

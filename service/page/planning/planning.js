@@ -119,7 +119,7 @@ export class Planning {
     yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
   }
 
-  /** Ends the plan with the best front so far, or without a front if there is no job yet. */
+  /** Ends the plan with the best front so far, or without a front before its job has begun. */
   async stop() {
     if (this.#id) await this.#end(`front/${this.#id}`);
     else this.#left.abort();

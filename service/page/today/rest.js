@@ -45,7 +45,7 @@ export class FleetRest {
   /**
    * @param {{ routes: object[], names: string[], asked: object }} driven the plan that is driven
    * @param {object} body what was asked, by `bodyOf`
-   * @param {object} day of which it was asked
+   * @param {object} day the day that the body is about
    */
   constructor(driven, { routes, add }, day) {
     Object.assign(this, { driven, day });

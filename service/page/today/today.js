@@ -20,7 +20,7 @@ import { VanList } from "./van_list.js";
 
 const element = (id) => document.getElementById(id);
 const { movers: VEHICLES } = kindNamed({ kind: "fleet" });
-const PLANNED = { now: null, turned: new Set() }; // of a plan of which nothing is done
+const PLANNED = { now: null, turned: new Set() }; // of a plan that has not begun
 const TIME = "Write a time, as 11:00.";
 const MINUTE = 60; // seconds
 
@@ -160,7 +160,7 @@ export class Today {
     this.#list.show(this.#vans, { clock, out: this.#out, removed: this.#cancelled });
   }
 
-  /** The line that a vehicle has driven; null where there is no map, or it has not left. */
+  /** The line that a vehicle has driven; null without a map, or before the vehicle leaves. */
   #lineOf({ stops }, { isOut, at, share }) {
     const found = isOut && this.#result.along(stops);
     return found ? travelled(found.way, found.places, at, share) : null;

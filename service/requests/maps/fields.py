@@ -70,7 +70,7 @@ class LayerItem(StrictModel):
         """Return its costs, shape (rows, columns); it is the layer of this index in its request.
 
         Raises:
-            Refusal: There are no costs, or rows differ in length.
+            Refusal: The layer is empty, or its rows differ in length.
         """
         return rectangular_array(self.layer, f"cost_layers/{index}/layer")
 
@@ -151,7 +151,7 @@ class MapRequest(PlanRequest):
             most_cells: The most cells of a map.
 
         Raises:
-            Refusal: There is no map, or more than one, or it cannot be read, or is too large; or a
+            Refusal: Not exactly one map is given, or it cannot be read, or is too large; or a
                 field is given that does not apply to this form.
         """
         return self.with_occupancy(picture, most_cells)[0]

@@ -13,7 +13,7 @@ def notes_on_costs(matrix: Array, name: str) -> Iterator[str]:
     """Yield a sentence for each huge cost that a matrix has more than once.
 
     Huge is a thousand times the median of the positive costs without the largest one. A table of
-    costs often has such a number where there is no way.
+    costs often has such a number for legs that cannot be driven.
 
     Args:
         matrix: Shape (n, n), or (s, n, n) of slices of the day.

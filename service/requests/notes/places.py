@@ -80,8 +80,8 @@ def _outliers(names: Sequence[str], places: Array, located: Mask) -> Iterator[Do
     """Yield notes on stops so far from every other one that a digit of their place may be mistaken.
 
     A stop is so far if its nearest other stop is more than 100 km away, and more than 20 times
-    the median distance from the middle. Where many stops are that far from the middle there are no
-    notes.
+    the median distance from the middle. Where many stops are that far from the middle, none is
+    noted.
     """
     at = np.flatnonzero(located)
     if len(at) < _LEAST_STOPS:

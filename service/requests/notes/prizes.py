@@ -54,7 +54,7 @@ def _alone(rules: Rules, costs: Array, number: int) -> Array:
 def _costs(stops: Stops) -> Array | None:
     """Return costs of the first objective that are not too high; None if nothing is known of them.
 
-    Costs by road are not known yet, but are no less than those along great circles.
+    Costs by road are not known yet; those along great circles are at most as high.
     """
     match base_of(stops.sources[0]):
         case Matrix(costs):

@@ -269,7 +269,7 @@ class _Rest:
     def _sources(self) -> list[Source]:
         """Return the sources of both costs between the stops of the rest."""
         sources, names = list(self._fleet.stops.sources), self._names_of_costs()
-        sources = sources[: len(names)]  # if there is no more, the second costs are the same
+        sources = sources[: len(names)]  # a fleet with one source has the same costs twice
         sources = extended_sources(sources, names, self._all)
         sources, _ = changed_sources(sources, names, self._request.costs, self._all)
         chosen = np.array(list(self._place), np.int64)
@@ -321,7 +321,7 @@ def _all_stops(request: ReplanFleetRequest, labels: Labels) -> AllStops:
 def _removed(
     request: ReplanFleetRequest, day: DaySoFar, rules: Rules, ids: Mapping[str, int]
 ) -> frozenset[int]:
-    """Return the stops that are no longer visited.
+    """Return the stops that the request takes out of the plan.
 
     Raises:
         Refusal: One is not a stop, done or a depot, or only half of a shipment.

@@ -287,7 +287,7 @@ def _left_of_tours(
     In indexes of all stops. The first row is what is left of the driven tour; of a large front's
     others there are MOST_TOURS, evenly spread. If more of the driven tour's last stops than of its
     first are done, it is driven the other way round. New neighbours are possible at the ends, and
-    for stops beside one that is no longer in a tour.
+    for stops beside one that has been removed.
     """
     driven = _as_driven(front, driven, rest.done)
     m = len(front.tours)

@@ -1,9 +1,9 @@
 """Archives of three and four objectives: blocks of up to WIDTH neighbours, with a box around each.
 
 Points cannot be sorted so that a look at two of them says whether they dominate another. Most
-blocks are passed by after a look at the box: only where its least corner is no worse than a new
-point can one of its points dominate that. So a new point is compared with a few dozen of thousands
-(Jaszkiewicz and Lust, 2018, have a whole tree of such boxes).
+blocks are passed by after a look at the box: its points can dominate a new point only if its least
+corner is as good or better in each objective. So a new point is compared with a few dozen points of
+thousands (Jaszkiewicz and Lust, 2018, have a whole tree of such boxes).
 """
 
 import numpy as np

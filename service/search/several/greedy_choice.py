@@ -17,7 +17,7 @@ from service.search.thinning import Cells
 
 MOST_COMPARED = 8  # points of a cell, to find the one of them that adds most
 _MANY = 64  # points chosen, from which on it pays to drop boxes that others contain
-_FEW = 8  # boxes, of which it does not pay
+_FEW = 8  # boxes: with so few or fewer, dropping them does not pay
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
