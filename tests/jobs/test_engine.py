@@ -260,7 +260,7 @@ def test_jobs_are_in_the_queue_like_everybody_else(engine: Engine, gated: Shuffl
         assert later(client, SHORT, **{"Idempotency-Key": "first"}) == path
         gated.open()
         assert ended(client, path)["status"] == "done"
-        assert client.post("/front", json=SHORT, headers=other).status_code == 202
+        assert ended(client, later(client, SHORT, **other))["status"] == "done"
 
 
 @pytest.mark.parametrize("headers", [{}, LATER])
@@ -278,7 +278,9 @@ def test_repeats_on_a_full_queue_are_all_refused(
             problem(post.result(), 503, "queue-full")
         gated.open()
         ended(client, path)
-        assert client.post("/front", json=SHORT, headers=headers).status_code in (200, 202)
+        answer = client.post("/front", json=SHORT, headers=headers)
+        assert answer.status_code in (200, 202)
+        ended(client, f"/front/{answer.json()['id']}")
 
 
 @pytest.mark.parametrize("headers", [{}, LATER])
@@ -318,12 +320,16 @@ def test_a_caller_holds_no_more_than_its_share(engine: Engine, gated: Shuffler) 
             refused = client.post("/front", json=SHORT, headers={**us, **more})
             assert problem(refused, 503, "share-full")["limit"] == 3
             assert int(refused.headers["retry-after"]) > 0
-        assert later(client, SHORT, **them)
+        foreign = later(client, SHORT, **them)
         gated.open()
-        for path in paths:
-            while client.get(path, headers=us).json()["status"] != "done":
-                time.sleep(0.02)
-        assert later(client, SHORT, **us)
+        for path, caller in [*((path, us) for path in paths), (foreign, them)]:
+            _await_end(client, path, caller)
+        _await_end(client, later(client, SHORT, **us), us)
+
+
+def _await_end(client: httpx.Client, path: str, caller: dict[str, str]) -> None:
+    while client.get(path, headers=caller).json()["status"] != "done":
+        time.sleep(0.02)
 
 
 def test_what_was_unfinished_when_the_service_ended_is_done_for_the_next(
