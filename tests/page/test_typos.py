@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from playwright.sync_api import Browser, Page, Request, expect
+from playwright.sync_api import Browser, Locator, Page, Request, expect
 
 from tests.helpers.browsing import (
     DESK,
@@ -108,110 +108,128 @@ def write(page: Page, label: str, text: str) -> None:
     field.press("Tab")
 
 
-@pytest.mark.parametrize(
-    ("content", "label", "fault", "said"),
-    [
-        (PLANES, "x₂ of 2", "stops", "X₂ of stop 2 must be a valid number"),
-        (NAMED, "y₂ of shop", "stops", "Y₂ of shop must be a number"),
-        (ON_EARTH, "Latitude of shop", "stops", "Latitude of shop must be a number"),
-        (FLEET, "Latitude of shop", "stops", "Latitude of shop cannot be “6o.18”"),
-        (FLEET, "Count of van", "vehicles", "Count of van cannot be “6o.18”"),
-        (FLEET, SPEED, "objectives", "The speed of the second objective must be"),
-        (DAY, "Leaves at, or from", "departure", "Leaves at must be a time, as 7:30."),
-        (DAY, "to", "departure-latest", "Leaves at must be a time, as 7:30."),
-        (DAY, "Rush hours", "hours", "Rush hours must be times and factors in order"),
-        (DAY, "Start", "start", "Start must be"),
-        (DAY, "Seconds of planning", "time_limit", "Seconds of planning must be a valid number"),
-        (MAP, "Tours", "size", "Tours must be a valid integer"),
-        (MAP, "Start", "start", "Start must be"),
-        (MAP, "Metres a cell", "cell_size", "Metres a cell must be a valid number"),
-        (MAP, RADIUS, "robot_radius", f"{RADIUS} must be a valid number"),
+def open_text(page: Page, content: str) -> None:
+    open_files(page, {"stops.json" if content.startswith("{") else "stops.csv": content})
+
+
+def named(page: Page, label: str) -> Locator:
+    """The field with a label that is seen."""
+    return page.get_by_label(label, exact=True).locator("visible=true")
+
+
+def check_mended(page: Page) -> None:
+    """Check that a request whose values are what they were is planned, and nothing is at fault."""
+    plan(page)
+    wait_until_planned(page)
+    expect(page.locator(".fault:not(:empty)")).to_have_count(0)
+    expect(page.locator("[aria-invalid=true]")).to_have_count(0)
+
+
+# By form: fields, the fault beside them, and what it says of "6o.18".
+TYPOS = {
+    PLANES: [("x₂ of 2", "stops", "X₂ of stop 2 must be a valid number")],
+    NAMED: [("y₂ of shop", "stops", "Y₂ of shop must be a number")],
+    ON_EARTH: [("Latitude of shop", "stops", "Latitude of shop must be a number")],
+    FLEET: [
+        ("Latitude of shop", "stops", "Latitude of shop cannot be “6o.18”"),
+        ("Count of van", "vehicles", "Count of van cannot be “6o.18”"),
+        (SPEED, "objectives", "The speed of the second objective must be"),
     ],
-)
-def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(
-    window: Page, content: str, label: str, fault: str, said: str
-) -> None:
-    open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
+    DAY: [
+        ("Leaves at, or from", "departure", "Leaves at must be a time, as 7:30."),
+        ("to", "departure-latest", "Leaves at must be a time, as 7:30."),
+        ("Rush hours", "hours", "Rush hours must be times and factors in order"),
+        ("Start", "start", "Start must be"),
+        ("Seconds of planning", "time_limit", "Seconds of planning must be a valid number"),
+    ],
+    MAP: [
+        ("Tours", "size", "Tours must be a valid integer"),
+        ("Start", "start", "Start must be"),
+        ("Metres a cell", "cell_size", "Metres a cell must be a valid number"),
+        (RADIUS, "robot_radius", f"{RADIUS} must be a valid number"),
+    ],
+}
+
+
+@pytest.mark.parametrize("content", TYPOS, ids=range(len(TYPOS)))
+def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(window: Page, content: str) -> None:
+    open_text(window, content)
     chosen = planned_choice(window)
-    front = shown_front(window)
-    field = window.get_by_label(label, exact=True).locator("visible=true")
-    before = field.input_value()
-    field.fill("6o.18")
-    plan(window)
-    expect(window.locator(f"#{fault}-fault")).to_contain_text(said)
-    expect(field).to_be_focused()
-    expect(field).to_have_attribute("aria-invalid", "true")
-    expect(window.locator("#choice")).to_have_text(chosen)
-    assert shown_front(window) == front
-    field.fill(before)
-    field.press("Tab")
-    plan(window)
-    wait_until_planned(window)
-    expect(window.locator(f"#{fault}-fault")).to_be_empty()
-    expect(field).not_to_have_attribute("aria-invalid", "true")
+    for label, fault, said in TYPOS[content]:
+        front = shown_front(window)
+        field = named(window, label)
+        before = field.input_value()
+        field.fill("6o.18")
+        plan(window)
+        expect(window.locator(f"#{fault}-fault")).to_contain_text(said)
+        expect(field).to_be_focused()
+        expect(field).to_have_attribute("aria-invalid", "true")
+        expect(window.locator("#choice")).to_have_text(chosen)
+        assert shown_front(window) == front
+        field.fill(before)
+        field.press("Tab")
+        check_mended(window)
 
 
-@pytest.mark.parametrize(
-    ("content", "label", "typed", "fault", "said"),
-    [
-        (FLEET, "Count of van", "0", "vehicles", "Count of van cannot be “0”: write a whole"),
-        (FLEET, "Window of school", "12:00-8:00", "stops", "cannot be “12:00-8:00”: write two"),
-        (FLEET, "Name of stop 2", "school", "stops", "Each stop needs a name of its own"),
-        (FLEET, "Name of vehicle 1", "", "vehicles", "Each vehicle needs a name of its own"),
-        (FLEET, "Second objective", "distance", "objectives", "Each objective needs a name"),
-        (FLEET, SPEED, "-5", "objectives", "The speed of the second objective must be"),
-        (ON_EARTH, "Latitude of shop", "95", "stops", "Latitude of shop must be"),
-        (NAMED, "Name of stop 2", "depot", "stops", "Each stop needs a name of its own"),
-        (PLANES, "First objective", "", "objectives", "Each objective needs a name of its own"),
+# By form: fields, what is typed, the fault beside them, and what it says.
+REFUSED = {
+    PLANES: [("First objective", "", "objectives", "Each objective needs a name of its own")],
+    NAMED: [
+        ("Name of stop 2", "depot", "stops", "Each stop needs a name of its own"),
+        ("Seconds of planning", "100000", "time_limit", "must be at most 60"),
+    ],
+    ON_EARTH: [("Latitude of shop", "95", "stops", "Latitude of shop must be")],
+    FLEET: [
+        ("Count of van", "0", "vehicles", "Count of van cannot be “0”: write a whole"),
+        ("Window of school", "12:00-8:00", "stops", "cannot be “12:00-8:00”: write two"),
+        ("Name of stop 2", "school", "stops", "Each stop needs a name of its own"),
+        ("Name of vehicle 1", "", "vehicles", "Each vehicle needs a name of its own"),
+        ("Second objective", "distance", "objectives", "Each objective needs a name"),
+        (SPEED, "-5", "objectives", "The speed of the second objective must be"),
         (
-            FLEET,
             "Start of van",
             "yard",
             "vehicles",
             "Start of van must be the name of a stop, got “yard”",
         ),
+    ],
+    SERVED: [
         (
-            SERVED,
             "Served by of shop",
             "bike",
             "stops",
             "Served by of shop must be the name of a vehicle, got “bike”",
         ),
-        (SERVED, "Served by of shop", "van 2", "stops", "“van 2”: give that vehicle a row of its"),
-        (NAMED, "Seconds of planning", "100000", "time_limit", "must be at most 60"),
-        (DAY, "Start", "order-8", "start", "Start must be the name of a stop"),
-        (LAYERED, "Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
-        (
-            LAYERED,
-            "Name of cost layer 2",
-            "distance",
-            "cost_layers",
-            "layer needs a name of its own",
-        ),
+        ("Served by of shop", "van 2", "stops", "“van 2”: give that vehicle a row of its"),
     ],
-)
-def test_a_value_that_is_refused_keeps_the_last_plan(
-    window: Page, content: str, label: str, typed: str, fault: str, said: str
-) -> None:
-    open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
+    DAY: [("Start", "order-8", "start", "Start must be the name of a stop")],
+    LAYERED: [
+        ("Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
+        ("Name of cost layer 2", "distance", "cost_layers", "layer needs a name of its own"),
+    ],
+}
+
+
+@pytest.mark.parametrize("content", REFUSED, ids=range(len(REFUSED)))
+def test_a_value_that_is_refused_keeps_the_last_plan(window: Page, content: str) -> None:
+    open_text(window, content)
     chosen = planned_choice(window)
-    field = window.get_by_label(label, exact=True).locator("visible=true")
-    before = field.input_value()
-    field.fill(typed)
-    field.press("Tab")
-    expect(window.locator("#choice")).to_have_text(chosen)
-    plan(window)
-    expect(window.locator(f"#{fault}-fault")).to_contain_text(said)
-    expect(window.locator(f"#{fault}-fault")).to_be_in_viewport(ratio=1)
-    expect(field).to_be_focused()
-    expect(field).to_have_attribute("aria-invalid", "true")
-    expect(window.locator("#choice")).to_have_text(chosen)
-    expect(window.locator("#status")).to_contain_text("Not planned: what is shown is the plan")
-    field.fill(before)
-    field.press("Tab")
-    plan(window)
-    wait_until_planned(window)
-    expect(window.locator(f"#{fault}-fault")).to_be_empty()
+    for label, typed, place, said in REFUSED[content]:
+        field, fault = named(window, label), window.locator(f"#{place}-fault")
+        before = field.input_value()
+        field.fill(typed)
+        field.press("Tab")
+        expect(window.locator("#choice")).to_have_text(chosen)
+        plan(window)
+        expect(fault).to_contain_text(said)
+        expect(fault).to_be_in_viewport(ratio=1)
+        expect(field).to_be_focused()
+        expect(field).to_have_attribute("aria-invalid", "true")
+        expect(window.locator("#choice")).to_have_text(chosen)
+        expect(window.locator("#status")).to_contain_text("Not planned: what is shown is the plan")
+        field.fill(before)
+        field.press("Tab")
+        check_mended(window)
 
 
 def test_seconds_that_are_refused_get_no_first_try_and_no_fault_once_mended(window: Page) -> None:
@@ -260,9 +278,9 @@ def test_a_layer_is_named_as_another_was_once_that_name_is_free(window: Page) ->
 def test_no_request_is_copied_before_what_was_typed_is_mended(
     window: Page, content: str, label: str, typed: str, said: str, name: str
 ) -> None:
-    open_files(window, {"stops.json" if content.startswith("{") else "stops.csv": content})
+    open_text(window, content)
     window.evaluate("navigator.clipboard.writeText('before')")
-    field = window.get_by_label(label, exact=True).locator("visible=true")
+    field = named(window, label)
     before = field.input_value()
     field.fill(typed)
     button = window.get_by_role("button", name=f"Copy as {name}")
