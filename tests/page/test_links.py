@@ -20,6 +20,7 @@ from tests.helpers.browsing import (
     wait_until_planned,
 )
 from tests.helpers.node import Node
+from tests.helpers.sampled import at_night
 
 pytestmark = needs_chromium
 
@@ -189,7 +190,10 @@ def test_a_link_keeps_the_tour_that_was_chosen(
         expect(other.locator("#choice")).not_to_contain_text("no longer keeps")
 
 
-@pytest.mark.parametrize("example", ["warehouse-cleaning.json", "warehouse-robots.json"])
+@pytest.mark.parametrize(
+    "example",
+    [pytest.param("warehouse-cleaning.json", marks=at_night), "warehouse-robots.json"],
+)
 def test_a_link_keeps_what_was_chosen_on_a_map(
     browser: Browser, released: str, example: str
 ) -> None:

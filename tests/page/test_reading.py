@@ -18,6 +18,7 @@ from tests.helpers.browsing import (
     wait_until_planned,
     wait_until_read,
 )
+from tests.helpers.sampled import at_night
 
 pytestmark = needs_chromium
 
@@ -145,7 +146,9 @@ def test_nothing_is_planned_before_the_page_is_loaded(browser: Browser, released
         expect(button(page, "Plan")).to_be_enabled()
 
 
-@pytest.mark.parametrize("first", ["the file", "the list of examples"])
+@pytest.mark.parametrize(
+    "first", [pytest.param("the file", marks=at_night), "the list of examples"]
+)
 def test_a_bad_file_at_the_start_leaves_the_first_example(
     browser: Browser, released: str, first: str
 ) -> None:
