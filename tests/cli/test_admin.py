@@ -64,6 +64,7 @@ def test_ctrl_c_while_a_service_starts_ends_it_without_a_word(tmp_path: Path) ->
     ):
         process = psutil.Process(running.pid)
         while len(children := process.children()) < 2:  # one of multiprocessing's, and the forking
+            assert running.poll() is None
             time.sleep(0.01)
         for each in (*children, process):  # as a terminal does
             each.send_signal(signal.SIGINT)
