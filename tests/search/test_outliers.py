@@ -128,7 +128,7 @@ def usual_front() -> Array:
     return improve(with_big_leg(10, np.inf), no_tours(10)).points
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(third(6)))
 def test_forty_cities_with_big_or_forbidden_legs_are_planned_as_well_as_with_small_ones(
     seed: int,
 ) -> None:

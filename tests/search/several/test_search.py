@@ -24,6 +24,7 @@ from tests.helpers.instances import (
     small_integers,
     uniform,
 )
+from tests.helpers.sampled import at_night
 from tests.search.test_improve import covers, is_front
 
 several = pytest.mark.parametrize("objectives", [3, 4])
@@ -87,8 +88,14 @@ def test_a_front_covers_the_tours_it_began_with(kind: str, ends: str, objectives
     assert covers(found.points, tour_lengths(instance, tours))
 
 
-@pytest.mark.parametrize("n", [40, 300, 600, 2_500])
-@pytest.mark.parametrize("ends", ["closed", "both"])
+@pytest.mark.parametrize(
+    ("n", "ends"),
+    [
+        *((n, ends) for n in (40, 300, 600) for ends in ("closed", "both")),
+        (2_500, "closed"),
+        pytest.param(2_500, "both", marks=at_night),
+    ],
+)
 def test_cities_of_all_numbers_are_planned(n: int, ends: str) -> None:
     instance = uniform(n, objectives=3)
     if ends != "closed":
