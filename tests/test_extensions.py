@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -218,18 +219,25 @@ def test_the_service_says_whose_fault_it_is(packages: Path, quick_actors: dict[s
     assert again.status_code == 200
 
 
-@pytest.mark.parametrize(
-    ("points", "code", "sentence"),
-    [
-        ({}, "", "PARETOUR_CONSTRUCTORS must name entry points of the group paretour.constructors"),
-        ({"own_x": "own_x:build"}, "import no_such", "must be importable: ModuleNotFoundError"),
-        ({"own_x": "own_x:build"}, "", "must be importable: AttributeError"),
-        ({"own_x": "own_x:build"}, "build = 3", "must be a function, got 3"),
-    ],
-)
-def test_a_service_does_not_start_with_what_cannot_be_loaded(
+UNLOADABLE = [
+    ({}, "", "PARETOUR_CONSTRUCTORS must name entry points of the group paretour.constructors"),
+    ({"own_x": "own_x:build"}, "import no_such", "must be importable: ModuleNotFoundError"),
+    ({"own_x": "own_x:build"}, "", "must be importable: AttributeError"),
+    ({"own_x": "own_x:build"}, "build = 3", "must be a function, got 3"),
+]
+
+
+@pytest.mark.parametrize(("points", "code", "sentence"), UNLOADABLE)
+def test_what_cannot_be_loaded_is_refused_with_the_cause(
     packages: Path, points: dict[str, str], code: str, sentence: str
 ) -> None:
+    install(packages, "own_x", code, {CONSTRUCTORS: points})
+    with pytest.raises(ValueError, match=re.escape(sentence)):
+        load_constructors(["own_x"], {})
+
+
+def test_a_service_does_not_start_with_what_cannot_be_loaded(packages: Path) -> None:
+    points, code, sentence = UNLOADABLE[-1]
     install(packages, "own_x", code, {CONSTRUCTORS: points})
     environment = {**os.environ, "PARETOUR_CONSTRUCTORS": "own_x"}
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
