@@ -3,7 +3,7 @@
 from statistics import median
 from typing import Any
 
-from tests.benchmarks import fleet_table, growth_table, printed, routing_table, solomon_table
+from tests.benchmarks import fleet_table, growth_table, printed
 from tests.benchmarks.cells import of, share_in_seconds
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
@@ -13,8 +13,7 @@ from tests.benchmarks.scale_table import scale_table
 def section() -> str:
     """What is stored of all of these."""
     large = _large() + _scale() + growth_table.section()
-    fleets = fleet_table.section() + solomon_table.section() + routing_table.section()
-    return f"{_shapes()}\n{_literature()}\n{large}{_replan()}{fleets}"
+    return f"{_shapes()}\n{_literature()}\n{large}{_replan()}{fleet_table.section()}"
 
 
 def _shapes() -> str:

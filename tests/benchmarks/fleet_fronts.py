@@ -11,17 +11,15 @@ from service.fleet.plans import Plan
 from service.pareto import hypervolume, nondominated
 from tests.benchmarks.rows import Points
 
-Find = Callable[[Fleet, float], Sequence[Plan]]
 
-
-def timed_front(find: Find, fleet: Fleet, seconds: float) -> tuple[float, Points]:
+def timed_front(find: Callable[[], Sequence[Plan]], fleet: Fleet) -> tuple[float, Points]:
     """Return how many seconds a method took, and the nondominated points of its plans."""
     began = time.perf_counter()
-    plans = find(fleet, seconds)
+    plans = find()
     spent = time.perf_counter() - began
     check_plans(fleet, plans)
     points = points_of(fleet, plans)
-    return round(spent, 3), points[nondominated(points)]
+    return round(spent, 3), np.unique(points[nondominated(points)], axis=0)
 
 
 def check_plans(fleet: Fleet, plans: Sequence[Plan]) -> None:

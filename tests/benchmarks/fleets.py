@@ -1,157 +1,212 @@
-"""`python -m tests.benchmarks fleets`: fronts of 100 to 2,000 stops, beside searches by PyVRP.
+"""`python -m tests.benchmarks fleets`: fronts of fleets, beside PyVRP in the same seconds.
 
-Uniform fleets of one type: places uniform in a square, demands 1 to 29, capacity 200, vehicles
-enough; total against longest route, in eight seconds each on one thread. The rivals have the same
-time: the sweep of searches by PyVRP that finds fronts of the fleets that the search by ruin and
-recreate does not know, and PyVRP alone for the least total. Every plan is checked. Hypervolumes are
-in the box of the fronts that are compared.
+Everything is on one thread. We plan as `paretour.plan_fleet` does, from the request to the answer.
+Every plan is checked. The sets, of which `--sets` chooses:
 
-With `--data FOLDER`, which holds .vrp files of CVRPLIB with their .sol files, the gap of the least
-total to the best known one is measured instead, in `--seconds` each, of the whole front and of
-PyVRP alone.
+- `uniform`: places uniform in a square, demands 1 to 29, capacity 200; total against longest route.
+  PyVRP in a sweep of limits, and alone for the least total.
+- `bi-cvrp`: as in the literature on neural solvers: the unit square, demands 1 to 9, capacity 30,
+  40 and 50 at 20, 50 and 100 customers; total against longest route, also without a search.
+  PyVRP and OR-Tools in a sweep.
+- `x`: CVRPLIB X, total against longest route: how far the least total is above the best known.
+  PyVRP alone.
+- `solomon`, `homberger`, `li-lim`: distance against vehicles. PyVRP, and if `--methods` names them
+  VROOM and OR-Tools, plan twice, with the whole time for each end.
+- `longest`: six of Solomon's, distance against longest route. PyVRP in a sweep.
 
-Prints a table, and stores `results/fleets.json`; what is stored is not measured again.
+The last five are read by the service from files in the folder `--data`, or in folders in it. They
+are at CVRPLIB (X and Solomon, with .sol files of the best known routes: also in github.com/PyVRP/
+VRPLIB, tests/data/cvrplib) and at sintef.no/projectweb/top (the others: also in github.com/
+Thundercok/VRPTW-Research-Optimization, data, and github.com/akjjan/pdptw_alns, pdp_100).
+
+Prints tables, and stores `results/fleets.json`; what is stored is not measured again. All of it
+takes five hours on one quiet core: `bi-cvrp` one, `uniform` six minutes, `x` twenty, `solomon` and
+`li-lim` half an hour each, `homberger` twenty minutes, `longest` two.
 """
 
 import argparse
-import warnings
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, partial
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-import pyvrp
-import vrplib
-from pyvrp.exceptions import PenaltyBoundWarning
-from pyvrp.stop import MaxRuntime
+from paretour import Refused
+from paretour.bars import Silent
+from paretour.plans import FleetFront
+from paretour.requests import fleet_plan
 
+from service.fleet.evaluation import points_of
 from service.fleet.fleet import Fleet
-from service.fleet.fronts import FleetOptions
-from service.fleet.goal import Goal
-from service.fleet.planner import plan_fleet
-from service.fleet.plans import Plan
-from service.fleet.pyvrp_search import PyvrpSearch
-from service.fleet.rules import Rules
-from service.fleet.search.search import warm_up
-from service.fleet.translation import Translation
-from service.fleet.vehicles import VehicleType, Visit
-from service.pareto import nondominated
-from service.watch import Watch
-from tests.benchmarks.cells import of
-from tests.benchmarks.fleet_fronts import Find, share_of_box, timed_front
-from tests.benchmarks.provenance import load
-from tests.benchmarks.rows import resume
+from service.fleet.plans import Plan, Route
+from service.library.local_planner import LocalPlanner, load_planner
+from tests.benchmarks.best_known import HOMBERGER, LI_LIM, SOLOMON, names_of
+from tests.benchmarks.fleet_fronts import timed_front
+from tests.benchmarks.fleet_instances import (
+    FleetInstance,
+    bi_cvrp,
+    read_instance,
+    settings,
+    uniform,
+)
+from tests.benchmarks.fleet_table import (
+    ALONE,
+    BI_CVRP,
+    NO_SEARCH,
+    OR_TOOLS,
+    OR_TOOLS_SWEEP,
+    OURS,
+    SWEEP,
+    VROOM,
+    table_of,
+)
+from tests.benchmarks.rows import resume_beside
 
-SIZES = (100, 250, 480, 1000, 2000)
-SECONDS = 8.0
-OURS, SWEEP, ALONE = "paretour", "sweep of searches by PyVRP", "PyVRP alone"
+Find = Callable[[FleetInstance, float], Sequence[Plan]]
+
+UNIFORM = (100, 250, 480, 1000, 2000)
+X = (
+    *("X-n101-k25", "X-n200-k36", "X-n303-k21", "X-n401-k29", "X-n502-k39", "X-n599-k92"),
+    *("X-n701-k44", "X-n801-k40", "X-n895-k37", "X-n1001-k43"),
+)
+LONGEST = ("C101", "C201", "R101", "R201", "RC101", "RC201")
+_RIVALS = {  # the module and the function of each, which takes a fleet and seconds
+    SWEEP: "pyvrp_fleets.swept",
+    ALONE: "pyvrp_fleets.least_total",
+    OR_TOOLS_SWEEP: "ortools_fleets.swept",
+}
+_RIVALS_OF_ENDS = {
+    ALONE: "pyvrp_fleets.both_ends",
+    VROOM: "vroom_fleets.both_ends",
+    OR_TOOLS: "ortools_fleets.both_ends",
+}
+
+
+class Files(NamedTuple):
+    """A set that is read from files."""
+
+    names: Sequence[str]
+    seconds: float
+    methods: Sequence[str]
+    counts_vehicles: bool = True
+
+
+_ENDS = (OURS, ALONE)
+FILES = {
+    "x": Files(X, 60.0, (OURS, ALONE), counts_vehicles=False),
+    "solomon": Files(names_of(SOLOMON), 10.0, _ENDS),
+    "homberger": Files(names_of(HOMBERGER), 60.0, _ENDS),
+    "li-lim": Files(names_of(LI_LIM), 10.0, _ENDS),
+    "longest": Files(LONGEST, 10.0, (OURS, SWEEP), counts_vehicles=False),
+}
+SETS = ("uniform", "bi-cvrp", *FILES)
+
+
+class Group(NamedTuple):
+    """Instances that are one row of each method, and how long they are planned."""
+
+    name: str
+    instances: Sequence[FleetInstance]
+    seconds: float
+    methods: Sequence[str]
+    counts_vehicles: bool = False
 
 
 def main(arguments: list[str]) -> None:
     """The command line."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks fleets", description=__doc__)
-    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES)
-    parser.add_argument("--count", type=int, default=3, help="instances of each size")
-    parser.add_argument("--seconds", type=float, default=SECONDS)
-    parser.add_argument("--data", type=Path, help="a folder of .vrp files of CVRPLIB")
-    parser.add_argument("--names", nargs="+", default=[], help="of files, without .vrp")
-    options = parser.parse_args(arguments)
-    warm_up()
-    if options.data is not None:
-        for name in options.names:
-            for method in (OURS, ALONE):
-                find = partial(gap, method, options.data, options.seconds)
-                resume("fleets", f"{name}, {method}, {options.seconds:g} s", "", [name], find)
-        return
-    for n in options.sizes:
-        fleets = [uniform(n, seed) for seed in range(options.count)]
-        for name, method in METHODS.items():
-            key = f"{n} stops, {name}, {options.seconds:g} s"
-            resume("fleets", key, "", fleets, partial(measured, method, options.seconds))
-        print("\n".join(lines(n, options.seconds)))
-
-
-def uniform(n: int, seed: int) -> Fleet:
-    """The uniform fleet of n stops with this number."""
-    random = np.random.default_rng([n, seed])
-    places = 1000 * random.random((n + 1, 2))
-    demands = random.integers(1, 30, n).tolist()
-    return _fleet(np.linalg.norm(places[:, np.newaxis] - places, axis=2), demands, 200)
-
-
-def _fleet(costs: np.ndarray[Any, Any], demands: Sequence[int], capacity: int) -> Fleet:
-    rules = Rules(
-        visits=(Visit(), *(Visit(demand=(demand,)) for demand in demands)),
-        vehicles=(VehicleType(start=0, end=0, count=len(demands), capacity=(capacity,)),),
-        over=("sum", "max"),
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.add_argument("--sets", nargs="+", choices=SETS, default=SETS)
+    parser.add_argument("--data", type=Path, help="a folder of the files of instances")
+    parser.add_argument(
+        "--names", nargs="+", default=[], help="of files, in capitals, without .txt"
     )
-    return Fleet(rules=rules, costs=np.stack([costs, costs]))
+    parser.add_argument("--sizes", type=int, nargs="+", default=[], help="of recipes")
+    parser.add_argument("--count", type=int, help="instances of each size: 3, or of bi-cvrp 200")
+    parser.add_argument("--seconds", type=float, help="by default as said for each set")
+    parser.add_argument("--methods", nargs="+", default=[], help="names of rows")
+    options = parser.parse_args(arguments)
+    if options.data is None and set(options.sets) & set(FILES):
+        parser.error(f"{', '.join(set(options.sets) & set(FILES))}: --data must name a folder")
+    ours(bi_cvrp(10, 0), 0.1)  # compiled before it is timed
+    for name in options.sets:
+        for group in _groups(name, options):
+            _measure(name, group, options)
+        print(table_of(name))
 
 
-def measured(find: Find, seconds: float, fleet: Fleet) -> dict[str, Any]:
-    """Seconds, and the points of the plans found."""
-    spent, points = timed_front(find, fleet, seconds)
-    return {"seconds": spent, "points": points.round(6).tolist()}
+def _groups(name: str, options: argparse.Namespace) -> Iterator[Group]:
+    """Yield the groups of instances of a set."""
+    if name == "uniform":
+        for n in options.sizes or UNIFORM:
+            made = [uniform(n, seed) for seed in range(options.count or 3)]
+            yield Group(f"{n} stops", made, 8.0, (OURS, SWEEP, ALONE))
+    elif name == "bi-cvrp":
+        for n in options.sizes or BI_CVRP:
+            made = [bi_cvrp(n, seed) for seed in range(options.count or 200)]
+            methods = (NO_SEARCH, OURS, SWEEP, OR_TOOLS_SWEEP)
+            yield Group(f"{n} customers", made, BI_CVRP[n].seconds, methods)
+    else:
+        files = FILES[name]
+        for each in options.names or files.names:
+            read = read_instance(options.data, each, counts_vehicles=files.counts_vehicles)
+            yield Group(each, [read], files.seconds, files.methods, files.counts_vehicles)
 
 
-def ours(fleet: Fleet, seconds: float) -> Sequence[Plan]:
-    """The plans of plan_fleet(...)."""
-    return plan_fleet(fleet, FleetOptions(time_limit=seconds)).plans
+def _measure(name: str, group: Group, options: argparse.Namespace) -> None:
+    """Measure a group by all methods, one instance after another, and store the rows."""
+    seconds = options.seconds or group.seconds
+    measures = {}
+    for method in options.methods or group.methods:
+        limit = 0.0 if method == NO_SEARCH else seconds
+        find = _method(method, group.counts_vehicles)
+        measures[f"{name}: {group.name}, {method}, {limit:g} s"] = partial(measured, find, limit)
+    resume_beside("fleets", measures, group.instances)
 
 
-def swept(fleet: Fleet, seconds: float) -> Sequence[Plan]:
-    """The plans of a sweep of searches by PyVRP."""
-    options = FleetOptions(time_limit=seconds)
-    search = PyvrpSearch(fleet, options, Watch(seconds))
-    return search.front(options.size, search.run()).plans
+def _method(name: str, counts_vehicles: bool) -> Find:
+    """Return a method by its name. The libraries of others are imported where they are used."""
+    if name in (OURS, NO_SEARCH):
+        return ours
+    rivals = _RIVALS_OF_ENDS if counts_vehicles else _RIVALS
+    module, _, function = rivals[name].partition(".")
+    find: Callable[[Fleet, float], list[Plan]] = getattr(
+        import_module(f"tests.benchmarks.rivals.{module}"), function
+    )
+    return lambda instance, seconds: find(instance.fleet, seconds)
 
 
-def alone(fleet: Fleet, seconds: float) -> Sequence[Plan]:
-    """The plan of the least total that PyVRP finds."""
-    translation = Translation(fleet)
-    translation.scales = [1e4 / fleet.costs.max()] * 2  # its penalties are made for this
-    data = translation.data(Goal(weights=translation.sum_weights))
-    with warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning):
-        result = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False, display=False)
-    return [translation.plan(result.best)]
+def measured(find: Find, seconds: float, instance: FleetInstance) -> dict[str, Any]:
+    """Return the seconds it took, the points of the plans found, and the least distance known."""
+    spent, points = timed_front(partial(find, instance, seconds), instance.fleet)
+    found = {"seconds": spent, "points": points.round(6).tolist()}
+    known = instance.least_known
+    return found if known is None else {**found, "least_known": known}
 
 
-METHODS: dict[str, Find] = {OURS: ours, SWEEP: swept, ALONE: alone}
+def ours(instance: FleetInstance, seconds: float) -> list[Plan]:
+    """Return the plans of the answer; none where it is that none was found."""
+    try:
+        planned = _planner().plan(
+            fleet_plan({**instance.request, "time_limit": seconds}),  # type: ignore[typeddict-item]
+            Silent(),
+        )
+    except Refused as refused:
+        if refused.code != "no-plan":
+            raise
+        return []
+    front = planned.front()
+    assert isinstance(front, FleetFront)
+    numbers = {stop["id"]: number for number, stop in enumerate(instance.request["stops"])}
+    plans = [
+        Plan(tuple(Route(0, tuple(numbers[stop] for stop in each.stops[1:-1])) for each in routes))
+        for routes in (plan.routes for plan in front.plans)
+    ]
+    np.testing.assert_allclose(front.lengths, points_of(instance.fleet, plans), rtol=1e-9)
+    return plans
 
 
-def gap(method: str, folder: Path, seconds: float, name: str) -> dict[str, Any]:
-    """The gap of the least total to the best known one, and the number of plans."""
-    read = vrplib.read_instance(folder / f"{name}.vrp")
-    known = float(vrplib.read_solution(folder / f"{name}.sol")["cost"])
-    costs = np.round(read["edge_weight"]).astype(float)
-    fleet = _fleet(costs, [int(each) for each in read["demand"][1:]], int(read["capacity"]))
-    found = measured(METHODS[method], seconds, fleet)
-    least = min(point[0] for point in found["points"])
-    return {
-        "seconds": found["seconds"],
-        "gap": round(least / known - 1, 5),
-        "plans": len(found["points"]),
-    }
-
-
-def lines(n: int, seconds: float) -> list[str]:
-    """A line for each method: hypervolume in the box of all fronts, least total, plans."""
-    stored = load("fleets")
-    fronts = {name: of(stored.get(f"{n} stops, {name}, {seconds:g} s")) for name in METHODS}
-    count = min(map(len, fronts.values()))
-    text = [f"{n} stops, {count} instances, {seconds:g} s"]
-    rows: dict[str, list[tuple[float, ...]]] = {name: [] for name in METHODS}
-    for instance in range(count):
-        found = {name: np.array(each[instance]["points"]) for name, each in fronts.items()}
-        both = np.vstack([found[OURS], found[SWEEP]])
-        both = both[nondominated(both)]
-        least = min(points[:, 0].min() for points in found.values())
-        for name, points in found.items():
-            volume = share_of_box(points, both)
-            rows[name].append((volume, points[:, 0].min() / least - 1, len(points)))
-    for name, values in rows.items():
-        volume, above, plans = np.mean(values, axis=0)
-        of_front = f"hypervolume {volume:.3f}, {plans:.0f} plans, " if name != ALONE else ""
-        text.append(f"  {name}: {of_front}least total {100 * above:.2f} % above the least found")
-    return text
+@cache
+def _planner() -> LocalPlanner:
+    return load_planner(settings())

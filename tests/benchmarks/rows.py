@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -52,11 +52,28 @@ def resume(
     and take the place of the stored ones once they are as many. Beside the results it
     stores where they come from, and how many programs wanted the processor when they began.
     """
+    resume_beside(benchmark, {key: measure}, instances, digest)
+
+
+def resume_beside(
+    benchmark: str,
+    measures: Mapping[str, Callable[[Each], Any]],
+    instances: Sequence[Each],
+    digest: str = "",
+) -> None:
+    """Measures rows as `resume` does, one instance after another: each in all rows by their keys.
+
+    So what else the machine does is the same for all of them.
+    """
     results = load(benchmark)
-    if of_run.RUN.again or results.get(key, {}).get("digest") != digest:
-        busy = round(os.getloadavg()[0] / (os.cpu_count() or 1), 1)
-        results[key] = {**provenance(1), "digest": digest, "busy": busy, "instances": []}
-    entries = results[key]["instances"]
-    for instance in tqdm(instances[len(entries) :], desc=key, leave=False):
-        entries.append(measure(instance))
-        store(benchmark, results)
+    for key in measures:
+        if of_run.RUN.again or results.get(key, {}).get("digest") != digest:
+            busy = round(os.getloadavg()[0] / (os.cpu_count() or 1), 1)
+            results[key] = {**provenance(1), "digest": digest, "busy": busy, "instances": []}
+    title = next(iter(measures)) if len(measures) == 1 else os.path.commonprefix(list(measures))
+    for index, instance in enumerate(tqdm(instances, desc=title, leave=False)):
+        for key, measure in measures.items():
+            entries = results[key]["instances"]
+            if len(entries) == index:
+                entries.append(measure(instance))
+                store(benchmark, results)

@@ -7,11 +7,30 @@ import numpy as np
 from numpy.typing import NDArray
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
+from service.fleet.evaluation import points_of
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from tests.benchmarks.rivals.ortools_routing import FINENESS
+from tests.benchmarks.rivals.twice import cheapest_twice
 
 _FINE = 1000  # whole units of a cost of 1
+_LIMITS = 12  # of a sweep, the first of which is none
+
+
+def swept(fleet: Fleet, seconds: float) -> list[Plan]:
+    """Return the plans under evenly spaced limits on the longest route, down to the least."""
+    least = 2 * float(fleet.costs[0, 0].max())
+    free = route_fleet(fleet, np.inf, seconds / _LIMITS)
+    if free is None:
+        return []
+    limits = np.linspace(points_of(fleet, [free])[0, 1], least, _LIMITS)[1:]
+    limited = (route_fleet(fleet, limit, seconds / _LIMITS) for limit in limits)
+    return [free, *(plan for plan in limited if plan is not None)]
+
+
+def both_ends(fleet: Fleet, seconds: float) -> list[Plan]:
+    """Return the plans for the least distance, and for the fewest vehicles, in `seconds` each."""
+    return cheapest_twice(route_in_time, fleet, seconds)
 
 
 def route_fleet(fleet: Fleet, limit: float, seconds: float) -> Plan | None:

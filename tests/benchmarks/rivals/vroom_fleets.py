@@ -8,10 +8,16 @@ import vroom
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.vehicles import Span
+from tests.benchmarks.rivals.twice import cheapest_twice
 
 _FINE = 1000  # whole units of a cost of 1
 _MOST = 2**31 - 1
 _LEVEL = 5  # the greatest that it explores
+
+
+def both_ends(fleet: Fleet, seconds: float) -> list[Plan]:
+    """Return the plans for the least distance, and for the fewest vehicles, in `seconds` each."""
+    return cheapest_twice(route_by_vroom, fleet, seconds)
 
 
 def route_by_vroom(fleet: Fleet, vehicle_cost: float, seconds: float) -> Plan | None:
