@@ -114,9 +114,11 @@ def _boxes(rows: Rows) -> str:
         count = min(len(of(entry)) for entry in entries.values())
         fronts = {method: _fronts(entry)[:count] for method, entry in entries.items()}
         volumes, above = _compared(list(fronts.values()))
+        compared = len(fronts.keys() - {ALONE}) > 1
         for number, (method, of_method) in enumerate(fronts.items()):
             sizes = np.mean([len(front) for front in of_method])
-            of_front = ["", ""] if method == ALONE else [f"{volumes[number]:.3f}", f"{sizes:.0f}"]
+            volume = f"{volumes[number]:.3f}" if compared else MISSING
+            of_front = ["", ""] if method == ALONE else [volume, f"{sizes:.0f}"]
             above_least = f"{100 * above[number]:.2f} %"
             seconds = mean_seconds(entries[method])
             lines.append([f"{group} ({count})", method, *of_front, above_least, f"{seconds} s"])

@@ -70,8 +70,7 @@ def resume_beside(
         if of_run.RUN.again or results.get(key, {}).get("digest") != digest:
             busy = round(os.getloadavg()[0] / (os.cpu_count() or 1), 1)
             results[key] = {**provenance(1), "digest": digest, "busy": busy, "instances": []}
-    title = next(iter(measures)) if len(measures) == 1 else os.path.commonprefix(list(measures))
-    for index, instance in enumerate(tqdm(instances, desc=title, leave=False)):
+    for index, instance in enumerate(tqdm(instances, desc=next(iter(measures)), leave=False)):
         for key, measure in measures.items():
             entries = results[key]["instances"]
             if len(entries) == index:

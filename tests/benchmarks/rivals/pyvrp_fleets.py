@@ -46,23 +46,24 @@ def both_ends(fleet: Fleet, seconds: float) -> list[Plan]:
     if not least.is_feasible():
         return []
     began = time.perf_counter()
-    count = _fewest(problem, least.num_routes(), MaxRuntime(_REDUCING * seconds))
-    left = seconds - (time.perf_counter() - began)
-    return problem.kept([least, _solved(problem.with_vehicles(count), MaxRuntime(left))])
+    fewest = _of_fewest(problem, least, MaxRuntime(_REDUCING * seconds))
+    data = problem.with_vehicles(fewest.num_routes())
+    left = max(0.0, seconds - (time.perf_counter() - began))
+    return problem.kept([least, _solved(data, MaxRuntime(left), begun=_moved(fewest, data))])
 
 
-def _fewest(problem: "_Problem", count: int, stop: MaxRuntime) -> int:
-    """Return how few vehicles are found to do, of `count` that do.
+def _of_fewest(problem: "_Problem", solution: pyvrp.Solution, stop: MaxRuntime) -> pyvrp.Solution:
+    """Return a solution with as few vehicles as are found to do.
 
     As `pyvrp.minimise_fleet`, which fails where one vehicle does for shipments.
     """
-    while count > problem.least_vehicles:
-        fewer = problem.with_vehicles(count - 1)
+    while solution.num_routes() > problem.least_vehicles:
+        fewer = problem.with_vehicles(solution.num_routes() - 1)
         found = _solved(fewer, MultipleCriteria([FirstFeasible(), stop]))
         if not found.is_feasible():
-            return count
-        count = found.num_routes()
-    return count
+            break
+        solution = found
+    return solution
 
 
 def swept(fleet: Fleet, seconds: float) -> list[Plan]:
@@ -78,8 +79,7 @@ def swept(fleet: Fleet, seconds: float) -> list[Plan]:
     longest = _longest(plan)
     for limit in np.linspace(longest, problem.least_limit, _LIMITS)[1:]:
         data = problem.limited(int(limit))
-        begun = pyvrp.Solution(data, [_moved(route, data) for route in plan.routes()])
-        found = _solved(data, MaxRuntime(share), front, begun)
+        found = _solved(data, MaxRuntime(share), front, _moved(plan, data))
         plan = found if found.is_feasible() else plan
     return problem.kept([solution for _, solution in front.found])
 
@@ -233,8 +233,10 @@ def _longest(solution: pyvrp.Solution) -> int:
     return max(max(route.duration(), route.distance()) for route in solution.routes())
 
 
-def _moved(route: pyvrp.Route, data: pyvrp.ProblemData) -> pyvrp.Route:
-    return pyvrp.Route(data, _visits(route), 0)
+def _moved(solution: pyvrp.Solution, data: pyvrp.ProblemData) -> pyvrp.Solution:
+    """Return a solution as one of other data of the same fleet."""
+    routes = [pyvrp.Route(data, _visits(route), 0) for route in solution.routes()]
+    return pyvrp.Solution(data, routes)
 
 
 def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
