@@ -20,8 +20,8 @@ VRPLIB, tests/data/cvrplib) and at sintef.no/projectweb/top (the others: also in
 Thundercok/VRPTW-Research-Optimization, data, and github.com/akjjan/pdptw_alns, pdp_100).
 
 Prints tables, and stores `results/fleets.json`; what is stored is not measured again. All of it
-takes five hours on one quiet core: `bi-cvrp` one, `uniform` six minutes, `x` twenty, `solomon` and
-`li-lim` half an hour each, `homberger` twenty minutes, `longest` two.
+takes under three hours on one quiet core: `bi-cvrp` one, `solomon` and `li-lim` half an hour each,
+`x` and `homberger` 20 minutes each, `uniform` six and `longest` two.
 """
 
 import argparse

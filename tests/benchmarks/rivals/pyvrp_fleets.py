@@ -106,8 +106,8 @@ class _Problem:
             [self._client(stop) for stop in self._clients],
             [pyvrp.Depot(0)],
             [kind],
-            [legs],  # type: ignore[list-item]  # PyVRP's stub means arrays of integers
-            [legs if self._timed else np.zeros_like(legs)],  # type: ignore[list-item]
+            [legs],
+            [legs if self._timed else np.zeros_like(legs)],
             shipments=list(self._shipments()),
         )
         loads = [sum(rules.visits[stop].demand) for stop in self._clients]
@@ -243,6 +243,6 @@ def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
     return list(route.schedule()[1:-1])
 
 
-def _quiet() -> warnings.catch_warnings:  # type: ignore[type-arg]
+def _quiet() -> warnings.catch_warnings:
     """Ignore the warning that few plans are found under a tight limit."""
     return warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning)
