@@ -1,6 +1,5 @@
 """plan_fleet(...): from a fleet to its front of plans."""
 
-from collections.abc import Iterable
 from itertools import chain
 
 from service.construction.first_tours import Constructor
@@ -10,13 +9,12 @@ from service.fleet.enumeration import MOST_STOPS, exact_plans, is_enumerable, so
 from service.fleet.evaluation import violations
 from service.fleet.first_plans import Cutter, network_sequences, plain_plans
 from service.fleet.fleet import Fleet
-from service.fleet.fleet_search import BRIEF, FleetSearch
+from service.fleet.fleet_search import BRIEF
 from service.fleet.fronts import FleetOptions, front_of
 from service.fleet.left_out import with_all_stops
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan
-from service.fleet.pyvrp_search import PyvrpSearch
-from service.fleet.search.search import RuinSearch, is_searched
+from service.fleet.search.search import RuinSearch
 from service.watch import Watch
 
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
@@ -92,29 +90,17 @@ def _completed(fleet: Fleet, plan: Plan) -> Plan | None:
 
 def _searched(fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> FleetFront:
     """Return the front that a search finds; if it found none, a front of one plain plan."""
-    search = _search_of(fleet, options, watch)
-    terminated = search.run()
-    plans: Iterable[Plan] = ()
-    if not len(search) and terminated != "cancelled" and fleet.rules.has_bounds:
-        search = PyvrpSearch(fleet, options, watch, loose=True)
-        if plan := _tried(fleet, watch):
-            plans = [plan]
-            search.begin_with(plan)
-        terminated = search.run()
-    if not len(search) and terminated != "cancelled":
-        for plan in chain(plans, plain_plans(fleet, watch.stopped)):
-            if not violations(fleet, plan):
-                return front_of(fleet, options, [plan], terminated, watch)
-    return search.front(options.size, terminated)
-
-
-def _search_of(fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> FleetSearch:
-    """Return the search for the rules of a fleet, which starts from a driven plan if one is."""
-    search = (RuinSearch if is_searched(fleet.rules) else PyvrpSearch)(fleet, options, watch)
+    search = RuinSearch(fleet, options, watch)
     driven = None if options.driven is None else _completed(fleet, options.driven)
     if driven is not None:
         search.begin_with(driven)
-    return search
+    terminated = search.run()
+    if not len(search) and terminated != "cancelled":
+        tried = _tried(fleet, watch)
+        for plan in chain([tried] if tried else [], plain_plans(fleet, watch.stopped)):
+            if not violations(fleet, plan):
+                return front_of(fleet, options, [plan], terminated, watch)
+    return search.front(options.size, terminated)
 
 
 def _tried(fleet: Fleet, watch: Watch[FleetFront]) -> Plan | None:

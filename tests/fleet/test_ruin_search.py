@@ -1,7 +1,6 @@
-"""The search by ruin and recreate against brute force, in small fleets of all rules it knows."""
+"""The search by ruin and recreate against brute force, in small fleets of all rules."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import inf
 from operator import le
 
@@ -12,13 +11,14 @@ from service.fleet.evaluation import plan_lengths, points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.plans import FleetFront
-from service.fleet.search.search import RuinSearch, is_searched
+from service.fleet.search.search import RuinSearch
 from service.watch import Watch
 from tests.helpers.fleets import (
     bounded_fleet,
     exact_front,
     mixed_fleet,
     random_fleet,
+    shipping_fleet,
 )
 from tests.helpers.sampled import third
 
@@ -29,22 +29,13 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
     return search
 
 
-def plainer(fleet: Fleet) -> Fleet:
-    """Return a fleet without the rules that the search does not know."""
-    rules = fleet.rules
-    vehicles = tuple(replace(each, reload=(), max_trips=None, breaks=()) for each in rules.vehicles)
-    rules = replace(rules, vehicles=vehicles, shipments=())
-    return Fleet(rules=rules, costs=fleet.costs)
-
-
-@pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet, mixed_fleet])
+@pytest.mark.parametrize("fleet_of", [random_fleet, bounded_fleet, mixed_fleet, shipping_fleet])
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
     fleet_of: Callable[[int], Fleet],
 ) -> None:
     tried = same = 0
     for seed in range(third(90)):
-        fleet = plainer(fleet_of(seed))
-        assert is_searched(fleet.rules)
+        fleet = fleet_of(seed)
         expected = exact_front(fleet)
         search = searched(fleet)
         plans = [search.plan_at(index) for index in range(len(search))]

@@ -97,9 +97,29 @@ def mixed_fleet(seed: int) -> Fleet:
     return _bounded(seed, *MIXED[seed % len(MIXED)])
 
 
-def _bounded(seed: int, over: Objectives, layers: tuple[int, ...]) -> Fleet:
+def shipping_fleet(seed: int) -> Fleet:
+    """Return a fleet of a shipment and one to three other stops, with some of all bounds."""
+    fleet = _bounded(seed, *MIXED[seed % len(MIXED)], least=3)
+    visits, rules = list(fleet.rules.visits), fleet.rules
+    first, second, *_ = rules.clients
+    plain = dataclasses.replace(visits[first], windows=visits[first].windows[:1], release=0.0)
+    visits[first] = plain
+    visits[second] = dataclasses.replace(
+        visits[second], windows=visits[second].windows[:1], release=0.0, demand=(), prize=None
+    )
+    vehicles = tuple(
+        dataclasses.replace(each, reload=(), max_trips=None, max_stops=None)
+        for each in rules.vehicles
+    )
+    shipped = dataclasses.replace(
+        rules, visits=tuple(visits), vehicles=vehicles, shipments=(Shipment(first, second),)
+    )
+    return Fleet(rules=shipped, costs=fleet.costs)
+
+
+def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 2) -> Fleet:
     random = np.random.default_rng(seed)
-    n = int(random.integers(2, 4))
+    n = int(random.integers(least, least + 2))
     costs = random.integers(1, 20, (2, n + 2, n + 2)).astype(float)
 
     def likely(share: float = 0.4) -> bool:

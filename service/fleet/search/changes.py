@@ -28,6 +28,7 @@ def save_slot(problem: Problem, plan: WorkingPlan, slot: int) -> None:
     node, size = plan.next[start], 0
     while node != start + 1:
         plan.saved_stops[counts[SAVED_STOPS]] = node
+        plan.saved_via[counts[SAVED_STOPS]] = plan.via[node]
         counts[SAVED_STOPS] += 1
         size += 1
         node = plan.next[node]
@@ -64,8 +65,11 @@ def restore(state: State) -> None:
     while counts[OUTSIDE] > 0:
         take_in(problem, plan, plan.outside[counts[OUTSIDE] - 1])
     for place in range(counts[SAVED_OUTSIDE]):
-        leave_out(problem, plan, plan.saved_outside[place])
-        plan.route[plan.saved_outside[place]] = -1
+        stop = plan.saved_outside[place]
+        leave_out(problem, plan, stop)
+        plan.route[stop] = plan.via[stop] = -1
+        if problem.delivery[stop] >= 0:
+            plan.route[problem.delivery[stop]] = -1
     first = 0
     for number in range(counts[SAVED]):
         slot = plan.saved[number]
@@ -75,6 +79,7 @@ def restore(state: State) -> None:
             stop = plan.saved_stops[place]
             plan.next[before], plan.previous[stop] = stop, before
             plan.route[stop] = slot
+            plan.via[stop] = plan.saved_via[place]
             before = stop
         plan.next[before], plan.previous[end] = end, before
         first += plan.saved_size[number]

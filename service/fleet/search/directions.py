@@ -8,7 +8,7 @@ found so far under it, and is annealed.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -74,6 +74,7 @@ class Directions:
         left: Callable[[], float],
         ruins: int,
     ) -> None:
+        self._fleet = fleet
         self._rules = fleet.rules
         self._over = fleet.rules.over
         self._scale = fleet.scale
@@ -90,6 +91,12 @@ class Directions:
         weights = np.full(len(self._over), _LESSER)
         weights[0] = 1.0
         return self._step(weights / self._scale, {}, _LEAST_ROUNDS)
+
+    def loose(self, step: Step) -> Step:
+        """Return a step in which routes may be too long or end too late, at a price."""
+        largest = float(self._fleet.largest_legs[self._rules.limited or 0])
+        beyond = _STRICT * step.cooled / _COLDEST / (largest or 1.0)
+        return replace(step, direction=step.direction._replace(beyond=beyond))
 
     def steps(self) -> Iterator[Step]:
         """Yield the directions; each must be searched before the next is requested."""
@@ -279,6 +286,7 @@ class Directions:
             load_distance=by_measure.get("load_distance", 0.0),
             longest=longest,
             penalty=penalty,
+            beyond=0.0,
             required=_DEAR * unit + float(weights[0]) * self._most_fixed,
             routes=routes,
             bounds=bounds,

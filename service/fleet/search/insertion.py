@@ -1,52 +1,28 @@
-"""Find where a stop costs the least: in the routes of its neighbours, or in one of its own."""
+"""Find where a stop costs the least: in the routes of its neighbours, or in one of its own.
 
-from typing import NamedTuple
+A vehicle that may load again may do so just before or just after the stop.
+"""
 
-import numpy as np
-
-from service.fleet.rounding import is_over
 from service.fleet.search.problem import (
-    FIRST,
-    LATENESS,
-    LOADED,
-    RELEASED,
-    SECOND,
     Problem,
 )
-from service.fleet.search.route import (
-    Values,
-    begin_at,
-    head_at,
-    joined,
-    route_cost,
-    stay,
-    tail_at,
-)
+from service.fleet.search.spots import Place, Spot, better_at, nowhere
 from service.fleet.search.working_plan import (
     BLINKS,
+    MORE_TRIPS,
     TRY,
     UNTIL_BLINK,
     USED,
     State,
     WorkingPlan,
     free_slot,
-    leg,
 )
 from service.jit import compiled, inlined
 from service.search.local_search import random_below
 
-_is_over = inlined(is_over)
-
 _NEIGHBOURS = 30  # beside which a stop is tried
+_MORE_TRIPS = 10  # one time in so many, one trip more is tried where the stop fits without
 _FEW = 8  # of them that are in routes: then all routes are tried
-
-
-class Place(NamedTuple):
-    """Where a stop may go: what it costs there, the slot, and the node before it."""
-
-    cost: float
-    slot: int
-    before: int
 
 
 @inlined
@@ -55,8 +31,8 @@ def best_place(state: State, stop: int, most: float) -> Place:
 
     One place in `counts[BLINKS]` is passed by, on the mean.
     """
-    problem, plan, direction = state
-    best = Place(most, -1, -1)
+    problem, plan, _ = state
+    best = nowhere(most)
     plan.counts[TRY] += 1
     tried = 0
     neighbours = min(_NEIGHBOURS, problem.near.shape[1])
@@ -72,13 +48,19 @@ def best_place(state: State, stop: int, most: float) -> Place:
         best = _better(state, stop, slot, plan.previous[beside], best)
     if tried < _FEW or best.slot < 0:
         best = _anywhere(state, stop, best)
-    if plan.counts[USED] < direction.routes:
-        for kind in range(len(problem.capacity)):
-            slot = free_slot(problem, plan, kind)
-            if slot >= 0 and has_room(problem, plan, stop, slot):
-                start = len(problem.demand) + 2 * slot
-                best = _better(state, stop, slot, start, best)
-    return best
+    for kind in range(len(problem.capacity)):
+        slot = new_slot(state, kind)
+        if slot >= 0 and has_room(problem, plan, stop, slot):
+            best = _better(state, stop, slot, len(problem.demand) + 2 * slot, best)
+    # Of two equal places that in a route of its own is the better: it depends on nothing.
+    return _between_trips(state, stop, best) if plan.counts[MORE_TRIPS] > 0 else best
+
+
+@inlined
+def new_slot(state: State, kind: int) -> int:
+    """Return the slot of a vehicle of a type for one more route; -1 if there may be none."""
+    problem, plan, direction = state
+    return free_slot(problem, plan, kind) if plan.counts[USED] < direction.routes else -1
 
 
 @inlined
@@ -97,15 +79,47 @@ def _anywhere(state: State, stop: int, best: Place) -> Place:
     return best
 
 
+@compiled
+def _between_trips(state: State, stop: int, best: Place) -> Place:
+    """Return the cheapest place after the last stop of each trip, where a new one may begin."""
+    problem, plan, _ = state
+    n = len(problem.demand)
+    for number in range(plan.counts[USED]):
+        slot = plan.used[number]
+        if not has_room(problem, plan, stop, slot):
+            continue
+        node = n + 2 * slot
+        while node != n + 2 * slot + 1:
+            after = plan.next[node]
+            if after >= n or plan.via[after] >= 0:
+                best = _better(state, stop, slot, node, best)
+            node = after
+    return best
+
+
 @inlined
 def has_room(problem: Problem, plan: WorkingPlan, stop: int, slot: int) -> bool:
-    """Return whether a vehicle can carry one more stop's load."""
+    """Return whether a vehicle may be able to carry one more stop's load."""
     kind = problem.kind[slot]
     fits = True
+    if problem.ships or plan.counts[MORE_TRIPS] > 0 or plan.trips[slot] > 1:
+        for dimension in range(plan.load.shape[1]):
+            fits &= problem.demand[stop, dimension] <= problem.whole[kind, dimension]
+        return fits
     for dimension in range(plan.load.shape[1]):
         load = plan.load[slot, dimension] + problem.demand[stop, dimension]
         fits &= load <= problem.capacity[kind, dimension]
     return fits
+
+
+@inlined
+def blinks(plan: WorkingPlan) -> bool:
+    """Return whether to pass by a place: at random, one in `counts[BLINKS]` on the mean."""
+    plan.counts[UNTIL_BLINK] -= 1
+    if plan.counts[UNTIL_BLINK] > 0:
+        return False
+    plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
+    return True
 
 
 @inlined
@@ -117,116 +131,103 @@ def _better(
     best: Place,
 ) -> Place:
     """Return the better of two places: the best so far, and that after a node."""
-    plan = state.plan
+    problem, plan, _ = state
     if plan.tried[before] == plan.counts[TRY]:
         return best
     plan.tried[before] = plan.counts[TRY]
-    plan.counts[UNTIL_BLINK] -= 1
-    if plan.counts[UNTIL_BLINK] <= 0:
-        plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
+    if blinks(plan):
         return best
-    cost = insertion_cost(state, stop, slot, before, best.cost)
-    return Place(cost, slot, before) if cost < best.cost else best
+    if problem.reloads:
+        return _with_reloads(state, stop, slot, before, best)
+    if problem.ships and not _ships_too(problem, plan, stop, slot, before):
+        return best
+    return better_at(state, stop, Spot(slot, before, -1, -1), best)
+
+
+@inlined
+def _ships_too(problem: Problem, plan: WorkingPlan, stop: int, slot: int, before: int) -> bool:
+    """Return whether a vehicle with shipments can bring one more stop's load after a node."""
+    kind, fits = problem.kind[slot], True
+    for dimension in range(plan.most.shape[1]):
+        load = plan.most[before, dimension] + problem.demand[stop, dimension]
+        fits &= load <= problem.capacity[kind, dimension]
+    return fits
 
 
 @compiled
-def insertion_cost(state: State, stop: int, slot: int, before: int, most: float) -> float:
-    """Return what the cost of a route grows by with a stop after a node; inf if a rule forbids it.
+def _with_reloads(state: State, stop: int, slot: int, before: int, best: Place) -> Place:
+    """Return the better of two places: the best so far, and after a node, maybe with a reload."""
+    problem, plan, _ = state
+    kind, after = problem.kind[slot], plan.next[before]
+    known = plan.via[after]
+    fits = _brings(state, stop, slot, before, False)
+    if fits:
+        best = better_at(state, stop, Spot(slot, before, -1, known), best)
+    if known >= 0 and _brings(state, stop, slot, after, False):
+        fits = True
+        best = better_at(state, stop, Spot(slot, before, known, -1), best)
+    if plan.counts[MORE_TRIPS] == 0 or (fits and random_below(plan.random, _MORE_TRIPS) > 0):
+        return best
+    for number in range(problem.reload.shape[1]):
+        if problem.reload[kind, number] >= 0 and plan.trips[slot] < problem.trips[kind]:
+            spot = Spot(slot, before, problem.reload[kind, number], known)
+            best = _loading(state, stop, spot, best)
+    return best
 
-    What costs at least `most` may be told as more. If a visit is due, a route may turn out longer:
-    then its vehicle cannot leave as late as is assumed here.
+
+@inlined
+def _loading(state: State, stop: int, spot: Spot, best: Place) -> Place:
+    """Return the better of two places: the best so far, and a spot with one reload more.
+
+    The vehicle loads at `spot.via` before the stop, after it, or both.
     """
-    problem, plan, direction = state
-    after = plan.next[before]
-    a, b = problem.place[before], problem.place[after]
-    first = leg(problem, a, stop, 0) + leg(problem, stop, b, 0) - plan.step[after, 0]
-    if first >= 0.5 * problem.forbidden:
-        return np.inf
-    second = leg(problem, a, stop, 1) + leg(problem, stop, b, 1) - plan.step[after, 1]
-    loaded = plan.value[slot, LOADED]
-    if direction.load_distance > 0:
-        loaded += _loaded(problem, plan, stop, before, first)
-    first += plan.value[slot, FIRST]
-    second += plan.value[slot, SECOND]
-    kind, end = problem.kind[slot], 0.0
-    if problem.clock >= 0:
-        time, end = _timed(problem, plan, stop, slot, before)
-        if time == np.inf:
-            return np.inf
-        first = time if problem.clock == 0 else first
-        second = time if problem.clock == 1 else second
-    if _is_over(first if problem.limited == 0 else second, problem.longest[kind], end):
-        return np.inf
-    overtime = max(0.0, end - problem.shift_end[kind])
-    late = plan.value[slot, LATENESS]
-    cost = route_cost(state, kind, Values(first, second, overtime, late, loaded))
-    cost -= plan.cost[slot]
-    if cost < most and (problem.choice or direction.lateness > 0):
-        later = _lateness(problem, plan, slot, stop, before)
-        return np.inf if later == np.inf else cost + direction.lateness * (later - late)
-    return cost
+    problem, plan, _ = state
+    slot, before, via, known = spot
+    kind = problem.kind[slot]
+    if _begins(state, stop, kind, before, known >= 0):
+        best = better_at(state, stop, spot, best)
+    if known >= 0 or plan.next[before] >= len(problem.demand):
+        return best
+    if _brings(state, stop, slot, before, True):
+        best = better_at(state, stop, Spot(slot, before, -1, via), best)
+    if plan.trips[slot] + 1 < problem.trips[kind] and _begins(state, stop, kind, before, True):
+        best = better_at(state, stop, Spot(slot, before, via, via), best)
+    return best
 
 
 @inlined
-def _loaded(problem: Problem, plan: WorkingPlan, stop: int, before: int, detour: float) -> float:
-    """Return what loads times distances grow by with a stop after a node."""
-    to = plan.along[before] + leg(problem, problem.place[before], stop, 0)
-    return problem.demand[stop, 0] * to + plan.ahead[plan.next[before]] * detour
+def _brings(state: State, stop: int, slot: int, node: int, ending: bool) -> bool:
+    """Return whether the trip of a node has room for a stop, maybe if it ends after the node."""
+    problem, plan, _ = state
+    kind, fits = problem.kind[slot], True
+    for dimension in range(plan.on.shape[1]):
+        load = plan.on[node, dimension] if ending else plan.most[node, dimension]
+        most = problem.whole[kind, dimension]
+        if problem.capacity[kind, dimension] < most and _is_first(problem, plan, node):
+            most = problem.capacity[kind, dimension]
+        fits &= load + problem.demand[stop, dimension] <= most
+    return fits
 
 
 @inlined
-def _timed(
-    problem: Problem, plan: WorkingPlan, stop: int, slot: int, before: int
-) -> tuple[float, float]:
-    """Return the time that a route takes with a stop after a node, and when it ends.
+def _is_first(problem: Problem, plan: WorkingPlan, node: int) -> bool:
+    """Return whether a node is on the first trip of its route."""
+    while node < len(problem.demand):
+        if plan.via[node] >= 0:
+            return False
+        node = plan.previous[node]
+    return True
 
-    The time is infinite where a window is missed.
+
+@inlined
+def _begins(state: State, stop: int, kind: int, before: int, ended: bool) -> bool:
+    """Return whether a trip can begin with a stop, and bring what this trip brings after a node.
+
+    If the trip has ended there, it brings the stop alone.
     """
-    after = plan.next[before]
-    there = leg(problem, problem.place[before], stop, problem.clock)
-    span, kept = joined(head_at(plan, before), there, stay(problem, stop))
-    if not kept:
-        return np.inf, 0.0
-    onward = leg(problem, stop, problem.place[after], problem.clock)
-    span, kept = joined(span, onward, tail_at(plan, after))
-    departs = max(span.early, problem.release[stop], plan.value[slot, RELEASED])
-    end = departs + span.time
-    if not kept or _is_over(departs, span.late, end):
-        return np.inf, 0.0
-    return span.time, end
-
-
-@inlined
-def _lateness(problem: Problem, plan: WorkingPlan, slot: int, stop: int, before: int) -> float:
-    """Return the lateness of a route with a stop after a node; infinite if a window is missed."""
-    end = len(problem.demand) + 2 * slot + 1
-    late, ready, node = plan.late[before], plan.ready[before], before
-    released = problem.release[stop]
-    if released > plan.value[slot, RELEASED] and released > problem.departs[problem.kind[slot]]:
-        # The vehicle leaves later, so all times change.
-        late, ready, node = 0.0, released, end - 1
-        while node != before:
-            ready, late = _visited(problem, node, plan.next[node], ready, late)
-            node = plan.next[node]
-    ready, late = _visited(problem, before, stop, ready, late)
-    here, node = stop, plan.next[before]
-    while node != end:
-        ready, late = _visited(problem, here, node, ready, late)
-        if ready <= plan.ready[node]:
-            return late + plan.late[end] - plan.late[node]
-        here, node = node, plan.next[node]
-    ready += leg(problem, problem.place[here], problem.place[end], problem.clock)
-    missed = ready == np.inf or _is_over(ready, problem.returns[problem.kind[slot]])
-    return np.inf if missed else late
-
-
-@inlined
-def _visited(
-    problem: Problem, node: int, stop: int, ready: float, late: float
-) -> tuple[float, float]:
-    """Return when the visit of a stop ends, and the lateness after it."""
-    way = leg(problem, problem.place[node], stop, problem.clock)
-    begin = begin_at(problem, stop, ready + way)
-    if _is_over(begin, problem.due[stop]):
-        late += begin - problem.due[stop]
-    return begin + problem.service[stop], late
+    problem, plan, _ = state
+    fits = True
+    for dimension in range(plan.on.shape[1]):
+        load = 0 if ended else plan.most[before, dimension] - plan.on[before, dimension]
+        fits &= load + problem.demand[stop, dimension] <= problem.whole[kind, dimension]
+    return fits

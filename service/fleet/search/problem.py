@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Rules
-from service.fleet.vehicles import Visit
+from service.fleet.vehicles import VehicleType, Visit
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Nodes = NDArray[np.int32]
+Flags = NDArray[np.bool_]
 
 MEASURES = (
     "sum",
@@ -57,19 +58,34 @@ class Problem(NamedTuple):
     prize: Array  # (n,), infinite where a stop must be visited
     near: Nodes  # (n, k), the nearest stops of each stop to visit, from the nearest on
     clients: Nodes  # (c,), the stops to visit
+    visited: Flags  # (n,), whether each stop is one of them
+    tasks: Nodes  # (t,), those that are inserted: all but deliveries, which come with pick-ups
+    ships: bool  # whether there are shipments
+    shipped: Flags  # (n,), whether each stop is in one
+    delivery: Nodes  # (n,), where the load of each pick-up goes; -1 for other stops
+    pickup: Nodes  # (n,), where the load of each delivery is from
     place: Nodes  # (n + 2 r,), the stop at which each node is; -1 for anywhere
     kind: Indices  # (r,), the type of the vehicle of each slot
     slots: Indices  # (v + 1,), the first slot of each type
     capacity: Indices  # (v, d), without the initial load
+    whole: Indices  # (v, d), with it
+    reloads: bool  # whether some vehicles may load again
+    reload: Indices  # (v, x), the stops at which each type may; -1 after the last
+    trips: Indices  # (v,), the most trips of a route
+    rests: Indices  # (v,), the number of breaks
+    breaks: Array  # (v, b, 3), the earliest and the latest begin of each, and how long it takes
     initial: Indices  # (v,), the initial load in the first dimension
     departs: Array  # (v,)
     leaves_by: Array  # (v,)
     returns: Array  # (v,), with overtime
     shift_end: Array  # (v,)
     longest: Array  # (v,)
+    most_length: Array  # (v,), the same, where a loose search may exceed it: see loosened()
+    most_overtime: Array  # (v,)
     fixed: Array  # (v,)
     over: Indices  # (m,), by MEASURES
     column: Indices  # (m,), of the values of a route
+    tried: Flags  # (v,), whether only a trial says what a stop costs in a route
 
 
 def problem_of(fleet: Fleet) -> Problem:
@@ -77,6 +93,7 @@ def problem_of(fleet: Fleet) -> Problem:
     rules, loads = fleet.rules, loads_of(fleet.rules)
     visits, vehicles = rules.visits, rules.vehicles
     clients = np.array(rules.clients, np.int32)
+    delivery, pickup = _shipped(rules)
     counts = [min(vehicle.count, len(clients)) for vehicle in vehicles]
     kind = np.repeat(np.arange(len(vehicles)), counts)
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in vehicles]
@@ -100,20 +117,77 @@ def problem_of(fleet: Fleet) -> Problem:
         prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
         near=_nearest(fleet, clients),
         clients=clients,
+        visited=np.isin(np.arange(rules.n), clients),
+        tasks=clients[pickup[clients] < 0],
+        ships=bool(rules.shipments),
+        shipped=(delivery >= 0) | (pickup >= 0),
+        delivery=delivery,
+        pickup=pickup,
         place=np.concatenate((np.arange(rules.n), np.array(ends)[kind].ravel())).astype(np.int32),
         kind=kind,
         slots=np.concatenate(([0], np.cumsum(counts))),
         capacity=loads.capacity - loads.initial,
+        whole=loads.capacity,
+        reloads=rules.reloads,
+        reload=_padded([vehicle.reload for vehicle in vehicles]),
+        trips=np.array([rules.n if v.max_trips is None else v.max_trips for v in vehicles]),
+        rests=np.array([len(vehicle.breaks) for vehicle in vehicles]),
+        breaks=_breaks(vehicles),
         initial=np.array([(each.initial_load or (0,))[0] for each in vehicles]),
         departs=_floats([vehicle.way[0] for vehicle in vehicles]),
         leaves_by=_floats([min(v.leaves_by, v.way[1]) for v in vehicles]),
         returns=_floats([vehicle.way[1] for vehicle in vehicles]),
         shift_end=_floats([vehicle.shift[1] for vehicle in vehicles]),
         longest=_floats([vehicle.longest for vehicle in vehicles]),
+        most_length=_floats([vehicle.longest for vehicle in vehicles]),
+        most_overtime=_floats([vehicle.max_overtime for vehicle in vehicles]),
         fixed=_floats([vehicle.fixed for vehicle in vehicles]),
         over=np.array([MEASURES.index(over) for over in rules.over]),
         column=np.array([_column(rules, index) for index in range(len(rules.over))]),
+        tried=np.array([_is_tried(rules, vehicle) for vehicle in vehicles]),
     )
+
+
+def loosened(problem: Problem) -> Problem:
+    """Return a problem whose routes may be too long or end too late, at a price."""
+    endless = np.full(len(problem.longest), np.inf)
+    return problem._replace(longest=endless, returns=endless)
+
+
+def _shipped(rules: Rules) -> tuple[Nodes, Nodes]:
+    """Return the delivery of each pick-up, and the pick-up of each delivery; -1 for others."""
+    delivery, pickup = np.full(rules.n, -1, np.int32), np.full(rules.n, -1, np.int32)
+    for each in rules.shipments:
+        delivery[each.pickup], pickup[each.delivery] = each.delivery, each.pickup
+    return delivery, pickup
+
+
+def _padded(rows: Sequence[Sequence[int]]) -> Indices:
+    """Return rows of one length, with -1 after the last number of each."""
+    padded = np.full((len(rows), max(map(len, rows))), -1)
+    for row, numbers in zip(padded, rows, strict=True):
+        row[: len(numbers)] = numbers
+    return padded
+
+
+def _breaks(vehicles: Sequence[VehicleType]) -> Array:
+    """Return the breaks of each type of vehicles, shape (v, b, 3)."""
+    found = np.zeros((len(vehicles), max(len(each.breaks) for each in vehicles), 3))
+    for row, vehicle in zip(found, vehicles, strict=True):
+        row[: len(vehicle.breaks)] = np.reshape(vehicle.breaks, (-1, 3))
+    return found
+
+
+def _is_tried(rules: Rules, vehicle: VehicleType) -> bool:
+    """Return whether a stop in a route may cost something else than what is known along it says.
+
+    It may where the vehicle has breaks, or where it loads again and times or loads on the way
+    depend on what all of a trip brings.
+    """
+    if not vehicle.reload:
+        return bool(vehicle.breaks)
+    timed = any(v.release or v.due < np.inf or len(v.windows) > 1 for v in rules.visits)
+    return bool(vehicle.breaks) or timed or "load_distance" in rules.over
 
 
 def _windows(visits: Sequence[Visit]) -> Array:
@@ -169,6 +243,7 @@ class Direction(NamedTuple):
     load_distance: float
     longest: float  # the limit on the length of a route in the swept costs
     penalty: float
+    beyond: float  # price of each unit by which a route is too long or ends too late, if it may
     required: float  # price of a stop outside that must be visited, at first
     routes: int  # at most
     bounds: Array  # (m,), on the lengths of a plan

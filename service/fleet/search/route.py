@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
+from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
     FIRST,
     LATENESS,
@@ -15,12 +16,14 @@ from service.fleet.search.problem import (
     Array,
     Problem,
 )
+from service.fleet.search.rests import rested
 from service.fleet.search.working_plan import (
     USED,
     State,
     WorkingPlan,
     leg,
     mark_used,
+    way,
 )
 from service.jit import compiled, inlined
 
@@ -103,8 +106,25 @@ def route_cost(state: State, kind: int, values: Values) -> float:
         + direction.lateness * values.lateness
         + direction.load_distance * values.loaded
     )
+    if direction.beyond > 0:
+        cost += direction.beyond * beyond_rules(problem, kind, values)
     length = values.first if problem.swept == 0 else values.second
     return cost + direction.penalty * max(0.0, length - direction.longest)
+
+
+@inlined
+def beyond_rules(problem: Problem, kind: int, values: Values) -> float:
+    """Return by how much a route is too long, and ends too late."""
+    length = values.first if problem.limited == 0 else values.second
+    late = max(0.0, values.overtime - problem.most_overtime[kind])
+    return late + max(0.0, length - problem.most_length[kind])
+
+
+@inlined
+def values_of(plan: WorkingPlan, slot: int) -> Values:
+    """Return the values of a route."""
+    value = plan.value[slot]
+    return Values(value[FIRST], value[SECOND], value[OVERTIME], value[LATENESS], value[LOADED])
 
 
 @compiled
@@ -116,17 +136,34 @@ def measure(state: State, slot: int) -> bool:
         _set_empty(problem, plan, slot, start)
         return True
     mark_used(plan, slot)
-    fits = _gather(problem, plan, slot, start)
+    fits = gather(problem, plan, slot, start)
     first, second = _sum_legs(problem, plan, slot, start)
     fits &= first < problem.forbidden
+    duration = 0.0
     if problem.clock >= 0:
         duration, in_time = _forward(problem, plan, slot, start)
         _backward(problem, plan, start, problem.kind[slot])
         fits &= in_time
-        first = duration if problem.clock == 0 else first
-        second = duration if problem.clock == 1 else second
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
-    return _set_cost(state, slot, start + 1) and fits
+    if problem.clock >= 0:
+        plan.value[slot, problem.clock] = duration
+    fits &= _set_cost(state, slot, start + 1)
+    plan.plain[slot] = plan.cost[slot]
+    if fits and problem.rests[problem.kind[slot]] > 0:
+        return _rest(state, slot, start + 1)
+    return fits
+
+
+@inlined
+def _rest(state: State, slot: int, end: int) -> bool:
+    """Work out the cost of a route with the breaks of its vehicle; return whether they fit."""
+    problem, plan, _ = state
+    times = rested(problem, plan, slot)
+    if times.end == np.inf:
+        return False
+    plan.ready[end], plan.late[end] = times.end, times.late
+    plan.value[slot, problem.clock] = times.duration
+    return _set_cost(state, slot, end)
 
 
 @inlined
@@ -137,7 +174,7 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
     apart from those of measure(), which is due when the plan is kept.
     """
     problem, plan, direction = state
-    if problem.clock >= 0 or direction.load_distance > 0:
+    if problem.clock >= 0 or problem.ships or problem.reloads or direction.load_distance > 0:
         return measure(state, slot)
     mark_used(plan, slot)
     before, after = plan.previous[stop], plan.next[stop]
@@ -153,7 +190,9 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
         fits &= plan.load[slot, dimension] <= capacity
     plan.size[slot] += 1
     fits &= plan.value[slot, FIRST] < problem.forbidden
-    return _set_cost(state, slot, len(problem.demand) + 2 * slot + 1) and fits
+    fits &= _set_cost(state, slot, len(problem.demand) + 2 * slot + 1)
+    plan.plain[slot] = plan.cost[slot]
+    return fits
 
 
 @inlined
@@ -166,10 +205,8 @@ def _set_cost(state: State, slot: int, end: int) -> bool:
         reach = plan.ready[end]
         overtime = max(0.0, reach - problem.shift_end[kind])
     plan.value[slot, OVERTIME], plan.value[slot, LATENESS] = overtime, plan.late[end]
-    first, second = plan.value[slot, FIRST], plan.value[slot, SECOND]
-    values = Values(first, second, overtime, plan.late[end], plan.value[slot, LOADED])
-    plan.cost[slot] = route_cost(state, kind, values)
-    length = first if problem.limited == 0 else second
+    plan.cost[slot] = route_cost(state, kind, values_of(plan, slot))
+    length = plan.value[slot, FIRST] if problem.limited == 0 else plan.value[slot, SECOND]
     return not _is_over(length, problem.longest[kind], reach)
 
 
@@ -185,9 +222,11 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
         plan.use[last] = place
         plan.use[slot] = -1
     plan.size[slot] = 0
-    plan.cost[slot] = 0.0
+    plan.cost[slot] = plan.plain[slot] = 0.0
+    plan.trips[slot] = 1
     for dimension in range(plan.load.shape[1]):
         plan.load[slot, dimension] = 0
+        plan.on[start, dimension] = plan.most[start, dimension] = 0
     for column in range(plan.value.shape[1]):
         plan.value[slot, column] = 0.0
     kind = problem.kind[slot]
@@ -202,48 +241,29 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
 
 
 @inlined
-def _gather(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> bool:
-    """Sum what a route carries, from its end on; return whether its vehicle can."""
-    kind = problem.kind[slot]
-    for dimension in range(plan.load.shape[1]):
-        plan.load[slot, dimension] = 0
-    size, released = 0, 0.0
-    ahead = problem.initial[kind]
-    plan.ahead[start + 1] = ahead
-    node = plan.previous[start + 1]
-    while node != start:
-        for dimension in range(plan.load.shape[1]):
-            plan.load[slot, dimension] += problem.demand[node, dimension]
-        if plan.load.shape[1] > 0:
-            ahead += problem.demand[node, 0]
-        plan.ahead[node] = ahead
-        released = max(released, problem.release[node])
-        size += 1
-        node = plan.previous[node]
-    plan.size[slot] = size
-    plan.value[slot, RELEASED] = released
-    fits = True
-    for dimension in range(plan.load.shape[1]):
-        fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]
-    return fits
-
-
-@inlined
 def _sum_legs(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tuple[float, float]:
     """Return the sums of both costs of the legs; write what is known of the first up to each."""
     first = second = loaded = 0.0
+    first_trip = True
     plan.along[start] = 0.0
     at, node = problem.place[start], start
     while node != start + 1:
         node = plan.next[node]
-        there = problem.place[node]
-        way = leg(problem, at, there, 0)
-        if plan.load.shape[1] > 0:
-            loaded += way * plan.ahead[node]
-        plan.step[node, 0] = way
-        first += way
+        there, via = problem.place[node], plan.via[node]
+        if via >= 0:
+            # What was on board from the start, if anything, is unloaded there.
+            away, kind = leg(problem, at, via, 0), problem.kind[slot]
+            loaded += away * (problem.initial[kind] if first_trip else 0)
+            plan.step[node, 0] = away + leg(problem, via, there, 0)
+            loaded += (plan.step[node, 0] - away) * plan.ahead[node]
+            first_trip = False
+        else:
+            plan.step[node, 0] = leg(problem, at, there, 0)
+            if plan.load.shape[1] > 0:
+                loaded += plan.step[node, 0] * plan.ahead[node]
+        first += plan.step[node, 0]
         plan.along[node] = first
-        plan.step[node, 1] = leg(problem, at, there, 1)
+        plan.step[node, 1] = way(problem, at, via, there, 1)
         second += plan.step[node, 1]
         at = there
     plan.value[slot, LOADED] = loaded
@@ -265,17 +285,22 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     _set_span(plan.head, start, span)
     ready, late = departs, 0.0
     plan.ready[start], plan.late[start] = ready, late
-    node = plan.next[start]
+    at, node = problem.place[start], plan.next[start]
     while node != end:
-        way = plan.step[node, problem.clock]
-        begin = begin_at(problem, node, ready + way)
+        leg_to = plan.step[node, problem.clock]
+        if plan.via[node] >= 0:
+            away = leg(problem, at, plan.via[node], problem.clock)
+            leg_to -= away
+            span, _ = joined(span, away, Span(0.0, plan.released[node], np.inf))
+            ready = max(ready + away, plan.released[node])
+        begin = begin_at(problem, node, ready + leg_to)
         if _is_over(begin, problem.due[node]):
             late += begin - problem.due[node]
         ready = begin + problem.service[node]
-        span, _ = joined(span, way, stay(problem, node))
+        span, _ = joined(span, leg_to, stay(problem, node))
         _set_span(plan.head, node, span)
         plan.ready[node], plan.late[node] = ready, late
-        node = plan.next[node]
+        at, node = node, plan.next[node]
     ready += plan.step[end, problem.clock]
     plan.ready[end], plan.late[end] = ready, late
     if not in_time or ready == np.inf or _is_over(ready, problem.returns[kind]):
@@ -317,7 +342,13 @@ def _backward(problem: Problem, plan: WorkingPlan, start: int, kind: int) -> Non
     _set_span(plan.tail, end, span)
     node = plan.previous[end]
     while node != start:
-        way = plan.step[plan.next[node], problem.clock]
-        span, _ = joined(stay(problem, node), way, span)
+        after = plan.next[node]
+        leg_from = plan.step[after, problem.clock]
+        if plan.via[after] >= 0:
+            away = leg(problem, node, plan.via[after], problem.clock)
+            onward = leg_from - away
+            span, _ = joined(Span(0.0, plan.released[after], np.inf), onward, span)
+            leg_from = away
+        span, _ = joined(stay(problem, node), leg_from, span)
         _set_span(plan.tail, node, span)
         node = plan.previous[node]

@@ -28,7 +28,10 @@ from service.jit import compiled, inlined
 
 @compiled
 def write_row(problem: Problem, plan: WorkingPlan, row: Nodes) -> None:
-    """Write a plan as a row: for each route the type of its vehicle as -2 - type, and its stops."""
+    """Write a plan as a row: for each route the type of its vehicle as -2 - type, and its stops.
+
+    Stops at which it loads again are among them.
+    """
     n, place = len(problem.demand), 0
     for number in range(plan.counts[USED]):
         slot = plan.used[number]
@@ -36,6 +39,9 @@ def write_row(problem: Problem, plan: WorkingPlan, row: Nodes) -> None:
         place += 1
         node = plan.next[n + 2 * slot]
         while node < n:
+            if plan.via[node] >= 0:
+                row[place] = plan.via[node]
+                place += 1
             row[place] = node
             place += 1
             node = plan.next[node]
@@ -50,25 +56,25 @@ def load_row(state: State, row: Nodes) -> None:
     problem, plan, _ = state
     n = len(problem.demand)
     clear(state)
-    for slot in range(len(problem.kind)):
-        plan.touched[slot] = 0
-    slot, before = -1, -1
+    slot, before, via = -1, -1, -1
     for place in range(len(row)):
         stop = row[place]
         if stop == -1:
             break
         if stop < -1:
-            if slot >= 0:
-                measure(state, slot)
             slot = free_slot(problem, plan, -2 - stop)
             before = n + 2 * slot
             mark_used(plan, slot)
+        elif not problem.visited[stop]:
+            via = stop
         else:
-            take_in(problem, plan, stop)
+            if problem.pickup[stop] < 0:
+                take_in(problem, plan, stop)
             link(plan, slot, stop, before)
-            before = stop
-    if slot >= 0:
-        measure(state, slot)
+            plan.via[stop] = via
+            before, via = stop, -1
+    for number in range(plan.counts[USED]):
+        measure(state, plan.used[number])
 
 
 @compiled
@@ -77,13 +83,14 @@ def clear(state: State) -> None:
     problem, plan, _ = state
     n = len(problem.demand)
     for slot in range(len(problem.kind)):
+        plan.touched[slot] = 0
         start, end = n + 2 * slot, n + 2 * slot + 1
         plan.next[start], plan.previous[end] = end, start
         measure(state, slot)
     for number in range(len(problem.clients)):
         stop = problem.clients[number]
-        plan.route[stop] = -1
-        if plan.out[stop] < 0:
+        plan.route[stop] = plan.via[stop] = -1
+        if plan.out[stop] < 0 and problem.pickup[stop] < 0:
             leave_out(problem, plan, stop)
 
 

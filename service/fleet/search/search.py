@@ -12,20 +12,13 @@ from service.fleet.fronts import FleetOptions
 from service.fleet.plans import FleetFront, Plan, Route, steps_of
 from service.fleet.rules import Rules
 from service.fleet.scales import Units
+from service.fleet.search.annealing import anneal
 from service.fleet.search.directions import Directions, Step
 from service.fleet.search.found import Driven, Found, offer
-from service.fleet.search.problem import Nodes, Problem, problem_of
+from service.fleet.search.problem import Nodes, Problem, loosened, problem_of
+from service.fleet.search.recreate import FAR, NEAR, RANDOM, SOON, insert_all, set_prices
 from service.fleet.search.rows import clear, load_row, write_point, write_row
-from service.fleet.search.ruin_and_recreate import (
-    FAR,
-    NEAR,
-    RANDOM,
-    SOON,
-    anneal,
-    insert_all,
-    limit_routes,
-    set_prices,
-)
+from service.fleet.search.ruin import limit_routes
 from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
 from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
@@ -38,13 +31,6 @@ _STILL = 0.1  # share of the rounds of a step at its end that accept nothing tha
 _FIRST_ORDERS = NEAR, FAR, SOON, RANDOM  # in which the stops of a first plan are inserted
 _FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
 _IDLE_STEPS = 72  # steps without a new plan, after which it ends
-
-
-def is_searched(rules: Rules) -> bool:
-    """Return whether the search knows all rules of a fleet."""
-    return not (
-        rules.shipments or rules.reloads or any(vehicle.breaks for vehicle in rules.vehicles)
-    )
 
 
 class RuinSearch(FleetSearch):
@@ -106,7 +92,8 @@ class RuinSearch(FleetSearch):
     def _fewest_left_out(self) -> int:
         if not len(self) or not np.isfinite(self._problem.prize).any():
             return 0
-        visited = (self._archives.plans.tours[self._rows] >= 0).sum(axis=1).max()
+        rows = self._archives.plans.tours[self._rows]
+        visited = (self._problem.visited[rows] & (rows >= 0)).sum(axis=1).max()
         return len(self._problem.clients) - int(visited)
 
     def begin_with(self, plan: Plan) -> None:
@@ -171,7 +158,10 @@ class RuinSearch(FleetSearch):
 
     def _search(self, step: Step) -> bool:
         """Search in a direction, and return whether to end."""
-        state, row = self._state_of(step), self._archives.row
+        problem = self._problem
+        if self._rounds and not len(self) and self._fleet.rules.has_bounds:
+            problem, step = loosened(problem), self._directions.loose(step)
+        state, row = State(problem, self._working, step.direction), self._archives.row
         if step.start is None:
             write_row(self._problem, self._working, row)
         else:
@@ -208,9 +198,12 @@ class RuinSearch(FleetSearch):
 
 
 def _width(problem: Problem) -> int:
-    """Return the most numbers of a plan's row: its stops, a type for each route, and an end."""
+    """Return the most numbers of a plan's row: its stops, a type for each route, and an end.
+
+    Before each stop a vehicle may load again.
+    """
     clients = len(problem.clients)
-    return clients + min(len(problem.kind), clients) + 1
+    return clients * (1 + problem.reloads) + min(len(problem.kind), clients) + 1
 
 
 def _plan_of(row: Nodes) -> Plan:

@@ -9,9 +9,11 @@ from service.jit import compiled, inlined
 
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
 # what is saved; the number of the iteration; stops to insert; in how many places one is passed by,
-# and how many come before the next; and the number of the stop that is inserted, of all so far.
+# and how many come before the next; and the number of the stop that is inserted, of all so far;
+# whether vehicles may begin one trip more.
 USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
-BLINKS, UNTIL_BLINK, TRY = 8, 9, 10
+BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS = 8, 9, 10, 11
+MOST_STATES = 24  # ways to have taken so many breaks up to a stop, of which none is always better
 
 
 class WorkingPlan(NamedTuple):
@@ -20,9 +22,13 @@ class WorkingPlan(NamedTuple):
     next: Nodes  # (n + 2 r,), by node
     previous: Nodes
     route: Nodes  # (n,), the slot whose route visits a stop; -1 if none does
+    via: Indices  # (n + 2 r,), by node: the stop at which its vehicle loads on the way to it, or -1
     step: Array  # (n + 2 r, 2), by node: both costs of the leg to it
     along: Array  # (n + 2 r,), by node: the first costs since the start
-    ahead: Indices  # (n + 2 r,), the load in the first dimension that is brought from here on
+    ahead: Indices  # (n + 2 r,), the load on the leg to here, in the first dimension
+    on: Indices  # (n + 2 r, d), with shipments the load on board after the visit, with reloads
+    most: Indices  # what this trip has brought; and the most load up to here, or of this trip
+    released: Array  # (n + 2 r,), when the load of the trip that begins on the way is released
     ready: Array  # (n + 2 r,), when the visit ends at the earliest
     late: Array  # (n + 2 r,), the lateness up to here
     head: Array  # (n + 2 r, 3), the route up to here: see joined()
@@ -32,6 +38,16 @@ class WorkingPlan(NamedTuple):
     load: Indices  # (r, d)
     value: Array  # (r, 6): length in both costs, overtime, lateness, load times distance, release
     cost: Array  # (r,), under the direction
+    plain: Array  # (r,), the same without breaks
+    trips: Indices  # (r,)
+    least: Array  # (n + 1,), scratch space for reloads: see reloads.py
+    begins: Indices  # (n + 1,)
+    loads_at: Indices  # (n + 1,)
+    vias: Indices  # (n,)
+    held: Indices  # (d,)
+    state: Array  # (b + 1, s, 5), scratch space for breaks: see rests.py
+    spare: Array  # (s, 5)
+    states: Indices  # (b + 1,)
     used: Nodes  # (r,), the slots with stops, in any order
     use: Nodes  # (r,), the place of each slot in `used`; -1 if it has no stops
     outside: Nodes  # (n,), the stops outside, in any order
@@ -43,9 +59,11 @@ class WorkingPlan(NamedTuple):
     saved: Nodes  # (r,), slots that changed
     saved_size: Nodes  # (r,)
     saved_stops: Nodes  # (n,)
+    saved_via: Nodes  # (n,)
     saved_outside: Nodes  # (n,)
     touched: Indices  # (r,), by slot: the iteration that changed it last
-    counts: Indices  # (11,)
+    ruined: Indices  # (n,), by stop: the iteration that last took stops out of its trip
+    counts: Indices  # (12,)
     random: Indices  # (1,)
 
 
@@ -60,23 +78,37 @@ class State(NamedTuple):
 def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
     """Return a plan that leaves out all stops."""
     n, r = len(problem.demand), len(problem.kind)
-    nodes = n + 2 * r
+    nodes, d, breaks = n + 2 * r, problem.demand.shape[1], problem.breaks.shape[1]
     plan = WorkingPlan(
         next=np.arange(1, nodes + 1, dtype=np.int32),
         previous=np.arange(-1, nodes - 1, dtype=np.int32),
         route=_nothing(n),
+        via=np.full(nodes, -1),
         step=np.zeros((nodes, 2)),
         along=np.zeros(nodes),
         ahead=np.zeros(nodes, np.int64),
+        on=np.zeros((nodes, d), np.int64),
+        most=np.zeros((nodes, d), np.int64),
+        released=np.zeros(nodes),
         ready=np.zeros(nodes),
         late=np.zeros(nodes),
         head=np.zeros((nodes, 3)),
         tail=np.zeros((nodes, 3)),
         tried=np.zeros(nodes, np.int64),
         size=np.zeros(r, np.int32),
-        load=np.zeros((r, problem.demand.shape[1]), np.int64),
+        load=np.zeros((r, d), np.int64),
         value=np.zeros((r, 6)),
         cost=np.zeros(r),
+        plain=np.zeros(r),
+        trips=np.ones(r, np.int64),
+        least=np.zeros(n + 1),
+        begins=np.zeros(n + 1, np.int64),
+        loads_at=np.zeros(n + 1, np.int64),
+        vias=np.zeros(n, np.int64),
+        held=np.zeros(d, np.int64),
+        state=np.zeros((breaks + 1, MOST_STATES, 5)),
+        spare=np.zeros((MOST_STATES, 5)),
+        states=np.zeros(breaks + 1, np.int64),
         used=_nothing(r),
         use=_nothing(r),
         outside=_nothing(n),
@@ -88,12 +120,14 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved=_nothing(r),
         saved_size=_nothing(r),
         saved_stops=_nothing(n),
+        saved_via=_nothing(n),
         saved_outside=_nothing(n),
         touched=np.zeros(r, np.int64),
-        counts=np.zeros(11, np.int64),
+        ruined=np.zeros(n, np.int64),
+        counts=np.zeros(12, np.int64),
         random=np.array([_mixed(seed)], np.int64),
     )
-    for stop in problem.clients.tolist():
+    for stop in problem.tasks.tolist():
         plan.out[stop] = plan.counts[OUTSIDE]
         plan.outside[plan.counts[OUTSIDE]] = stop
         plan.counts[OUTSIDE] += 1
@@ -116,6 +150,14 @@ def leg(problem: Problem, a: int, b: int, layer: int) -> float:
     if a < 0 or b < 0:
         return 0.0
     return float(problem.costs[a, b, layer])
+
+
+@inlined
+def way(problem: Problem, a: int, via: int, b: int, layer: int) -> float:
+    """Return a cost of the way between two places, through a third unless that is -1."""
+    if via < 0:
+        return leg(problem, a, b, layer)
+    return leg(problem, a, via, layer) + leg(problem, via, b, layer)
 
 
 @inlined
@@ -159,10 +201,14 @@ def link(plan: WorkingPlan, slot: int, stop: int, before: int) -> None:
 
 @inlined
 def unlink(plan: WorkingPlan, stop: int) -> None:
-    """Take a stop out of its route."""
+    """Take a stop out of its route. Where its vehicle loads before it, it loads before the next."""
     before, after = plan.previous[stop], plan.next[stop]
     plan.next[before], plan.previous[after] = after, before
     plan.route[stop] = -1
+    if plan.via[stop] >= 0:
+        if plan.via[after] < 0 and after < len(plan.route):
+            plan.via[after] = plan.via[stop]
+        plan.via[stop] = -1
 
 
 @compiled

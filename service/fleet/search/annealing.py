@@ -1,0 +1,101 @@
+"""Change a plan by ruin and recreate, and accept what is made by simulated annealing."""
+
+import math
+
+from service.fleet.rounding import is_over
+from service.fleet.search.changes import begin_iteration, measure_changed, restore
+from service.fleet.search.found import Found, offer
+from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_outside
+from service.fleet.search.route import values_of
+from service.fleet.search.rows import write_point
+from service.fleet.search.ruin import ruin, uniform
+from service.fleet.search.working_plan import (
+    MISSING,
+    MORE_TRIPS,
+    USED,
+    State,
+    total_cost,
+)
+from service.jit import compiled, inlined
+from service.search.local_search import random_below
+
+_is_over = inlined(is_over)
+
+_MORE_TRIPS = 4  # one iteration in so many lets vehicles load once more
+
+
+@compiled
+def anneal(
+    state: State,
+    found: Found,
+    ruins: int,
+    heat: float,
+    cooling: float,
+) -> float:
+    """Ruin and recreate a plan so many times, and offer each plan that is made.
+
+    Args:
+        state: The fleet, the plan to change, and what counts.
+        found: Gets all plans that visit all required stops and are nondominated.
+        ruins: How often.
+        heat: The temperature at first.
+        cooling: The factor of the temperature in each iteration.
+
+    Returns:
+        The temperature at the end.
+    """
+    problem, plan, _ = state
+    beyond = _beyond(state, found)
+    for _ in range(ruins):
+        before = total_cost(plan) + beyond
+        begin_iteration(plan)
+        try_outside(plan)
+        ruin(state)
+        more = problem.reloads and random_below(plan.random, _MORE_TRIPS) == 0
+        plan.counts[MORE_TRIPS] = more
+        recreate(state, random_below(plan.random, ORDERS))
+        exceeding = _beyond(state, found)
+        after = total_cost(plan) + exceeding
+        if plan.counts[MISSING] > 0:
+            raise_prices(state)
+        elif keeps_rules(state):
+            offer(problem, plan, found)
+        if after > before - heat * math.log(uniform(plan.random)):
+            restore(state)
+        else:
+            beyond = exceeding
+            measure_changed(state)
+        heat *= cooling
+    return heat
+
+
+@inlined
+def keeps_rules(state: State) -> bool:
+    """Return whether no route is too long, or ends too late."""
+    problem, plan, direction = state
+    if direction.beyond > 0:
+        for number in range(plan.counts[USED]):
+            slot = plan.used[number]
+            values, kind = values_of(plan, slot), problem.kind[slot]
+            length = values.first if problem.limited == 0 else values.second
+            reach = plan.ready[len(problem.demand) + 2 * slot + 1]
+            if _is_over(length, problem.most_length[kind], reach):
+                return False
+            if _is_over(values.overtime, problem.most_overtime[kind], reach):
+                return False
+    return True
+
+
+@inlined
+def _beyond(state: State, found: Found) -> float:
+    """Write the point of a plan, and return what it costs that it is beyond bounds."""
+    problem, plan, direction = state
+    if plan.counts[MISSING] > 0:
+        return 0.0
+    write_point(problem, plan, found.point)
+    cost = 0.0
+    for objective in range(len(direction.bounds)):
+        if found.point[objective] > direction.bounds[objective]:
+            excess = found.point[objective] - direction.bounds[objective]
+            cost += direction.strict[objective] * excess
+    return cost

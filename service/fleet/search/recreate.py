@@ -1,0 +1,183 @@
+"""Put the stops that are outside a plan into it, each where it costs the least."""
+
+import numpy as np
+
+from service.fleet.search.changes import begin_iteration, save_slot
+from service.fleet.search.insertion import best_place
+from service.fleet.search.pairs import best_pair
+from service.fleet.search.problem import Problem
+from service.fleet.search.reloads import load_anew
+from service.fleet.search.route import measure, measure_with
+from service.fleet.search.ruin import uniform
+from service.fleet.search.spots import Place, Spot, put, take_back
+from service.fleet.search.working_plan import (
+    BLINKS,
+    MORE_TRIPS,
+    OUTSIDE,
+    REMOVED,
+    SAVED,
+    UNTIL_BLINK,
+    State,
+    WorkingPlan,
+    leave_out,
+    link,
+    take_in,
+    unlink,
+)
+from service.jit import compiled, inlined
+from service.search.local_search import random_below
+
+_MOST_OUTSIDE = 10  # stops outside that an iteration tries to put in
+# How stops are sorted before they are inserted: at random, the largest first, the farthest or the
+# nearest from where the first vehicle starts, or by their windows. Those that work best are drawn
+# most often.
+RANDOM, LARGE, FAR, NEAR, NARROW, SOON, OPENING = 0, 4, 6, 7, 8, 9, 10
+ORDERS = 11
+_FEW_BLINKS, _MANY_BLINKS = 100, 4  # one place in so many for a stop is passed by
+_CHANCES = 20  # see _most()
+_OFTEN = 10  # one iteration in so many passes by many places
+
+
+@inlined
+def recreate(state: State, order: int) -> None:
+    """Insert the removed stops, sorted in an order, where each costs the least.
+
+    Vehicles may load once more on their way where `counts[MORE_TRIPS]` is 1.
+    """
+    problem, plan, _ = state
+    often = random_below(plan.random, _OFTEN) == 0
+    plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
+    plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
+    _sort(problem, plan, order)
+    for number in range(plan.counts[REMOVED]):
+        stop = plan.removed[number]
+        most = _most(problem, plan, stop)
+        if problem.delivery[stop] >= 0:
+            place = best_pair(state, stop, most)
+        else:
+            place = best_place(state, stop, most)
+        if place.slot >= 0:
+            save_slot(problem, plan, place.slot)
+            _insert(state, stop, place)
+    if problem.reloads:
+        for number in range(plan.counts[SAVED]):
+            load_anew(state, plan.saved[number])
+
+
+@inlined
+def _insert(state: State, stop: int, place: Place) -> None:
+    """Put a stop into its place, and of a shipment the delivery too."""
+    problem, plan, _ = state
+    onward = plan.via[plan.next[place.before]]
+    take_in(problem, plan, stop)
+    put(plan, stop, Spot(place.slot, place.before, place.via, place.onward))
+    if place.last >= 0:
+        link(plan, place.slot, problem.delivery[stop], place.last)
+    if measure_with(state, place.slot, stop):
+        return
+    # A rounding apart from what was worked out before: a place like any other that is none.
+    if place.last >= 0:
+        unlink(plan, problem.delivery[stop])
+    take_back(plan, stop, onward)
+    leave_out(problem, plan, stop)
+    measure(state, place.slot)
+
+
+@inlined
+def _most(problem: Problem, plan: WorkingPlan, stop: int) -> float:
+    """Return what a stop may cost: its price, or at times anything or nothing if it is optional.
+
+    Two optional stops may pay together where neither does alone.
+    """
+    if problem.prize[stop] < np.inf:
+        chance = random_below(plan.random, _CHANCES)
+        if chance == 0:
+            return np.inf
+        if chance == 1:
+            return -np.inf
+    return plan.price[stop]
+
+
+@inlined
+def _sort(problem: Problem, plan: WorkingPlan, order: int) -> None:
+    """Sort the removed stops in an order."""
+    count = plan.counts[REMOVED]
+    for place in range(count):
+        plan.key[place] = _key(problem, plan, plan.removed[place], order)
+    # Shell's sort.
+    gap = count // 2
+    while gap > 0:
+        for place in range(gap, count):
+            stop, key, to = plan.removed[place], plan.key[place], place
+            while to >= gap and plan.key[to - gap] > key:
+                plan.removed[to], plan.key[to] = plan.removed[to - gap], plan.key[to - gap]
+                to -= gap
+            plan.removed[to], plan.key[to] = stop, key
+        gap //= 2
+
+
+@inlined
+def _key(problem: Problem, plan: WorkingPlan, stop: int, order: int) -> float:
+    """Return by what a stop is sorted."""
+    if order == OPENING:
+        return problem.opens[stop]
+    if order == SOON:
+        return min(problem.closes[stop], problem.due[stop])
+    if order == NARROW:
+        return problem.closes[stop] - problem.opens[stop]
+    if order >= FAR:
+        there = problem.place[len(problem.demand)]
+        away = problem.costs[max(there, 0), stop, 0]
+        return away if order == NEAR else -away
+    if order >= LARGE and problem.demand.shape[1] > 0:
+        return -float(problem.demand[stop, 0])
+    return uniform(plan.random)
+
+
+@inlined
+def try_outside(plan: WorkingPlan) -> None:
+    """Add some of the stops outside to those that are inserted."""
+    outside = plan.counts[OUTSIDE]
+    for number in range(min(outside, _MOST_OUTSIDE)):
+        place = number
+        if outside > _MOST_OUTSIDE:
+            place = random_below(plan.random, outside)
+        stop = plan.outside[place]
+        known = False
+        for other in range(plan.counts[REMOVED]):
+            known |= plan.removed[other] == stop
+        if not known:
+            plan.removed[plan.counts[REMOVED]] = stop
+            plan.counts[REMOVED] += 1
+
+
+@compiled
+def set_prices(state: State) -> None:
+    """Set what each stop costs outside, at first."""
+    problem, plan, direction = state
+    for number in range(len(problem.tasks)):
+        stop = problem.tasks[number]
+        required = problem.prize[stop] == np.inf
+        plan.price[stop] = direction.required if required else direction.prize * problem.prize[stop]
+
+
+@inlined
+def raise_prices(state: State) -> None:
+    """Raise the prices of the stops outside that must be visited."""
+    problem, plan, direction = state
+    for place in range(plan.counts[OUTSIDE]):
+        stop = plan.outside[place]
+        if problem.prize[stop] == np.inf:
+            plan.price[stop] += direction.required
+
+
+@compiled
+def insert_all(state: State, order: int) -> None:
+    """Insert all stops that are outside, in an order, if they fit."""
+    problem, plan, _ = state
+    begin_iteration(plan)
+    for place in range(plan.counts[OUTSIDE]):
+        plan.removed[place] = plan.outside[place]
+    plan.counts[REMOVED] = plan.counts[OUTSIDE]
+    plan.counts[MORE_TRIPS] = problem.reloads
+    recreate(state, order)

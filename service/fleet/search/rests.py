@@ -1,0 +1,206 @@
+"""Place the breaks of a vehicle on its route, so that it is done as early as possible.
+
+The same dynamic programming as for the times that are reported (service.fleet.breaks), over arrays.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from service.fleet.rounding import is_over
+from service.fleet.search.problem import RELEASED, Array, Problem
+from service.fleet.search.working_plan import MOST_STATES, WorkingPlan, leg
+from service.jit import compiled, inlined
+
+_is_over = inlined(is_over)
+
+# The columns of a state: the earliest time, the lateness so far, how long legs, visits and breaks
+# have taken, the latest departure that makes nothing later, and the earliest departure.
+_TIME, _LATE, _WORK, _LATEST, _DEPARTURE = range(5)
+
+
+class Way(NamedTuple):
+    """A state, as its five numbers."""
+
+    time: float
+    late: float
+    work: float
+    latest: float
+    departure: float
+
+
+class Times(NamedTuple):
+    """The times of a route with its breaks; it ends at infinity if one fits nowhere."""
+
+    end: float
+    duration: float
+    late: float
+
+
+@compiled
+def rested(problem: Problem, plan: WorkingPlan, slot: int) -> Times:
+    """Return the times of a route with the breaks of its vehicle."""
+    start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]
+    end = start + 1
+    _depart(problem, plan, slot)
+    _rest(problem, plan, kind)
+    node, at = plan.next[start], problem.place[start]
+    while node != end:
+        if plan.via[node] >= 0:
+            _drive(plan, leg(problem, at, plan.via[node], problem.clock))
+            _rest(problem, plan, kind)
+            _wait(plan, plan.released[node])
+            at = plan.via[node]
+            _rest(problem, plan, kind)
+        _drive(plan, leg(problem, at, node, problem.clock))
+        _rest(problem, plan, kind)
+        _serve(problem, plan, node)
+        _rest(problem, plan, kind)
+        at, node = node, plan.next[node]
+    _drive(plan, plan.step[end, problem.clock])
+    _rest(problem, plan, kind)
+    return _ended(problem, plan, kind)
+
+
+@inlined
+def _depart(problem: Problem, plan: WorkingPlan, slot: int) -> None:
+    """Set the states of a vehicle that may leave, after the breaks that it takes before."""
+    kind = problem.kind[slot]
+    begin = max(problem.departs[kind], plan.value[slot, RELEASED])
+    for taken in range(problem.rests[kind] + 1):
+        plan.states[taken] = 0
+        if not _is_over(begin, problem.leaves_by[kind]):
+            _add(plan, taken, Way(begin, 0.0, 0.0, problem.leaves_by[kind], begin))
+        if taken < problem.rests[kind]:
+            opens, length = problem.breaks[kind, taken, 0], problem.breaks[kind, taken, 2]
+            begin = max(begin, opens + length)
+
+
+@inlined
+def _state(rows: Array, number: int) -> Way:
+    row = rows[number]
+    return Way(row[_TIME], row[_LATE], row[_WORK], row[_LATEST], row[_DEPARTURE])
+
+
+@inlined
+def _set(rows: Array, number: int, way: Way) -> None:
+    row = rows[number]
+    row[_TIME], row[_LATE], row[_WORK] = way.time, way.late, way.work
+    row[_LATEST], row[_DEPARTURE] = way.latest, way.departure
+
+
+@inlined
+def _dominates(a: Way, b: Way) -> bool:
+    """Return whether no way to go on from here ends better after the second state."""
+    return (
+        a.time <= b.time
+        and not _is_over(a.late, b.late, a.time)
+        and not _is_over(a.work, b.work, a.time)
+        and (b.latest <= a.latest or not _is_over(b.latest, a.latest, a.time))
+    )
+
+
+@compiled
+def _add(plan: WorkingPlan, taken: int, way: Way) -> None:
+    """Add a state, unless another dominates it; drop those that it dominates.
+
+    There is room for those of ordinary routes; others beyond it are dropped.
+    """
+    rows, kept = plan.state[taken], 0
+    for number in range(plan.states[taken]):
+        if _dominates(_state(rows, number), way):
+            return
+    for number in range(plan.states[taken]):
+        if not _dominates(way, _state(rows, number)):
+            _set(rows, kept, _state(rows, number))
+            kept += 1
+    if kept < MOST_STATES:
+        _set(rows, kept, way)
+        kept += 1
+    plan.states[taken] = kept
+
+
+@inlined
+def _drive(plan: WorkingPlan, leg: float) -> None:
+    for taken in range(len(plan.states)):
+        for number in range(plan.states[taken]):
+            plan.state[taken, number, _TIME] += leg
+            plan.state[taken, number, _WORK] += leg
+
+
+@inlined
+def _wait(plan: WorkingPlan, until: float) -> None:
+    for taken in range(len(plan.states)):
+        for number in range(plan.states[taken]):
+            row = plan.state[taken, number]
+            row[_TIME] = max(row[_TIME], until)
+
+
+@compiled
+def _rest(problem: Problem, plan: WorkingPlan, kind: int) -> None:
+    """Let the vehicle take one break after another here."""
+    for taken in range(problem.rests[kind]):
+        opens, closes = problem.breaks[kind, taken, 0], problem.breaks[kind, taken, 1]
+        length = problem.breaks[kind, taken, 2]
+        for number in range(plan.states[taken]):
+            way = _state(plan.state[taken], number)
+            if _is_over(way.time, closes):
+                continue
+            ends = max(way.time, opens) + length
+            latest = min(way.latest, closes - way.work)
+            rest = Way(ends, way.late, way.work + length, latest, way.departure)
+            _add(plan, taken + 1, rest)
+
+
+@compiled
+def _serve(problem: Problem, plan: WorkingPlan, stop: int) -> None:
+    """Let the vehicle visit a stop, in any window that is not over."""
+    due, service = problem.due[stop], problem.service[stop]
+    for taken in range(len(plan.states)):
+        before = plan.states[taken]
+        for number in range(before):
+            _set(plan.spare, number, _state(plan.state[taken], number))
+        plan.states[taken] = 0
+        for number in range(before):
+            way = _state(plan.spare, number)
+            for window in range(problem.windows.shape[1]):
+                opens, closes = problem.windows[stop, window, 0], problem.windows[stop, window, 1]
+                if _is_over(way.time, closes):
+                    continue
+                begin = max(opens, way.time)
+                late = way.late + (begin - due if _is_over(begin, due) else 0.0)
+                until = min(closes, max(due, begin)) - way.work
+                latest = min(way.latest, until)
+                served = Way(begin + service, late, way.work + service, latest, way.departure)
+                _add(plan, taken, served)
+
+
+@inlined
+def _ended(problem: Problem, plan: WorkingPlan, kind: int) -> Times:
+    """Return the best of the states at the end: early, then least late, then leaving the latest."""
+    best = Times(np.inf, np.inf, np.inf)
+    for taken in range(problem.rests[kind] + 1):
+        last = problem.returns[kind]
+        if taken < problem.rests[kind]:
+            last = min(last, problem.breaks[kind, taken, 1])
+        for number in range(plan.states[taken]):
+            way = _state(plan.state[taken], number)
+            if not _is_over(way.time, last):
+                best = _better(best, way)
+    return best
+
+
+@inlined
+def _better(best: Times, way: Way) -> Times:
+    """Return the better of the times of a route, and those of another way at its end."""
+    leaves = max(way.departure, min(way.latest, way.time - way.work))
+    times = Times(way.time, way.time - leaves, way.late)
+    if _is_over(best.end, way.time):
+        return times
+    if _is_over(way.time, best.end):
+        return best
+    if _is_over(best.late, way.late, way.time):
+        return times
+    if _is_over(way.late, best.late, way.time) or times.duration >= best.duration:
+        return best
+    return times

@@ -1,0 +1,183 @@
+"""Take strings of neighbouring stops out of the routes of a plan.
+
+Christiaens and Vanden Berghe (2020), "Slack induction by string removals for vehicle routing
+problems".
+"""
+
+import numpy as np
+
+from service.fleet.search.changes import begin_iteration, save_slot
+from service.fleet.search.problem import Indices, Problem
+from service.fleet.search.reloads import load_anew
+from service.fleet.search.route import measure
+from service.fleet.search.working_plan import (
+    OUTSIDE,
+    REMOVED,
+    STAMP,
+    USED,
+    State,
+    WorkingPlan,
+    leave_out,
+    unlink,
+)
+from service.jit import compiled, inlined
+from service.search.local_search import random_below
+
+_REMOVED = 10  # stops that an iteration takes out, on the mean
+_LONGEST_STRING = 10
+_SPLIT = 2  # one string in so many leaves stops in its middle
+_STAYING = 100  # one time in so many, more of them
+_LONGEST_FIRST = 4  # one ruin in so many begins in the longest route, where that counts
+
+
+@inlined
+def uniform(random: Indices) -> float:
+    """Draw a number above 0 and below 1."""
+    return (random_below(random, 1 << 30) + 0.5) / (1 << 30)
+
+
+@inlined
+def ruin(state: State) -> None:
+    """Take strings of stops out of some routes near a random stop."""
+    problem, plan, _ = state
+    clients, used = len(problem.clients), plan.counts[USED]
+    if used == 0:
+        return
+    inside = clients - plan.counts[OUTSIDE]
+    longest = min(float(_LONGEST_STRING), inside / used)
+    most = 4.0 * _REMOVED / (1.0 + longest) - 1.0
+    strings = int(1 + uniform(plan.random) * max(0.0, most))
+    seed = _seed(state)
+    left = strings
+    if plan.route[seed] >= 0:
+        _take_string(state, seed, longest)
+        left -= 1
+    for number in range(problem.near.shape[1]):
+        if left <= 0:
+            return
+        stop = problem.near[seed, number]
+        slot = plan.route[stop]
+        if slot >= 0 and not _is_ruined(problem, plan, stop):
+            _take_string(state, stop, longest)
+            left -= 1
+
+
+@inlined
+def _is_ruined(problem: Problem, plan: WorkingPlan, stop: int) -> bool:
+    """Return whether a string was taken out of the route of a stop, of several trips out of its."""
+    if problem.reloads:
+        return plan.ruined[stop] == plan.counts[STAMP]
+    return plan.touched[plan.route[stop]] == plan.counts[STAMP]
+
+
+@inlined
+def _seed(state: State) -> int:
+    """Return a random stop, sometimes one of the longest route where that is over its limit."""
+    problem, plan, direction = state
+    if direction.longest < np.inf and random_below(plan.random, _LONGEST_FIRST) == 0:
+        longest, found = -1.0, plan.used[0]
+        for number in range(plan.counts[USED]):
+            length = plan.value[plan.used[number], problem.swept]
+            if length > longest:
+                longest, found = length, plan.used[number]
+        node = plan.next[len(problem.demand) + 2 * found]
+        for _ in range(random_below(plan.random, plan.size[found])):
+            node = plan.next[node]
+        return node
+    return problem.clients[random_below(plan.random, len(problem.clients))]
+
+
+@compiled
+def _take_string(state: State, stop: int, longest: float) -> None:
+    """Take a string of stops around a stop out of its route."""
+    problem, plan, _ = state
+    slot = plan.route[stop]
+    save_slot(problem, plan, slot)
+    start = len(problem.demand) + 2 * slot
+    size, at = 0, 0
+    node = plan.next[start]
+    while node != start + 1:
+        if node == stop:
+            at = size
+        plan.buffer[size] = node
+        size += 1
+        node = plan.next[node]
+    length = min(size, int(1 + uniform(plan.random) * min(float(size), longest)))
+    staying = _staying(plan, length, size)
+    reach = length + staying
+    first = max(0, at - reach + 1)
+    first += random_below(plan.random, min(at, size - reach) - first + 1)
+    gap = first + 1 + random_below(plan.random, max(1, length - 1))
+    if problem.reloads:
+        _mark_trips(plan, size, first, first + reach)
+    for place in range(first, first + reach):
+        # The other stop of a shipment may have taken this one with it.
+        if not gap <= place < gap + staying and plan.route[plan.buffer[place]] >= 0:
+            remove(problem, plan, plan.buffer[place])
+    if not measure(state, slot):
+        dissolve(state, slot)
+    elif problem.reloads:
+        load_anew(state, slot)
+
+
+@inlined
+def _mark_trips(plan: WorkingPlan, size: int, first: int, last: int) -> None:
+    """Note the trips of a route that stops are taken out of, from one place to before another."""
+    begin = first
+    while begin > 0 and plan.via[plan.buffer[begin]] < 0:
+        begin -= 1
+    for place in range(begin, size):
+        if place >= last and plan.via[plan.buffer[place]] >= 0:
+            break
+        plan.ruined[plan.buffer[place]] = plan.counts[STAMP]
+
+
+@inlined
+def _staying(plan: WorkingPlan, length: int, size: int) -> int:
+    """Return how many stops stay in the middle of a string of `length` others in a route."""
+    if length < 2 or random_below(plan.random, _SPLIT) > 0:
+        return 0
+    staying = 1
+    while length + staying < size and random_below(plan.random, _STAYING) == 0:
+        staying += 1
+    return min(staying, size - length)
+
+
+@inlined
+def remove(problem: Problem, plan: WorkingPlan, stop: int) -> None:
+    """Take a stop out of its route, to be inserted later. The route is not measured.
+
+    Of a shipment both stops are taken out.
+    """
+    if problem.pickup[stop] >= 0:
+        stop = problem.pickup[stop]
+    if problem.delivery[stop] >= 0:
+        unlink(plan, problem.delivery[stop])
+    unlink(plan, stop)
+    leave_out(problem, plan, stop)
+    plan.removed[plan.counts[REMOVED]] = stop
+    plan.counts[REMOVED] += 1
+
+
+@compiled
+def dissolve(state: State, slot: int) -> None:
+    """Take all stops out of a route."""
+    problem, plan, _ = state
+    save_slot(problem, plan, slot)
+    start = len(problem.demand) + 2 * slot
+    while plan.next[start] != start + 1:
+        remove(problem, plan, plan.next[start])
+    measure(state, slot)
+
+
+@compiled
+def limit_routes(state: State) -> None:
+    """Take all stops out of the routes of the fewest, until there are no more than is allowed."""
+    _, plan, direction = state
+    begin_iteration(plan)
+    for _ in range(plan.counts[USED] - direction.routes):
+        shortest = plan.used[0]
+        for number in range(plan.counts[USED]):
+            if plan.size[plan.used[number]] < plan.size[shortest]:
+                shortest = plan.used[number]
+        dissolve(state, shortest)

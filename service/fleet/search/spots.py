@@ -1,0 +1,219 @@
+"""Work out what a stop costs in a spot of a plan: after a node, and maybe beside a reload."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from service.fleet.rounding import is_over
+from service.fleet.search.problem import (
+    FIRST,
+    LATENESS,
+    LOADED,
+    RELEASED,
+    SECOND,
+    Problem,
+)
+from service.fleet.search.route import (
+    Values,
+    begin_at,
+    head_at,
+    joined,
+    measure,
+    route_cost,
+    stay,
+    tail_at,
+)
+from service.fleet.search.working_plan import (
+    State,
+    WorkingPlan,
+    leg,
+    link,
+    unlink,
+    way,
+)
+from service.jit import compiled, inlined
+
+_is_over = inlined(is_over)
+
+
+class Place(NamedTuple):
+    """Where a stop may go, and what it costs there.
+
+    Attributes:
+        cost: What it costs.
+        slot: The slot; -1 if there is no place.
+        before: The node before it.
+        via: Where its vehicle loads on the way to it; -1 if it does not.
+        onward: Where its vehicle loads on the way from it.
+        last: Of a pick-up, the node before the delivery; -1 of other stops.
+    """
+
+    cost: float
+    slot: int
+    before: int
+    via: int
+    onward: int
+    last: int
+
+
+class Spot(NamedTuple):
+    """A place without its cost."""
+
+    slot: int
+    before: int
+    via: int
+    onward: int
+
+
+@inlined
+def nowhere(most: float) -> Place:
+    """Return no place, better than which are those that cost less than `most`."""
+    return Place(most, -1, -1, -1, -1, -1)
+
+
+@inlined
+def better_at(state: State, stop: int, spot: Spot, best: Place) -> Place:
+    """Return the better of two places: the best so far, and a spot with room."""
+    cost = insertion_cost(state, stop, spot, best.cost)
+    if cost >= best.cost:
+        return best
+    if state.problem.tried[state.problem.kind[spot.slot]]:
+        cost = _tried(state, stop, spot)
+        if cost >= best.cost:
+            return best
+    return Place(cost, spot.slot, spot.before, spot.via, spot.onward, -1)
+
+
+@inlined
+def put(plan: WorkingPlan, stop: int, spot: Spot) -> None:
+    """Put a stop into a route."""
+    link(plan, spot.slot, stop, spot.before)
+    plan.via[stop] = spot.via
+    plan.via[plan.next[stop]] = spot.onward
+
+
+@inlined
+def take_back(plan: WorkingPlan, stop: int, onward: int) -> None:
+    """Undo put(), where the vehicle loaded at `onward` before the next stop; -1 if it did not."""
+    after = plan.next[stop]
+    plan.via[stop] = -1
+    unlink(plan, stop)
+    plan.via[after] = onward
+
+
+@compiled
+def _tried(state: State, stop: int, spot: Spot) -> float:
+    """Return what a stop costs in a spot; infinite if it breaks a rule there."""
+    plan, slot = state.plan, spot.slot
+    cost, onward = -plan.cost[slot], plan.via[plan.next[spot.before]]
+    put(plan, stop, spot)
+    fits = measure(state, slot)
+    cost += plan.cost[slot]
+    take_back(plan, stop, onward)
+    measure(state, slot)
+    return cost if fits else np.inf
+
+
+@compiled
+def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
+    """Return what the cost of a route grows by with a stop in a spot; inf if a rule forbids it.
+
+    What costs at least `most` may be told as more. If a visit is due, a route may turn out longer:
+    then its vehicle cannot leave as late as is assumed here. Breaks do not count.
+    """
+    problem, plan, direction = state
+    slot, before, via, onward = spot
+    after = plan.next[before]
+    a, b = problem.place[before], problem.place[after]
+    first = way(problem, a, via, stop, 0) + way(problem, stop, onward, b, 0) - plan.step[after, 0]
+    if first >= 0.5 * problem.forbidden:
+        return np.inf
+    second = way(problem, a, via, stop, 1) + way(problem, stop, onward, b, 1)
+    second -= plan.step[after, 1]
+    loaded = plan.value[slot, LOADED]
+    if direction.load_distance > 0 and not problem.reloads:
+        loaded += _loaded(problem, plan, stop, before, first)
+    first += plan.value[slot, FIRST]
+    second += plan.value[slot, SECOND]
+    kind, end = problem.kind[slot], 0.0
+    if problem.clock >= 0:
+        time, end = _timed(problem, plan, stop, spot)
+        if time == np.inf:
+            return np.inf
+        first = time if problem.clock == 0 else first
+        second = time if problem.clock == 1 else second
+    if _is_over(first if problem.limited == 0 else second, problem.longest[kind], end):
+        return np.inf
+    overtime = max(0.0, end - problem.shift_end[kind])
+    late = plan.value[slot, LATENESS]
+    cost = route_cost(state, kind, Values(first, second, overtime, late, loaded))
+    cost -= plan.plain[slot]
+    if cost < most and not problem.tried[kind] and (problem.choice or direction.lateness > 0):
+        later = _lateness(problem, plan, slot, stop, before)
+        return np.inf if later == np.inf else cost + direction.lateness * (later - late)
+    return cost
+
+
+@inlined
+def _loaded(problem: Problem, plan: WorkingPlan, stop: int, before: int, detour: float) -> float:
+    """Return what loads times distances grow by with a stop after a node."""
+    to = plan.along[before] + leg(problem, problem.place[before], stop, 0)
+    return problem.demand[stop, 0] * to + plan.ahead[plan.next[before]] * detour
+
+
+@inlined
+def _timed(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot) -> tuple[float, float]:
+    """Return the time that a route takes with a stop in a spot, and when it ends.
+
+    The time is infinite where a window is missed.
+    """
+    slot, before, via, onward = spot
+    after = plan.next[before]
+    there = way(problem, problem.place[before], via, stop, problem.clock)
+    span, kept = joined(head_at(plan, before), there, stay(problem, stop))
+    if not kept:
+        return np.inf, 0.0
+    away = way(problem, stop, onward, problem.place[after], problem.clock)
+    span, kept = joined(span, away, tail_at(plan, after))
+    departs = max(span.early, plan.value[slot, RELEASED])
+    if not problem.reloads:
+        departs = max(departs, problem.release[stop])
+    end = departs + span.time
+    if not kept or _is_over(departs, span.late, end):
+        return np.inf, 0.0
+    return span.time, end
+
+
+@inlined
+def _lateness(problem: Problem, plan: WorkingPlan, slot: int, stop: int, before: int) -> float:
+    """Return the lateness of a route with a stop after a node; infinite if a window is missed."""
+    end = len(problem.demand) + 2 * slot + 1
+    late, ready, node = plan.late[before], plan.ready[before], before
+    released = problem.release[stop]
+    if released > plan.value[slot, RELEASED] and released > problem.departs[problem.kind[slot]]:
+        # The vehicle leaves later, so all times change.
+        late, ready, node = 0.0, released, end - 1
+        while node != before:
+            ready, late = _visited(problem, node, plan.next[node], ready, late)
+            node = plan.next[node]
+    ready, late = _visited(problem, before, stop, ready, late)
+    here, node = stop, plan.next[before]
+    while node != end:
+        ready, late = _visited(problem, here, node, ready, late)
+        if ready <= plan.ready[node]:
+            return late + plan.late[end] - plan.late[node]
+        here, node = node, plan.next[node]
+    ready += leg(problem, problem.place[here], problem.place[end], problem.clock)
+    missed = ready == np.inf or _is_over(ready, problem.returns[problem.kind[slot]])
+    return np.inf if missed else late
+
+
+@inlined
+def _visited(
+    problem: Problem, node: int, stop: int, ready: float, late: float
+) -> tuple[float, float]:
+    """Return when the visit of a stop ends, and the lateness after it."""
+    begin = begin_at(problem, stop, ready + leg(problem, problem.place[node], stop, problem.clock))
+    if _is_over(begin, problem.due[stop]):
+        late += begin - problem.due[stop]
+    return begin + problem.service[stop], late
