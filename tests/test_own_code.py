@@ -129,7 +129,7 @@ def test_a_service_writes_its_cache_alone_and_connects_to_nobody(tmp_path: Path)
     assert outward == set()
 
 
-ENGINES = ("llvmlite", "numba", "onnxruntime", "pyvrp", "scipy")
+ENGINES = ("llvmlite", "numba", "onnxruntime", "scipy")
 MAP = {"grid": [[0] * 4] * 3, "cell_size": 1, "places": [[0, 0], [2, 3], [1, 1]]}
 FLEET = {
     "stops": [{"id": str(number)} for number in range(4)],

@@ -27,7 +27,6 @@ from service.fleet.optimal_split import (
 )
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
-from service.fleet.scales import Horizon
 from service.fleet.vehicles import VehicleType, Visit
 from service.instance import Instance
 from service.objectives import OBJECTIVES
@@ -298,7 +297,7 @@ def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
     """
     if fleet.rules.clock is None:
         return arrays
-    begin = Horizon.of(fleet.rules, float(fleet.largest_legs[fleet.rules.clock])).begin
+    begin = _begin(fleet.rules, float(fleet.largest_legs[fleet.rules.clock]))
     names = ("window", "shift", "release", "leaves_by")
     times = {name: np.maximum(0.0, getattr(arrays, name) - begin) for name in names}
     return arrays._replace(**times)
@@ -309,3 +308,10 @@ def warm_up() -> None:
     rules = Rules(visits=(Visit(), Visit()), vehicles=(VehicleType(start=0, end=0),))
     fleet = Fleet(rules=rules, costs=np.ones((LAYERS, rules.n, rules.n)))
     list(Cutter(fleet, [np.array([1])], lambda: False).plans())
+
+
+def _begin(rules: Rules, leg: float) -> float:
+    """Return a time before which no vehicle needs to leave, if legs are at most this long."""
+    route = rules.n * leg + sum(visit.service for visit in rules.visits)
+    first = min((time for span in rules.spans for time in span if 0 < time < inf), default=0.0)
+    return max(0.0, first - route, min(vehicle.shift[0] for vehicle in rules.vehicles))

@@ -12,7 +12,7 @@ from service.fleet.rules import Measure, Over, Rules
 from service.instance import largest_costs, ordinary_costs
 
 Array = NDArray[np.float64]
-LAYERS = 2  # costs: PyVRP knows one distance and one duration
+LAYERS = 2  # costs of a leg
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,20 +63,6 @@ class Fleet:
         ordinary = ordinary_costs(self.costs, largest)
         legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
         return np.minimum(legs, largest)
-
-    @cached_property
-    def nearest_loading(self) -> Array:
-        """The least time to each stop from where a vehicle may load, shape (n,); 0 if anywhere.
-
-        Forbidden legs count as 0, as another way may lead there.
-        """
-        vehicles = self.rules.vehicles
-        loading = {place for each in vehicles for place in (each.start, *each.reload)}
-        places = [place for place in loading if place is not None]
-        if self.rules.clock is None or len(places) < len(loading):
-            return np.zeros(self.rules.n)
-        legs: Array = least_paths(self.costs[self.rules.clock], places)
-        return np.where(np.isfinite(legs), legs, 0.0)
 
     @cached_property
     def scale(self) -> Array:

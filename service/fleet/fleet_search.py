@@ -1,4 +1,4 @@
-"""The base of the searches for the front of a fleet: when they end, and what they answer."""
+"""Say when a search for the front of a fleet ends, and what it answers."""
 
 from abc import ABC, abstractmethod
 from dataclasses import replace
@@ -12,7 +12,7 @@ from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Array, Fleet
 from service.fleet.fronts import FleetOptions, front_of, reference_point_of
 from service.fleet.plans import FleetFront, Plan, kept_share
-from service.fleet.scales import Units
+from service.fleet.units import Units
 from service.front import Termination
 from service.search.best_subset import best_subset, selection_limit, selection_seconds
 from service.search.front_points import FrontPoints
@@ -136,14 +136,8 @@ class FleetSearch(ABC):
             return True
         begun = len(self) >= _LEAST_PLANS or self._worked >= _LEAST_WORK
         begun |= len(self) > 0 and watch.over(-_GRACE)
-        if begun and self._gives_up(now):
-            return True
         watch.report_if_due(self._found, partial(self.front, terminated=None))
         return begun and watch.over(self._reserve())
-
-    def _gives_up(self, now: float) -> bool:  # noqa: ARG002  others do after some time
-        """Return whether to end after so many seconds, since no plan was found."""
-        return False
 
     def _found(self) -> tuple[float, int] | None:
         """Return the hypervolume and the number of plans found so far; None if there is none."""

@@ -26,8 +26,8 @@ class FleetOptions:
         seed: The seed of all random choices.
         reference_point: The reference point of the hypervolume under m objectives, shape (m,); by
             default lengths that no sensible plan reaches.
-        iterations: The most rounds of a hundred ruins, or iterations of PyVRP where that searches.
-            With an infinite time limit, the same seed and iterations give the same front.
+        iterations: The most rounds of a hundred ruins. With an infinite time limit, the same seed
+            and iterations give the same front.
         driven: A plan to start from, which may leave out stops.
     """
 

@@ -118,25 +118,10 @@ class Rules:
         return self.limited if "imbalance" in self.over else None
 
     @cached_property
-    def limits_routes(self) -> bool:
-        """Whether the search minimises a sum under limits on routes or visits."""
-        return self.swept is not None or self.limits_times
-
-    @cached_property
-    def limits_times(self) -> bool:
-        """Whether the search limits overtime or lateness."""
-        return not {"overtime", "lateness"}.isdisjoint(self.over)
-
-    @cached_property
     def sums(self) -> tuple[int, ...]:
         """The numbers of the costs that objectives sum, in the order of the objectives."""
         pairs = zip(self.layers, self.over, strict=True)
         return tuple(dict.fromkeys(layer for layer, over in pairs if over == "sum"))
-
-    @cached_property
-    def weighs(self) -> bool:
-        """Whether the search minimises weighted sums of several objectives."""
-        return len(self.sums) + ("unassigned" in self.over) > 1
 
     @cached_property
     def spans(self) -> tuple[Span, ...]:

@@ -83,7 +83,7 @@ def plan_front(
 
     `driven` is a plan to start from.
     """
-    # Imported here so that a service or a worker starts without PyVRP.
+    # Imported here so that a process that does not plan fleets starts without what compiles.
     from service.fleet.fronts import FleetOptions
     from service.fleet.planner import plan_fleet
 
@@ -99,8 +99,7 @@ def plan_front(
 
 
 def warm_up() -> None:
-    """Import PyVRP, which takes some tenths of a second, and compile what plans fleets."""
-    import service.fleet.planner  # noqa: F401
+    """Compile what plans fleets."""
     from service.fleet import first_plans
     from service.fleet.search import search
 

@@ -154,7 +154,7 @@ def spread_fleet(seed: int) -> Fleet:
 
 
 def misses(fleet: Fleet, iterations: int) -> bool:
-    """Return whether PyVRP's front has not both ends of the exact one, or holds what cannot be."""
+    """Return whether a front lacks an end of the exact one, or holds what cannot be."""
     assert not is_enumerable(fleet.rules)
     exact = points_of(fleet, exact_plans(fleet) or ())
     try:
@@ -170,7 +170,7 @@ def misses(fleet: Fleet, iterations: int) -> bool:
 
 
 @pytest.mark.parametrize("first", range(0, 40, 20))
-def test_pyvrp_finds_both_ends_of_fronts_whose_numbers_are_far_apart(first: int) -> None:
+def test_the_search_finds_both_ends_of_fronts_whose_numbers_are_far_apart(first: int) -> None:
     missed = [s for s in range(first, first + 20) if misses(spread_fleet(s), 1_000)]
     assert len(missed) <= 4, missed
 

@@ -11,7 +11,6 @@ from service.fleet.fleet_search import KEPT, FleetSearch
 from service.fleet.fronts import FleetOptions
 from service.fleet.plans import FleetFront, Plan, Route, steps_of
 from service.fleet.rules import Rules
-from service.fleet.scales import Units
 from service.fleet.search.annealing import anneal
 from service.fleet.search.directions import Directions, Step
 from service.fleet.search.found import Driven, Found, offer
@@ -20,6 +19,7 @@ from service.fleet.search.recreate import FAR, NEAR, RANDOM, SOON, insert_all, s
 from service.fleet.search.rows import clear, load_row, write_point, write_row
 from service.fleet.search.ruin import limit_routes
 from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
+from service.fleet.units import Units
 from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
 from service.search.archive.layout import make_archive, rows_of

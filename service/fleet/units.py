@@ -1,0 +1,101 @@
+"""Bring the numbers of a fleet into units in which the search can compute with them."""
+
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from service.errors import Refusal
+from service.fleet.fleet import Array, Fleet
+from service.fleet.vehicles import Span
+
+_TINY = 2.0**-900  # a shorter longest leg is multiplied: its square would be 0
+
+
+@dataclass(frozen=True, eq=False)
+class Units:
+    """A fleet in units in which no objective has only tiny costs.
+
+    Args:
+        fleet: The fleet in these units.
+        shifts: The powers of two, shape (2,), by which both costs were multiplied: exactly.
+    """
+
+    fleet: Fleet
+    shifts: Array
+
+    @classmethod
+    def of(cls, fleet: Fleet) -> "Units":
+        """Return the units of a fleet. They are its own units if costs are not tiny.
+
+        Raises:
+            Refusal: In these units a prize or a time would overflow.
+        """
+        largest, rules = fleet.largest_legs, fleet.rules
+        tiny = (largest > 0) & (largest < _TINY)
+        shifts = np.where(tiny, 1 - np.frexp(largest)[1], 0)
+        if not tiny.any():
+            return cls(fleet, shifts)
+        extra = int(shifts[0])
+        time = 0 if rules.limited is None else int(shifts[rules.limited])
+        visits = tuple(
+            replace(
+                visit,
+                service=_scaled(visit.service, time),
+                windows=tuple(_scaled_span(window, time) for window in visit.windows),
+                due=_scaled_bound(visit.due, time),
+                release=_scaled(visit.release, time),
+                prize=None if visit.prize is None else _scaled(visit.prize, extra),
+            )
+            for visit in rules.visits
+        )
+        vehicles = tuple(
+            replace(
+                vehicle,
+                shift=_scaled_span(vehicle.shift, time),
+                longest=_scaled_bound(vehicle.longest, time),
+                fixed=_scaled(vehicle.fixed, extra),
+                max_overtime=_scaled(vehicle.max_overtime, time),
+                leaves_by=_scaled_bound(vehicle.leaves_by, time),
+                breaks=tuple(
+                    (_scaled(opens, time), _scaled(closes, time), _scaled(length, time))
+                    for opens, closes, length in vehicle.breaks
+                ),
+            )
+            for vehicle in rules.vehicles
+        )
+        costs = np.ldexp(fleet.costs, shifts[:, np.newaxis, np.newaxis])
+        scaled = replace(rules, visits=visits, vehicles=vehicles)
+        return cls(Fleet(rules=scaled, costs=costs), shifts)
+
+    def points(self, points: Array) -> Array:
+        """Return points, shape (..., m), in these units; infinite where these are too small."""
+        rules = self.fleet.rules
+        numbers = {"vehicles": None, "unassigned": 0, "load_distance": 0}
+        timed = dict.fromkeys(("overtime", "lateness", "imbalance"), rules.limited)
+        layers = [
+            {**numbers, **timed}.get(over, layer)
+            for over, layer in zip(rules.over, rules.layers, strict=True)
+        ]
+        shifts = [0 if layer is None else self.shifts[layer] for layer in layers]
+        with np.errstate(over="ignore"):
+            scaled: Array = np.ldexp(points, shifts)
+        return scaled
+
+
+def _scaled_span(span: Span, shift: int) -> Span:
+    return _scaled(span[0], shift), _scaled_bound(span[1], shift)
+
+
+def _scaled(value: float, shift: int) -> float:
+    scaled = _scaled_bound(value, shift)
+    if scaled == inf:
+        reason = f"costs, prizes and times are too far apart: costs are tiny, and one is {value:g}"
+        raise Refusal("invalid-instance", reason=reason)
+    return scaled
+
+
+def _scaled_bound(value: float, shift: int) -> float:
+    """Return an upper bound multiplied by a power of two; infinite if the result is too large."""
+    with np.errstate(over="ignore"):
+        return float(np.ldexp(value, shift))
