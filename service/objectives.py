@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 OBJECTIVES = 2  # of a request that says nothing else, and of all that knows no more than two
 MOST_OBJECTIVES = 4
-MOST_OF_FLEETS = 3
 NTH = ("first", "second", "third", "fourth")  # what one without a name is called
 
 

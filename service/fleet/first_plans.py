@@ -33,7 +33,7 @@ from service.objectives import OBJECTIVES
 from service.preferences import spread
 
 _TOURS = 21  # the number of evenly spread preferences
-_WEIGHTS = 15  # of three objectives
+_WEIGHTS = 15  # of more than two objectives
 _MOST_ROUTES = 2**22  # routes in the tables of all sequences together: 64 MB
 _MOST_STEPS = 2e8  # steps of the dynamic program of a sequence: tenths of a second
 _CYCLIC_STEPS = 1e7  # most steps with which every begin is tried; else only the first is

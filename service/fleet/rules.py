@@ -38,7 +38,7 @@ class Rules:
         visits: The demands of each of the n stops. Starts and ends of vehicles have none.
         vehicles: The types of vehicles.
         shipments: The pairs of stops that one vehicle must visit in order.
-        over: How each of two or three objectives measures a plan: by the costs of its legs, of
+        over: How each of two to four objectives measures a plan: by the costs of its legs, of
             which it takes the sum over the routes, or the longest route; or by another measure. The
             first is of costs.
         layers: The number, 0 or 1, of the costs that each objective is of. Of the first it is 0,

@@ -228,7 +228,7 @@ TOOLS = (
     Tool(
         name="plan_fleet",
         description="Plan routes of several vehicles, with capacities, time windows and shipments,"
-        " under two or three objectives. The answer is a front of plans: of the knee each route"
+        " under two to four objectives. The answer is a front of plans: of the knee each route"
         " with its times of day, lengths and load. Times are in the unit of the clock, or 10:00.",
         arguments=Members,
         forms=(FleetRequest,),

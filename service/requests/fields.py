@@ -10,7 +10,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Fiel
 from service.errors import invalid
 from service.front import BOUND_SECONDS, PlanOptions
 from service.instance import CLOSED, RouteEnds
-from service.objectives import MOST_OBJECTIVES, MOST_OF_FLEETS, OBJECTIVES
+from service.objectives import MOST_OBJECTIVES, OBJECTIVES
 from service.preferences import from_angles, spread
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.
@@ -49,9 +49,6 @@ OneEach = Annotated[  # for each objective
 ]
 OneForBoth = Annotated[  # the same where there are two
     list[Each], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
-]
-TwoOrThree = Annotated[  # the same for a fleet
-    list[Each], Field(min_length=OBJECTIVES, max_length=MOST_OF_FLEETS, fail_fast=True)
 ]
 Angle = Annotated[float, Field(ge=0, le=90, allow_inf_nan=False)]
 Direction = Annotated[  # for each objective a part of it; not all of them 0

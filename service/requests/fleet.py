@@ -16,9 +16,9 @@ from service.requests.fields import (
     GEOMETRY,
     Geometry,
     Items,
+    OneEach,
     SearchFields,
     SomeItems,
-    TwoOrThree,
 )
 from service.requests.fleet_fields import (
     Clock,
@@ -42,14 +42,14 @@ _MOST_VEHICLE_TYPES = 100
 
 
 class FleetRequest(SearchFields):
-    """Stops, vehicles and two or three objectives, and the options of their front of plans."""
+    """Stops, vehicles and two to four objectives, and the options of their front of plans."""
 
     stops: SomeItems[FleetStopItem] = Field(description="by ids that come back with every plan")
     vehicles: Annotated[
         list[VehicleItem], Field(min_length=1, max_length=_MOST_VEHICLE_TYPES, fail_fast=True)
     ] = Field(description="the types of vehicles")
-    objectives: TwoOrThree[FleetObjectiveItem] = Field(
-        description="two or three: costs between the stops, of two kinds at most, or other measures"
+    objectives: OneEach[FleetObjectiveItem] = Field(
+        description="two to four: costs between the stops, of two kinds at most, or other measures"
         " of plans"
     )
     shipments: Items[ShipmentItem] = Field(
@@ -131,7 +131,7 @@ class FleetRequest(SearchFields):
     def _layers(self) -> tuple[list[int], tuple[int, ...]]:
         """Return the objectives that bring costs, and which of these costs each objective is of.
 
-        Where three objectives have costs, two may have the same. Of a measure they do not matter.
+        Where more objectives have costs, some have the same. Of a measure they do not matter.
 
         Raises:
             Refusal: An objective has both costs and a measure, or there are too many costs.

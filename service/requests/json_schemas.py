@@ -10,7 +10,6 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core.core_schema import WithDefaultSchema
 
-from service.objectives import MOST_OF_FLEETS
 from service.requests.coverage import ENDS, OF_ONE_ROBOT, CoverageRequest
 from service.requests.fields import ABSENT, PlanFields
 from service.requests.fleet import FleetRequest
@@ -66,7 +65,6 @@ def fleet_schemas(limits: Limits) -> dict[str, Schema]:
     """Return the schema of a request for a fleet, and of all that is in it, by name."""
     schemas = _limited(FleetRequest, limits)
     whole = schemas["FleetRequest"]
-    _at_most(MOST_OF_FLEETS, whole, "reference_point")
     _at_most(limits.fleet_stops, whole, "stops", "shipments")
     return schemas
 
@@ -85,7 +83,6 @@ def replan_fleet_schemas(limits: Limits) -> dict[str, Schema]:
     """Return the schema of a request to replan a fleet, and of all that is in it, by name."""
     schemas = _limited(ReplanFleetRequest, limits)
     whole = schemas["ReplanFleetRequest"]
-    _at_most(MOST_OF_FLEETS, whole, "reference_point")
     _at_most(limits.fleet_stops, whole, "routes", "add", "remove")
     return schemas
 

@@ -26,6 +26,8 @@ MIXED: Sequence[tuple[Objectives, tuple[int, ...]]] = (
     (("sum", "lateness", "vehicles"), (0, 0, 0)),
     (("sum", "overtime", "imbalance"), (0, 0, 0)),
     (("sum", "sum", "load_distance"), (0, 1, 0)),
+    (("sum", "max", "lateness", "vehicles"), (0, 1, 0, 0)),
+    (("sum", "sum", "unassigned", "imbalance"), (0, 1, 0, 0)),
 )
 
 

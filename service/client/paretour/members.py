@@ -187,7 +187,7 @@ ClockRequest = TypedDict(
 
 
 class FleetRequest(SearchOptions, total=False):
-    """Stops, vehicles and two or three objectives, and the options of their front of plans."""
+    """Stops, vehicles and two to four objectives, and the options of their front of plans."""
 
     stops: Required[Sequence[FleetStopRequest] | Frame]
     vehicles: Required[Sequence[VehicleRequest]]

@@ -21,7 +21,7 @@ from service.search.local_search import random_below
 
 _is_over = inlined(is_over)
 
-_MORE_TRIPS = 4  # one iteration in so many lets vehicles load once more
+_MORE_TRIPS = 2  # one iteration in so many lets vehicles load once more
 
 
 @compiled

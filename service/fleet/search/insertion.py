@@ -21,7 +21,7 @@ from service.jit import compiled, inlined
 from service.search.local_search import random_below
 
 _NEIGHBOURS = 30  # beside which a stop is tried
-_MORE_TRIPS = 10  # one time in so many, one trip more is tried where the stop fits without
+_MORE_TRIPS = 3  # one time in so many, one trip more is tried where the stop fits without
 _FEW = 8  # of them that are in routes: then all routes are tried
 
 
@@ -157,7 +157,7 @@ def _ships_too(problem: Problem, plan: WorkingPlan, stop: int, slot: int, before
 @compiled
 def _with_reloads(state: State, stop: int, slot: int, before: int, best: Place) -> Place:
     """Return the better of two places: the best so far, and after a node, maybe with a reload."""
-    problem, plan, _ = state
+    problem, plan, direction = state
     kind, after = problem.kind[slot], plan.next[before]
     known = plan.via[after]
     fits = _brings(state, stop, slot, before, False)
@@ -166,6 +166,8 @@ def _with_reloads(state: State, stop: int, slot: int, before: int, best: Place) 
     if known >= 0 and _brings(state, stop, slot, after, False):
         fits = True
         best = better_at(state, stop, Spot(slot, before, known, -1), best)
+    # A trip more helps where it must, or where what is carried counts; else seldom.
+    fits &= direction.load_distance == 0
     if plan.counts[MORE_TRIPS] == 0 or (fits and random_below(plan.random, _MORE_TRIPS) > 0):
         return best
     for number in range(problem.reload.shape[1]):
