@@ -292,6 +292,16 @@ def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:
                 yield Broken("capacity", f"holds {most} of {capacity}")
 
 
+def most_carried(rules: Rules, route: Route) -> list[int]:
+    """Return the most that a vehicle carries at a time on its route, in each dimension."""
+    first = rules.vehicles[route.vehicle].initial_load
+    trips = list(enumerate(trips_of(rules, route)))
+    return [
+        max(max(_loads(rules, trip, each, () if number else first)) for number, trip in trips)
+        for each in range(rules.dimensions)
+    ]
+
+
 def _loads(
     rules: Rules, trip: Sequence[int], dimension: int, initial_load: Sequence[int]
 ) -> Iterator[int]:

@@ -3,20 +3,18 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import accumulate
 from typing import Any, NamedTuple
 
 from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import NoTour
-from service.fleet.evaluation import measures, route_lengths, unassigned
+from service.fleet.evaluation import measures, most_carried, route_lengths, unassigned
 from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
-from service.fleet.rules import Rules
-from service.fleet.schedule import schedule, trips_of
+from service.fleet.schedule import schedule
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
@@ -175,7 +173,7 @@ def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
         "vehicle": name.id,
         "stops": [names.stops[stop] for stop in path_of(fleet.rules, route)],
         "lengths": list(route_lengths(fleet, route)),
-        "load": _most_carried(fleet.rules, route),
+        "load": most_carried(fleet.rules, route),
     }
     numbers = {"shift": name.shift, "route": name.route}
     members |= {member: number for member, number in numbers.items() if number is not None}
@@ -185,27 +183,3 @@ def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
         if times.breaks:
             members["breaks"] = list(times.breaks)
     return members
-
-
-def _most_carried(rules: Rules, route: Route) -> list[int]:
-    """Return the most that a vehicle carries at a time on its route, in each dimension."""
-    pickups = {each.delivery: each.pickup for each in rules.shipments}
-    initial = rules.vehicles[route.vehicle].initial_load or (0,) * rules.dimensions
-
-    def change(stop: int, dimension: int) -> int:
-        demand = rules.visits[pickups.get(stop, stop)].demand or (0,) * rules.dimensions
-        is_pickup = stop in rules.shipped and stop not in pickups
-        return demand[dimension] if is_pickup else -demand[dimension]
-
-    def most(trip: Sequence[int], first: int, dimension: int) -> int:
-        loaded = -sum(change(stop, dimension) for stop in trip if stop not in rules.shipped)
-        return max(accumulate((change(stop, dimension) for stop in trip), initial=first + loaded))
-
-    trips = trips_of(rules, route)
-    return [
-        max(
-            most(trip, 0 if number else initial[dimension], dimension)
-            for number, trip in enumerate(trips)
-        )
-        for dimension in range(rules.dimensions)
-    ]

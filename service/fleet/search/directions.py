@@ -13,7 +13,7 @@ from math import inf
 
 import numpy as np
 
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import Array, Fleet, least_paths
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -300,13 +300,15 @@ def _least_longest(fleet: Fleet) -> float:
     if rules.swept is None:
         return 0.0
     costs = fleet.costs[rules.swept]
-    nothing = np.zeros(rules.n)
-    ways = [
-        (nothing if each.start is None else costs[each.start])
-        + (nothing if each.end is None else costs[:, each.end])
-        for each in rules.vehicles
-    ]
+    there: dict[int | None, Array] = {None: np.zeros(rules.n)}
+    back = there.copy()
+    for vehicle in rules.vehicles:
+        if vehicle.start is not None and vehicle.start not in there:
+            there[vehicle.start] = least_paths(costs, [vehicle.start])
+        if vehicle.end is not None and vehicle.end not in back:
+            back[vehicle.end] = least_paths(costs.T, [vehicle.end])
+    ways = [there[vehicle.start] + back[vehicle.end] for vehicle in rules.vehicles]
     required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
     served = np.array([rules.visits[stop].service for stop in required])
     alone = np.min(ways, axis=0)[required] + (served if rules.swept == rules.clock else 0.0)
-    return float(alone.max(initial=0.0))
+    return float(alone.max(initial=0.0, where=np.isfinite(alone)))

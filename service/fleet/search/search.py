@@ -128,6 +128,8 @@ class RuinSearch(FleetSearch):
         state, row = self._state_of(self._directions.first()), self._archives.row
         best, least = row.copy(), math.inf
         for order in _FIRST_ORDERS:
+            if least < math.inf and self._watch.over(0.0):
+                break
             clear(state)
             set_prices(state)
             insert_all(state, order)
