@@ -9,12 +9,11 @@ from service.fleet.enumeration import MOST_STOPS, exact_plans, is_enumerable, so
 from service.fleet.evaluation import violations
 from service.fleet.first_plans import Cutter, network_sequences, plain_plans
 from service.fleet.fleet import Fleet
-from service.fleet.fleet_search import BRIEF
 from service.fleet.fronts import FleetOptions, front_of
 from service.fleet.left_out import with_all_stops
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan
-from service.fleet.search.search import RuinSearch
+from service.fleet.search.search import BRIEF, RuinSearch
 from service.watch import Watch
 
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration

@@ -2,18 +2,23 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
+from service.errors import Cancelled
+from service.fleet.conflicts import no_plan
+from service.fleet.evaluation import violations
 from service.fleet.fleet import LAYERS, Array, Fleet
-from service.fleet.fleet_search import KEPT, FleetSearch
-from service.fleet.fronts import FleetOptions
+from service.fleet.fronts import FleetOptions, front_of, reference_point_of
 from service.fleet.plans import FleetFront, Plan, Route, steps_of
 from service.fleet.rules import Rules
 from service.fleet.search.annealing import anneal
 from service.fleet.search.directions import Directions, Step
 from service.fleet.search.found import Driven, Found, offer
+from service.fleet.search.kept_plan import KEPT, with_kept
 from service.fleet.search.problem import Nodes, Problem, loosened, problem_of
 from service.fleet.search.recreate import FAR, NEAR, RANDOM, SOON, insert_all, set_prices
 from service.fleet.search.rows import clear, load_row, write_point, write_row
@@ -23,22 +28,46 @@ from service.fleet.units import Units
 from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
 from service.search.archive.layout import make_archive, rows_of
+from service.search.best_subset import best_subset, selection_limit, selection_seconds
+from service.search.front_points import FrontPoints
 from service.watch import Watch
 
 RUINS = 100  # in a round
+BRIEF = 0.25  # seconds to find what is in the way where there is no plan
 _CALL = 0.003  # seconds that compiled code may run before the time is checked
 _STILL = 0.1  # share of the rounds of a step at its end that accept nothing that is worse
 _FIRST_ORDERS = NEAR, FAR, SOON, RANDOM  # in which the stops of a first plan are inserted
 _FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
 _IDLE_STEPS = 72  # steps without a new plan, after which it ends
+_FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
+# With fewer plans, and fewer stops looked at (all in each iteration), a search goes on after its
+# deadline: a process that is held up else finds no plan.
+_LEAST_PLANS, _LEAST_WORK = 10, 2000
+_GRACE = 0.03  # seconds after the deadline, at the latest, when it ends all the same
+_CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
+_EXPLAINING = 1e-5  # seconds for each stop that is left out, per stop of the fleet
+_MOST_EXPLAINING = 0.05  # share of the time limit for that
 
 
-class RuinSearch(FleetSearch):
-    """A search by ruin and recreate, in all of whose directions one archive grows."""
+class RuinSearch:
+    """A search by ruin and recreate, in all of whose directions one archive grows.
+
+    Args:
+        fleet: The fleet.
+        options: The options of the front and the search.
+        watch: Says when to end and to report.
+    """
 
     def __init__(self, fleet: Fleet, options: FleetOptions, watch: Watch[FleetFront]) -> None:
         units = Units.of(fleet)
-        super().__init__(fleet, options, watch, units)
+        self._fleet = fleet
+        self._options = options
+        self._watch = watch
+        self._reference_point = units.points(reference_point_of(fleet, options))
+        self._checked = 0.0
+        self._worked = 0  # stops looked at
+        self._pause = 0.0  # the longest recent seconds between two checks of the time
+        self._cancelled = False
         self._problem = problem_of(units.fleet)
         self._working = make_working_plan(self._problem, options.seed)
         objectives = len(fleet.rules.over)
@@ -120,6 +149,31 @@ class RuinSearch(FleetSearch):
                 return "cancelled" if self._cancelled else "time_limit"
         return "converged"
 
+    def front(self, size: int, terminated: Termination | None) -> FleetFront:
+        """Return the best front found so far, of at most `size` plans.
+
+        Raises:
+            Refusal: No plan was found.
+            Cancelled: No plan was found before the watch said to stop.
+        """
+        points = self.points
+        indices, known = FrontPoints.among(points, self._reference_point)
+        seconds = selection_limit(self._options.time_limit)
+        chosen = indices[best_subset(known, size, seconds)]
+        found = [self.plan_at(index) for index in chosen.tolist()]
+        plans = [plan for plan in found if not violations(self._fleet, plan)]
+        if not plans and self._cancelled:
+            raise Cancelled
+        if not plans:
+            sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
+            raise no_plan(self._fleet, sentence, self._watch.lasting(BRIEF).ended)
+        front = front_of(self._fleet, self._options, plans, terminated, self._watch)
+        front = replace(front, found=max(front.found, len(points)))
+        driven = self._options.driven
+        if driven is None:
+            return front
+        return with_kept(front, driven, size, self._kept(), points)
+
     def _state_of(self, step: Step) -> State:
         return State(self._problem, self._working, step.direction)
 
@@ -197,6 +251,41 @@ class RuinSearch(FleetSearch):
             return most
         spent = self._watch.spent - self._began
         return min(most, max(0.0, self._watch.left) * self._rounds / max(spent, 1e-6))
+
+    def _ended(self) -> bool:
+        """Return whether to stop, after a report if one is due."""
+        watch, now = self._watch, self._watch.spent
+        self._pause = max(now - self._checked, _FORGOTTEN * self._pause)
+        self._checked = now
+        self._worked += self._fleet.rules.n
+        if watch.stopped():
+            self._cancelled = True
+            return True
+        begun = len(self) >= _LEAST_PLANS or self._worked >= _LEAST_WORK
+        begun |= len(self) > 0 and watch.over(-_GRACE)
+        watch.report_if_due(self._found, partial(self.front, terminated=None))
+        return begun and watch.over(self._reserve())
+
+    def _found(self) -> tuple[float, int] | None:
+        """Return the hypervolume and the number of plans found so far; None if there is none."""
+        if not len(self):
+            return None
+        found = FrontPoints(self.points, self._reference_point)
+        return found.quick_hypervolume, len(found)
+
+    def _reserve(self) -> float:
+        """Return the seconds for one more iteration, and for checking and selecting plans after it.
+
+        The iteration is assumed to be as long as the longest recent one.
+        """
+        found, n = len(self), self._fleet.rules.n
+        explained = min(
+            _EXPLAINING * self._fewest_left_out() * n, _MOST_EXPLAINING * self._options.time_limit
+        )
+        checked = _CHECKING * min(found, self._options.size) * n
+        limit = selection_limit(self._options.time_limit)
+        selected = selection_seconds(self._options.size, found, len(self._reference_point), limit)
+        return self._pause + checked + explained + selected
 
 
 def _width(problem: Problem) -> int:
