@@ -227,7 +227,7 @@ def test_a_fleet_under_three_objectives_is_replanned_chosen_from_and_drawn(
             "/objectives/0/measure",
             "must not be given for the first objective",
         ),
-        ([DISTANCE, TIME, DISTANCE, TIME], "/objectives", "3 items or fewer"),
+        ([DISTANCE, TIME, DISTANCE, TIME, TIME], "/objectives", "4 items or fewer"),
     ],
 )
 def test_objectives_that_do_not_fit_each_other_are_refused_where_they_stand(

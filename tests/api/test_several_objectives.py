@@ -147,10 +147,12 @@ def test_what_does_not_fit_is_refused(
     assert [each["pointer"] for each in refused["errors"]] == [pointer]
 
 
-def test_fleets_take_three(client: httpx.Client) -> None:
+def test_fleets_take_four(client: httpx.Client) -> None:
     stops = [{"id": "a"}, {"id": "b"}]
-    objectives = [{"name": str(k), "matrix": [[0, 1], [1, 0]], "over": "sum"} for k in range(4)]
-    fleet = {"stops": stops, "objectives": objectives, "vehicles": [{"id": "van"}]}
+    objectives = [{"name": str(k), "matrix": [[0, 1], [1, 0]], "over": "sum"} for k in range(5)]
+    fleet = {"stops": stops, "objectives": objectives[:4], "vehicles": [{"id": "van"}]}
+    assert client.post("/fleet", json=fleet).json()["front"][0]["lengths"] == [1, 1, 1, 1]
+    fleet["objectives"] = objectives
     refused = problem(client.post("/fleet", json=fleet), 422, "invalid-request")
     assert refused["errors"][0]["pointer"] == "/objectives"
 
