@@ -83,6 +83,9 @@ _AMOUNTS = _NAMES["demand"].split()
 _OF_VEHICLES_ONLY = {
     "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
     " fahrer",
+    "plate": "plate plates platenumber platenr numberplate licenceplate licenseplate"
+    " licenceplatenumber licenseplatenumber registration registrationnumber regno regnumber kennzeichen nummernschild"
+    " immatriculation plaque targa matricula kenteken rekisterinumero rekisteritunnus",
     "capacity": "capacity capacity1 capacity2 capacity3 vehiclecapacity maxcapacity payload"
     " kapazitaet kapazitat nutzlast "
     + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
@@ -173,7 +176,8 @@ def is_about_vehicles(heading: Sequence[str]) -> bool:
     """Return whether a heading has columns of vehicles alone, and none of stops alone."""
     stops, found = fields_of(heading), set(best_fields(heading, _OF_VEHICLES_ONLY))
     located = {"latitude", "x", "place"} & set(stops)
-    return bool(found - ({"id", None} if located else {None})) and "demand" not in stops
+    either = {"id", "plate", None} if located else {None}  # stops may have them as well
+    return bool(found - either) and "demand" not in stops
 
 
 def amount_of(name: str) -> str:

@@ -36,7 +36,7 @@ from service.files.tsplib import (
     plain,
     split_tsplib,
 )
-from service.files.vehicle_tables import has_vehicles, read_fleet
+from service.files.vehicle_tables import has_places, has_vehicles, read_fleet
 from service.files.waypoints import is_xml, table_of_xml
 from service.files.work import LINE_OF_TEXT, UNITS, Work
 from service.files.xlsx.sheets import is_spreadsheet, sheets_of
@@ -140,6 +140,8 @@ def _read(source: Source, wanted: Kind | None) -> Reading:
     """Return the request in a file that holds both objectives, or a fleet, or a map."""
     content = _content(source)
     if isinstance(content, Table):
+        if has_vehicles(content) and not has_places(content):
+            raise source.refusal("vehicles-alone")
         return reading_of(source, content)
     if isinstance(content, TsplibFile):
         if is_fleet(content):

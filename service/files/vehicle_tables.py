@@ -1,6 +1,7 @@
 """Read a table of stops and a table of vehicles as the request for a fleet."""
 
 import re
+from collections.abc import Mapping
 
 from service.files.cells.durations import read_units
 from service.files.cells.times import (
@@ -31,6 +32,11 @@ def has_vehicles(table: Table) -> bool:
     return table.heading is not None and is_about_vehicles(table.heading)
 
 
+def has_places(table: Table) -> bool:
+    """Return whether a table says where its rows are, as one of stops does, by its heading."""
+    return bool({"latitude", "x", "place"} & set(fields_of(table.heading or [])))
+
+
 def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]) -> Reading:
     """Return the request for the stops of one table and the vehicles of the other.
 
@@ -46,7 +52,9 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     if plane is None:
         recognise_hours(columns)
         read_units(columns)
-    vehicles = _Vehicles(columns, stops, located=plane is None).read()
+    read = _Vehicles(columns, stops, located=plane is None)
+    vehicles = read.read()
+    _name_servers(stops, read.names)
     add_loads(columns, vehicles, visits, stops, units)
     add_skills(columns, vehicles)
     check_servers(visits, stops, columns, vehicles)
@@ -88,17 +96,33 @@ class _Vehicles:
         self._located = located
         self._ids = {stop["id"] for stop in stops}
         self._places: dict[tuple[float, ...], str] = {}
+        self.names: dict[str, str] = {}  # of drivers and plates, with the vehicle of each
 
     def read(self) -> list[Vehicle]:
         """Return the vehicles with their ids, counts, places and shifts."""
         columns = self._columns
         rows = range(len(columns.table.rows))
-        if "id" in columns.fields:
+        plate = columns.find("plate")
+        if plate is not None and "id" not in columns.fields:
+            columns.fields[plate] = "id"
+            plate = None
+        if plate is not None:
+            ids = self._with_plates(columns.ids(), plate)
+        elif "id" in columns.fields:
             ids = columns.ids()
         else:
             ids = [f"vehicle {row + 1}" for row in rows]
             self._source.note("ids", "No column has names of vehicles: they are numbered from 1.")
         return [self._vehicle(row, id_) for row, id_ in zip(rows, ids, strict=True)]
+
+    def _with_plates(self, names: list[str], plate: int) -> list[str]:
+        """Return ids of vehicles that say their names or drivers, and their plates."""
+        plates = [" ".join(self._columns.text(row, plate).split()) for row in range(len(names))]
+        pairs = list(zip(names, plates, strict=True))
+        ids = [f"{name}, {each}" if each else name for name, each in pairs]
+        for known in (plates, names):
+            self.names |= dict(zip(known, ids, strict=True))
+        return ids
 
     def _vehicle(self, row: int, id_: str) -> Vehicle:
         columns = self._columns
@@ -144,6 +168,13 @@ class _Vehicles:
             self._ids.add(name)
             self._stops.append({"id": name, "location": location})
         return name
+
+
+def _name_servers(stops: list[Stop], names: Mapping[str, str]) -> None:
+    """Name the vehicle of each stop as the table of vehicles does, also if it has its driver."""
+    for stop in stops:
+        if (server := stop.get("vehicle")) in names:
+            stop["vehicle"] = names[server]
 
 
 def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:

@@ -463,6 +463,19 @@ HEADINGS: dict[str, tuple[list[str], Becomes | str]] = {
         [f"id,Lat,Lon,Load #1,Load #2\ndepot,{PLACES[0]},,\na,{PLACES[1]},2,30\n", "vehicle,Max load #2,Max load #1\nvan,90,4\n"],
         stops("depot a", request={"vehicles": [{"id": "van", "capacity": [4, 90], "start": "depot", "end": "depot"}]}),
     ),
+    "a driver with a plate": (
+        [f"id,Lat,Lon,driver\ndepot,{PLACES[0]},\na,{PLACES[1]},Pekka\nb,{PLACES[1]},AB-2\nc,{PLACES[1]},\"Anna, AB-2\"\n", "plate,driver,capacity\nAB-1,Pekka,4\nAB-2,Anna,5\n"],
+        stops("depot a b c", vehicle=[None, "Pekka, AB-1", "Anna, AB-2", "Anna, AB-2"],
+              request={"vehicles": [{"id": "Pekka, AB-1", "start": "depot", "end": "depot"}, {"id": "Anna, AB-2", "start": "depot", "end": "depot"}]}),
+    ),
+    "a plate is enough": (
+        [f"id,Lat,Lon,demand\ndepot,{PLACES[0]},\na,{PLACES[1]},2\n", "Kennzeichen,Kapazität\nHH-A 1,4\n"],
+        stops("depot a", request={"vehicles": [{"id": "HH-A 1", "capacity": [4], "start": "depot", "end": "depot"}]}),
+    ),
+    "vehicles alone": (
+        ["plate,driver,capacity,start,shift start\nAB-1,Pekka,4,depot,8:00\n"],
+        "has vehicles and no stops: open it with a table of stops, or after it",
+    ),
     "items as text are no demand": (
         [f"id,Lat,Lon,Items\na,{PLACES[0]},soap\nb,{PLACES[1]},bread and milk\n"],
         stops("a b", "Not used: 'Items'"),

@@ -45,6 +45,11 @@ export class FileNotes {
     if (this.#name) this.#status.replaceChildren(made("p", {}, `Still open: ${this.#name}, as it was read before.`));
   }
 
+  /** The name of what was opened last; "" once its notes are dismissed. */
+  get name() {
+    return this.#name;
+  }
+
   dismiss() {
     this.#columns.clear();
     this.#name = "";

@@ -2,7 +2,7 @@
 
 import { Examples } from "./examples.js";
 import { FileNotes } from "./file_notes.js";
-import { withEdited, withFleet } from "./own_fleet.js";
+import { withEdited, withFleet, withTyped } from "./own_fleet.js";
 import { Reading, read } from "./reading.js";
 import { Surroundings } from "./surroundings.js";
 import { counted } from "../common/numbers.js";
@@ -19,6 +19,8 @@ export class Opening {
   #awaited = null; // the file of an example that will be shown, unless files are opened instead
   #refusal = null; // the refusal of such files, while that example is fetched nevertheless
   #vehiclesRead; // as JSON, before they were edited
+  #stopsRead; // likewise
+  #ofStops = []; // the files that were opened last, without a table of vehicles that joined them
   #notes = new FileNotes(element("file-notes"), element("dismiss-notes"), element("columns"), {
     onDismissed: () => element("file").focus(),
     onChosen: (...chosen) => this.openFiles(...chosen),
@@ -49,6 +51,11 @@ export class Opening {
     this.#awaited = null;
   }
 
+  /** The title of the example, or the names of the files, that are shown; "" where stops were typed. */
+  get title() {
+    return this.examples.chosen?.title ?? this.#notes.name;
+  }
+
   stop() {
     this.reading.end();
     if (this.#awaited) this.examples.forget();
@@ -58,6 +65,7 @@ export class Opening {
 
   forget() {
     this.examples.forget();
+    this.#ofStops = [];
     this.#notes.dismiss();
     this.surroundings.forget();
   }
@@ -82,13 +90,15 @@ export class Opening {
     const words = files.length > 1 ? "The files are being read." : "The file is being read.";
     try {
       await this.run(words, async ({ signal }) => {
-        const brought = await this.#read(files, columns, signal);
+        const { brought, opened } = await this.#joined(files, columns, signal);
         signal.throwIfAborted();
-        const before = this.examples.chosen ? undefined : this.#page.asked().vehicles;
+        const asked = this.examples.chosen ? {} : this.#page.asked();
+        const ofStops = opened === files ? files : this.#ofStops;
         this.forget();
-        const kept = (columns.length ? withEdited : withFleet)(brought, before, this.#vehiclesRead);
+        const kept = withTyped((columns.length ? withEdited : withFleet)(brought, asked.vehicles, this.#vehiclesRead), opened !== files && asked, this.#stopsRead);
         this.#open(kept);
-        this.#notes.show(files, columns, kept);
+        this.#ofStops = ofStops;
+        this.#notes.show(opened, columns, kept);
       });
     } catch (error) {
       this.#notes.refused(files, columns, error);
@@ -106,7 +116,21 @@ export class Opening {
   /** Opens what was read, and notes which of its vehicles nobody has edited. */
   #open({ members, objectives, vehicles }) {
     this.#page.open({ ...members, ...(vehicles && { vehicles }) }, objectives);
-    if (!vehicles) this.#vehiclesRead = JSON.stringify(this.#page.asked().vehicles);
+    const asked = this.#page.asked();
+    if (!vehicles) this.#vehiclesRead = JSON.stringify(asked.vehicles);
+    this.#stopsRead = JSON.stringify(asked.stops);
+  }
+
+  /** What was read from files, and these; a table of vehicles alone joins the files of stops that are open. */
+  async #joined(files, columns, signal) {
+    try {
+      return { brought: await this.#read(files, columns, signal), opened: files };
+    } catch (error) {
+      const isOfVehicles = error.errors?.some(({ code }) => code === "vehicles-alone");
+      if (!isOfVehicles || !this.#ofStops.length) throw error;
+      const opened = [...this.#ofStops, ...files];
+      return { brought: await this.#read(opened, columns, signal), opened };
+    }
   }
 
   async #read(files, columns, signal) {
@@ -131,6 +155,7 @@ export class Opening {
     if (!this.examples.choose(file)) return false;
     const { chosen } = this.examples;
     this.#awaited = file;
+    this.#ofStops = [];
     this.#notes.dismiss();
     const fetched = async ({ signal }) => {
       const wanted = await this.#service.get(`examples/${file}`, signal);

@@ -19,6 +19,17 @@ export function withFleet(brought, before, read) {
   return { ...brought, vehicles: before, notes: [...others, { code: INVENTED, text: "The file names no vehicles: they are those from before." }] };
 }
 
+/**
+ * What was read from files of stops and a table of vehicles that joined them, with the stops that are shown if they were edited since they were
+ * `read`, which is JSON, and these vehicles serve them. `asked` is the request that is shown, false if no vehicles joined.
+ */
+export function withTyped(brought, asked, read) {
+  const { vehicles } = brought.members;
+  if (!asked || JSON.stringify(asked.stops) === read || !asked.stops || !vehicles || !canServe(vehicles, asked)) return brought;
+  const { members, ...others } = brought;
+  return { ...others, members: { ...asked, vehicles } };
+}
+
 /** Whether vehicles start and end at stops of a request, carry what it demands, and have shifts only where it has times. */
 function canServe(vehicles, { stops, clock }) {
   const ids = stops.map(({ id }) => id);
