@@ -89,6 +89,14 @@ function cellOf({ grid, cell_size: side, origin }, [x, y]) {
   return Number.isFinite(row) && Number.isFinite(column) ? [row, column] : null;
 }
 
+/** The cell in a text, as x and y in metres, or as "row 3, column 5", counted from 1; null if it is something else. */
+export function cellIn(request, text) {
+  const [, row, column] = /^\s*row\s*(\d+)[\s,;]*col(?:umn)?\s*(\d+)\s*$/i.exec(text) ?? [];
+  if (row) return [row - 1, column - 1];
+  const pose = poseIn(text);
+  return pose && cellOf(request, pose);
+}
+
 /** The pose in a text, as "1.5, -0.2"; null if it is something else. */
 export function poseIn(text) {
   const numbers = text.split(/[\s,;]+/).map(Number);

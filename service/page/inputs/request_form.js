@@ -12,6 +12,7 @@ import { placedAt, withRobotEnd } from "./map_ends.js";
 import { isProposed, withoutLayer } from "./map_proposal.js";
 import { IF_LOST, isCity, nameOf, rounded, textOf } from "./places.js";
 import { PlanLine } from "./plan_line.js";
+import { RobotCount } from "./robot_count.js";
 import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
 import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
 import { EditableTable } from "./table.js";
@@ -40,6 +41,7 @@ export class RequestForm {
     onShade: (at) => this.#shade(at),
     onRemove: (at) => this.open(withoutLayer(this.asked, at)),
   });
+  #robots = new RobotCount(() => this.asked, (request) => this.open(request));
   #onShaded;
   #text = new RequestText(element("fleet-request"));
   #planLine;
@@ -90,6 +92,7 @@ export class RequestForm {
     element("named").hidden = !this.#isFleet && (Boolean(kind.movers || wanted.cost_layers) || !(kind.onGrid || form));
     this.#fleet.open(this.#isFleet ? this.#brought : null);
     this.#day.open(this.#brought);
+    this.#robots.show(wanted);
     this.#show(wanted.coordinates ?? []);
     element("rounding").hidden = !wanted.rounded;
     element("rounded").checked = Boolean(wanted.rounded);

@@ -2,7 +2,7 @@
 
 import "../vendor/leaflet/leaflet.js";
 import { routeStyle } from "../fleet/route_styles.js";
-import { cellNamed, endsOf, faultOf } from "../inputs/map_ends.js";
+import { cellIn, cellNamed, endsOf, faultOf } from "../inputs/map_ends.js";
 import { ring } from "./flatmap.js";
 import { Handling } from "./handling.js";
 
@@ -38,6 +38,7 @@ export class GridEnds {
     element("end-of").addEventListener("change", ({ target }) => this.choose(Number(target.value)));
     element("place-end").addEventListener("click", () => this.#turnPlacing(!this.placing));
     element("remove-end").addEventListener("click", () => this.remove());
+    element("end-at").addEventListener("change", ({ target }) => this.#type(target));
     element("ends").addEventListener("keydown", ({ key }) => key === "Escape" && this.#turnPlacing(false));
   }
 
@@ -133,6 +134,14 @@ export class GridEnds {
 
   drop(at, point) {
     this.#put(at, cellAt(this.#map.containerPointToLatLng(point)));
+  }
+
+  /** Puts the end that the list shows where its field says. */
+  #type(field) {
+    const cell = cellIn(this.#request, field.value);
+    if (cell) this.#put(this.#listed, cell);
+    else if (field.value.trim()) return this.#told.onRefused(`“${field.value}” is neither x and y in metres nor a row and a column, as “row 3, column 5”.`);
+    field.value = "";
   }
 
   #put(at, cell) {
