@@ -182,6 +182,9 @@ def test_a_link_keeps_the_tour_that_was_chosen(
         expect(other.locator("#status")).to_have_text(f"This is the {noun} of the link.")
         expect(other.locator("#count")).to_have_text("60 stops")
         assert on_screen(other) == chosen
+        others = other.locator("#legend .alone")
+        expect(others).to_have_count(1)
+        assert others.is_visible() == (name != "three")
         expect(other.get_by_role("button", name="Save GeoJSON")).to_be_disabled()
         assert copied(other, "link") == link
         other.get_by_role("button", name="Plan again").click()
@@ -258,6 +261,26 @@ def kept(node: Node, request: dict[str, Any], chosen: dict[str, Any]) -> bool:
     link = {"id": 32 * "0", "asked": {"chosen": chosen, "objectives": request["objectives"]}}
     ids = [stop["id"] for stop in request["stops"]]
     return node.call("result/chosen.js", "keptAnswer", link, request, ids) is not None
+
+
+def test_a_link_carries_thirty_points_of_a_front_with_both_ends(node: Node) -> None:
+    def carried(front: list[dict[str, list[float]]]) -> Any:
+        return node.call("result/chosen.js", "pointsOf", front)
+
+    front = [{"lengths": [1000 / 3 + k, 200 - k]} for k in range(100)]
+    points = carried(front)
+    assert len(points) == 30
+    assert (points[0], points[-1]) == ([333.33, 200], [432.33, 101])
+    assert carried(front[:3]) == [[333.33, 200], [334.33, 199], [335.33, 198]]
+    assert carried(front[:1]) is None
+    assert carried([{"lengths": [1, 2, 3]}] * 2) is None
+    request = REQUESTS["two"]
+    for points, fits in (([[1, 2], [3, 4]], True), ([[1, "x"], [3, 4]], False), ([[1]], False)):
+        chosen = {**SOUND["two"], "points": points}
+        link = {"id": 32 * "0", "asked": {"chosen": chosen, "objectives": request["objectives"]}}
+        ids = [stop["id"] for stop in request["stops"]]
+        answer = node.call("result/chosen.js", "keptAnswer", link, request, ids)
+        assert ("among" in answer) == fits
 
 
 def test_a_front_is_planned_again_where_the_tour_of_the_link_does_not_fit(

@@ -169,12 +169,9 @@ def test_neither_loads_nor_windows_are_cut_off(shown: Page) -> None:
     check_on_a_phone(shown, "#fleet")
 
 
-@pytest.mark.parametrize(("minutes", "asked"), [(30, [0.2]), (300, [0, 0.2])])
-def test_a_fleet_of_tight_windows_is_only_searched(
-    browser: Browser, released: str, minutes: int, asked: list[float]
-) -> None:
-    """The network seldom has a plan for it, and its refusal would be an error in the console."""
-    window = [8 * HOUR, 8 * HOUR + minutes * MINUTE]
+def test_a_fleet_is_only_searched(browser: Browser, released: str) -> None:
+    """The network may have no plan for it, and its refusal would be an error in the console."""
+    window = [8 * HOUR, 8 * HOUR + 30 * MINUTE]
     stops = [{**each, "demand": [1], "window": window} for each in REQUEST["stops"][1:]]
     objectives = [
         {"name": "distance", "from": "great_circle"},
@@ -207,5 +204,5 @@ def test_a_fleet_of_tight_windows_is_only_searched(
         page.remove_listener("request", note_request)
         page.remove_listener("response", note_response)
         expect(page.locator("#will-plan")).to_contain_text("Distance against longest route")
-    assert sent == asked
+    assert sent == [0.2]
     assert refused == []

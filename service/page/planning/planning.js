@@ -1,16 +1,13 @@
-/** Plan a request in two steps: the network's front at once, then the improved one. On maps, in one. */
+/** Plan a request in two steps: the network's front at once, then the improved one. On maps, and of fleets, in one. */
 
-import { SECONDS } from "../common/durations.js";
 import { kindOf } from "../common/kinds.js";
-import { clockUnit } from "../fleet/units.js";
 import { Problem } from "./service.js";
 
 const GLANCE = 300; // milliseconds between two requests for a growing front
 const MOST_WAIT = 5; // seconds between two attempts
 const MANY = 1500; // stops: for more, the network's front may take longer than a search
-const TIGHT = 7200; // seconds: where most stops have windows up to this, the network seldom has a plan
 const REFUSED = Symbol("the network has no plan");
-// With shipments, tight windows or very many stops, only the search finds plans.
+// Of very many stops, only the search finds plans.
 const SEARCH_ALONE = ["no-plan", "too-many-for-network"];
 const FINAL = ["done", "cancelled", "failed"];
 
@@ -35,8 +32,10 @@ export class Planning {
 
   async *plan(request) {
     const { time_limit: seconds = 1 } = request.body;
-    // For a draft, a map would be surveyed twice, which takes longer than the search needs for its first front.
-    const isSearched = kindOf(request.body).onGrid || stopsIn(request.body) > MANY || isForSearch(request.body);
+    // For a draft, a map would be surveyed twice, which takes longer than the search needs for its first front; and fleets
+    // with windows, shipments or breaks would be refused by the network, where the search has its first plan as soon.
+    const { onGrid, movers } = kindOf(request.body);
+    const isSearched = onGrid || movers || stopsIn(request.body) > MANY;
     // A time that is refused is refused before a draft is shown.
     if (!(seconds >= 0 && seconds <= this.#mostSeconds) || (seconds !== 0 && isSearched)) return yield* this.#improved(request, null);
     for await (const alone of this.#alone(request)) {
@@ -50,7 +49,7 @@ export class Planning {
   async *#alone(request) {
     const { initial_tours, bound, ...body } = request.body;
     // Where the search follows, the network's tours come soonest without repairs, which plans have not.
-    const soonest = body.time_limit === 0 || kindOf(body).movers ? {} : { repairs: 0 };
+    const soonest = body.time_limit === 0 ? {} : { repairs: 0 };
     try {
       yield* this.#patiently({ path: request.path, body: { ...body, time_limit: 0, ...soonest } });
     } catch (error) {
@@ -171,19 +170,6 @@ const grown = (alone, answer) => {
 };
 
 const stopsIn = ({ coordinates, stops, matrices }) => (coordinates ?? stops ?? matrices?.[0] ?? []).length;
-
-/** Whether the network would refuse a fleet, surely or most often. The search then has the first plan as soon. */
-function isForSearch(body) {
-  const { stops, vehicles, shipments } = body;
-  if (!Array.isArray(vehicles) || !Array.isArray(stops)) return false;
-  if (shipments?.length || vehicles.some((each) => each?.breaks?.length) || stops.some((each) => each?.windows?.length > 1)) return true;
-  const second = SECONDS.get(clockUnit(body));
-  const isTight = ({ window, windows }) => {
-    const [opens, closes] = windows?.[0] ?? window ?? [];
-    return (closes - opens) * second <= TIGHT;
-  };
-  return 2 * stops.filter(isTight).length > stops.length;
-}
 
 function pause(seconds, signal) {
   return new Promise((resolve, reject) => {

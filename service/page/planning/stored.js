@@ -7,7 +7,7 @@ const FORGOTTEN = "the service no longer has the result of this link, and the li
 
 /**
  * The states of a stored front, as a planning yields them. If the service no longer has the front, the state
- * "kept" shows the tour of the link, if it `carried` one. If not, the front is planned again, if the request is
+ * "kept" shows the tour of the link, if it `carried` one, among the points of its front. If not, the front is planned again, if the request is
  * known. A front without a search is the network's front.
  *
  * @param {{ request: object | null, searched: boolean, carried: object | null }} known the request, whether it asks
@@ -20,7 +20,8 @@ export async function* stored(planning, id, { request, searched, carried }) {
     }
   } catch (error) {
     if (!GONE.includes(error.code)) throw error;
-    if (carried) return yield { stage: "kept", alone: null, answer: carried, growth: [], again: Boolean(request) };
+    const alone = carried?.among ? { front: carried.among.map((lengths) => ({ lengths })) } : null;
+    if (carried) return yield { stage: "kept", alone, answer: carried, growth: [], again: Boolean(request) };
     if (!request) throw new Problem({ code: error.code, detail: FORGOTTEN });
     yield* planning.plan(request);
   }

@@ -2,15 +2,25 @@
 
 import { kindNamed } from "../common/kinds.js";
 
+const MOST_POINTS = 30; // of a front, which a link carries: 60 numbers
+const DIGITS = 5; // of each
 const NUMBERS = ["angle", "departure", "kept"];
 
 /**
  * The selected tour or plan of an answer, with what it takes to draw it. A tour leaves out the names of its
- * stops if the request is `known`: they follow from their numbers.
+ * stops if the request is `known`: they follow from their numbers. `points` are the lengths of some of its front, if there are two.
  */
-export function chosenOf({ kind, closed, places }, item, known) {
+export function chosenOf({ kind, closed, places, front, among }, item, known) {
   const { stops, ...numbered } = item;
-  return { kind, closed, places, item: known ? numbered : item };
+  return { kind, closed, places, item: known ? numbered : item, points: among ?? pointsOf(front) };
+}
+
+/** The lengths of at most so many tours of a front, both ends among them, as a chart can show; undefined unless there are two. */
+export function pointsOf(front) {
+  if (front.length < 2 || front[0].lengths.length !== 2) return undefined;
+  const last = Math.min(front.length, MOST_POINTS) - 1;
+  const shown = Array.from({ length: last + 1 }, (_, at) => front[Math.round((at * (front.length - 1)) / last)]);
+  return shown.map(({ lengths }) => lengths.map((value) => Number(value.toPrecision(DIGITS))));
 }
 
 /**
@@ -26,7 +36,8 @@ export function keptAnswer({ id, asked }, instance, ids) {
   const known = { ids, cities: citiesIn(instance, chosen) };
   if (!isSound(chosen, known) || !isNamed(objectives, chosen.item.lengths.length)) return null;
   const { kind, closed, places } = chosen;
-  return { id, kind, closed, places, objectives, kept: true, stops: instance.stops, points: 1, front: [withNames(chosen.item, ids)] };
+  const among = arePoints(chosen.points) ? chosen.points : undefined;
+  return { id, kind, closed, places, objectives, kept: true, stops: instance.stops, points: 1, among, front: [withNames(chosen.item, ids)] };
 }
 
 /** The index in a front of the tour or plan of a link; -1 if it is not there. */
@@ -80,6 +91,7 @@ const isVisits = (tour, { cities }) =>
   Array.isArray(tour) && tour.length > 0 && tour.every((city) => Number.isInteger(city) && city >= 0 && city < cities);
 const isTexts = (texts, beside) =>
   texts === undefined || (Array.isArray(texts) && texts.length === beside.length && texts.every((text) => typeof text === "string"));
+const arePoints = (points) => isRows(points) && points.length > 1 && points.length <= MOST_POINTS && points.every(({ length }) => length === 2);
 const isRow = (row) => Array.isArray(row) && row.every(Number.isFinite);
 const isRows = (rows) => Array.isArray(rows) && rows.every(isRow);
 const isPath = (path) => isRows(path?.cells);
