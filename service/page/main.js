@@ -150,6 +150,7 @@ async function screen() {
     asked,
     known,
     example: examples.unchanged(asked),
+    title: opening.title,
     objectives,
     details: detailsByStop(input.asked),
     ...result.taken,

@@ -44,6 +44,30 @@ def given(page: Page, name: str) -> str:
     return download.value.path().read_text()
 
 
+def check_sheets(window: Page) -> None:
+    """Check that each vehicle has a page, with title, date and totals."""
+    window.evaluate("window.print = () => {}")
+    window.get_by_role("button", name="Print the stops of the selected tour").click()
+    sheet = window.locator("#sheet")
+    expect(sheet).to_be_hidden()
+    window.emulate_media(media="print")
+    expect(sheet).to_be_visible()
+    expect(window.locator("main")).to_be_hidden()
+    expect(sheet.get_by_role("heading", level=2)).to_have_text(["van 1", "van 2"])
+    expect(sheet.get_by_role("heading", level=1)).to_have_text(["orders.csv", "orders.csv"])
+    for at, part in enumerate(sheet.locator("section").all()):
+        expect(part.locator("header p")).to_have_text(
+            re.compile(r"^Printed on .*, \d{4} at \d\d:\d\d\. 2 vehicles, ")
+        )
+        expect(part.locator("p").nth(1)).to_contain_text(re.compile(r"^\d stops?, load \d"))
+        assert part.evaluate("part => getComputedStyle(part).breakBefore") == (
+            "page" if at else "auto"
+        )
+    place = sheet.get_by_role("link", name="A, at the back")
+    expect(place).to_have_attribute("href", re.compile(r"^geo:60\.18,24\.95\?q="))
+    window.emulate_media(media="screen")
+
+
 def test_a_plan_is_a_row_for_each_stop_a_route_of_gpx_and_a_list(window: Page) -> None:
     front = planned(window, {"orders.csv": FLEET})
     rows = list(csv.DictReader(io.StringIO(given(window, "Save the stops of the selected tour"))))
@@ -70,17 +94,7 @@ def test_a_plan_is_a_row_for_each_stop_a_route_of_gpx_and_a_list(window: Page) -
     assert alone["front"] == [front["front"][0]]
     for member in ("id", "kind", "objectives", "stops"):
         assert alone[member] == front[member]
-    window.evaluate("window.print = () => {}")
-    window.get_by_role("button", name="Print the stops of the selected tour").click()
-    sheet = window.locator("#sheet")
-    expect(sheet).to_be_hidden()
-    window.emulate_media(media="print")
-    expect(sheet).to_be_visible()
-    expect(window.locator("main")).to_be_hidden()
-    expect(sheet.get_by_role("heading")).to_have_text(["van 1", "van 2"])
-    place = sheet.get_by_role("link", name="A, at the back")
-    expect(place).to_have_attribute("href", re.compile(r"^geo:60\.18,24\.95\?q="))
-    window.emulate_media(media="screen")
+    check_sheets(window)
 
 
 def test_a_tour_over_the_day_has_its_hours(window: Page) -> None:

@@ -33,7 +33,7 @@ def test_pictures_show_the_front_and_the_selected_tour(planned: Page) -> None:
     drawing = ElementTree.fromstring(saved(planned, "SVG"))
     texts = [text.text for text in drawing.iter(f"{SVG}text")]
     assert planned.locator("#choice").inner_text() in texts
-    assert {"Distance, m", "Risk", "Distance"} <= set(texts)
+    assert {"Risk", "Distance"} <= set(texts)
     dots = list(drawing.iter(f"{SVG}circle"))
     assert len(dots) == len(front) + 1 + 2 * (61 + 1)  # a ring at the selected tour, and its start
     paths = [path.get("d") or "" for path in drawing.iter(f"{SVG}path")]

@@ -165,7 +165,7 @@ def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> No
     found = rows(late)
     late.get_by_role("button", name="Stop comparing").click()
     assert found == {
-        "Distance, m": ["5,000", "4,000", "+25.0 %"],
+        "Distance": ["5,000 m", "4,000 m", "+25.0 %"],
         "Lateness": ["0 min", "13 min", f"{MINUS}13 min"],
         "Vehicles used": ["2", "1", "+1"],
         "Driving in all": ["50 min", "50 min", "same"],
@@ -175,7 +175,7 @@ def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> No
         "Longest route": ["1 h 5 min", "1 h 5 min", "same"],
         "Shortest route": ["1 h 5 min", "1 h 5 min", "same"],
         "Longest minus shortest": ["0 min", "0 min", "same"],
-        "Prizes left out, m": ["0", "900", f"{MINUS}900"],
+        "Prizes left out": ["0 m", "900 m", f"{MINUS}900 m"],
     }
 
 

@@ -111,7 +111,7 @@ def test_three_objectives_are_asked_for_shown_and_named(page: Page) -> None:
     label = page.locator("#scatter").get_attribute("aria-label") or ""
     assert re.match(r"A choice of \d+ tours: way from .* to .*, people met from", label)
     rows = page.locator("#comparison tbody th").all_inner_texts()
-    assert rows == ["Way, m", "People met", "Climb, m"]
+    assert rows == ["Way", "People met", "Climb"]
 
 
 def test_without_limits_the_tour_in_the_middle_is_shown(page: Page) -> None:
@@ -239,7 +239,7 @@ def test_the_objectives_across_up_and_of_the_colour_are_chosen(page: Page) -> No
     across.select_option("Climb")
     expect(colour).to_have_value("0")
     expect(up).to_have_value("1")
-    expect(page.locator("#scatter svg")).to_contain_text("Climb, m")
+    expect(page.locator("#scatter svg")).to_contain_text("Climb")
     assert page.locator("#scatter circle").first.get_attribute("cx") != places
     across.select_option("Way")
 

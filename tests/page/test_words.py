@@ -28,8 +28,11 @@ TIMES_M = "risk \N{MULTIPLICATION SIGN} m"
         ("s", -15, 5, "Driving", f"{MINUS}15 s"),
         ("min", 60, 1, "Driving", "1:00 h"),
         ("h", 25, 1, "Driving", "25:00 h"),
-        ("m", 2700, 100, "Driving, m", "2,700"),
-        ("m", 9576.97, 0.01, "Driving, m", "9,576.97"),
+        ("m", 2700, 100, "Driving", "2,700 m"),
+        ("m", 9576.97, 0.01, "Driving", "9,576.97 m"),
+        ("m", 12_000, 1000, "Driving", "12 km"),
+        ("m", 12_345, 5, "Driving", "12.345 km"),
+        ("km", 12_345, 5, "Driving, km", "12,345"),
         ("", 2700, 100, "Driving", "2,700"),
     ],
 )
@@ -52,6 +55,41 @@ def test_the_title_of_an_axis_says_the_unit_where_nothing_else_does(
     node: Node, objective: dict[str, Any], title: str, tick: str
 ) -> None:
     assert node.evaluate(TITLE_AND_TICK, [objective, 7.2, 1]) == [title, tick]
+
+
+@pytest.mark.parametrize(
+    ("value", "amount", "figure"),
+    [
+        (340, "340 m", "340 m"),
+        (9_994.4, "9,990 m", "9,994.4 m"),
+        (9_996, "10 km", "9,996 m"),
+        (134_123.4, "134 km", "134.123 km"),
+    ],
+)
+def test_from_ten_thousand_metres_on_a_distance_is_in_kilometres(
+    node: Node, value: float, amount: str, figure: str
+) -> None:
+    distance = {"name": "distance", "unit": "m"}
+    assert node.call("common/amounts.js", "amount", value, distance) == amount
+    assert node.call("common/amounts.js", "figure", value, distance) == figure
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "less"),
+    [
+        ("people met", "people", "fewer"),
+        ("left turns", "", "fewer"),
+        ("vehicles", "", "fewer"),
+        ("turns", "s", "less"),
+        ("crowds", "people", "less"),
+        ("risk", "", "less"),
+    ],
+)
+def test_there_are_fewer_things_and_less_of_a_sum(
+    node: Node, name: str, unit: str, less: str
+) -> None:
+    said = node.call("common/amounts.js", "lessOf", {"name": name, "unit": unit})
+    assert said == f"{less} {name}"
 
 
 @pytest.mark.parametrize(
@@ -113,7 +151,7 @@ LATENESS = {"name": "lateness", "measure": "lateness", "unit": "s"}
         (METRES, 4000, 0, ""),
         (LATENESS, 0, 780, f"{MINUS}13 min"),
         (LATENESS, 780, 780, "same"),
-        (PRIZES, 900, 0, "+900"),
+        (PRIZES, 900, 0, "+900 m"),
     ],
 )
 def test_how_much_more_one_has_than_another(

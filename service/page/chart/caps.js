@@ -1,7 +1,9 @@
 /** Limits on three or more objectives: a slider each, whose track shows what is left within the other limits. */
 
-import { amount, figure, leastOf, wordsOf } from "../common/amounts.js";
+import { amount, compared, figure, leastOf, wordsOf } from "../common/amounts.js";
+import { made } from "../common/elements.js";
 import { capital, isTime, titled } from "../common/objectives.js";
+import { markAt, ticks } from "./ticks.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
 const orNull = (limits) => limits.map((most) => (Number.isFinite(most) ? most : null));
@@ -9,7 +11,7 @@ const orNull = (limits) => limits.map((most) => (Number.isFinite(most) ? most : 
 export class Caps {
   #element;
   #onLimits;
-  #rows = []; // of each objective: its slider, and what is said beside it
+  #rows = []; // of each objective: its slider with marks and what both of its ends mean, and what is said beside it
   #front = [];
   #objectives = [];
   #wanted = []; // the limit of each objective, Infinity where there is none
@@ -121,11 +123,12 @@ export class Caps {
       const least = Object.assign(document.createElement("button"), { type: "button", textContent: wordsOf(objective).least });
       least.setAttribute("aria-label", `${capital(leastOf(objective))} within the limits`);
       least.addEventListener("click", () => this.#onLeast(this.#front.findIndex((tour) => this.allows(tour) && tour.lengths[axis] === this.#left(axis)[0])));
-      return { slider, said, least };
+      const [marks, ends] = [ticks(), made("small", { ariaHidden: "true" }, made("span"), made("span"))];
+      return { slider, said, least, marks, ends };
     });
-    const parts = this.#rows.flatMap(({ slider, said, least }, axis) => {
+    const parts = this.#rows.flatMap(({ slider, said, least, marks, ends }, axis) => {
       const label = Object.assign(document.createElement("label"), { htmlFor: slider.id, textContent: titled(objectives[axis]) });
-      return [label, said, least, slider];
+      return [label, said, least, made("div", { className: "track" }, slider, marks, ends)];
     });
     this.#element.replaceChildren(...parts);
   }
@@ -156,7 +159,7 @@ export class Caps {
   }
 
   #draw() {
-    this.#rows.forEach(({ slider, said, least: button }, axis) => {
+    this.#rows.forEach(({ slider, said, least: button, marks, ends }, axis) => {
       slider.disabled = button.disabled = this.#front.length < 2;
       if (!this.#front.length) return;
       const [least, most] = this.#ends(axis);
@@ -164,9 +167,11 @@ export class Caps {
       const limit = Math.min(this.#limits[axis], most);
       Object.assign(slider, { min: least, max: most });
       slider.value = limit;
-      const share = (value) => `${(100 * (value - least)) / (most - least || 1)}%`;
-      slider.style.setProperty("--from", share(left[0]));
-      slider.style.setProperty("--to", share(left.at(-1)));
+      const share = (value) => (value - least) / (most - least || 1);
+      slider.style.setProperty("--from", `${100 * share(left[0])}%`);
+      slider.style.setProperty("--to", `${100 * share(left.at(-1))}%`);
+      markAt(marks, this.#front.map(({ lengths }) => share(lengths[axis])));
+      [least, most].forEach((value, end) => (ends.children[end].textContent = compared(value, this.#objectives[axis])));
       const atMost = Number.isFinite(this.#limits[axis]) ? `at most ${this.#amount(axis, limit)}` : "no limit";
       said.textContent = atMost;
       const range = `${this.#amount(axis, left[0])} to ${this.#amount(axis, left.at(-1))} within the other limits`;

@@ -76,11 +76,14 @@ export class FrontChart {
     this.#budget.want(limits);
   }
 
-  /** Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked; or that there is none, maybe as there is nothing `toPlan`. */
-  show(alone, improved, noun, toPlan = true) {
+  /**
+   * Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked; or that there is none, maybe
+   * as there is nothing `toPlan`. `whole` says that all points are seen.
+   */
+  show(alone, improved, noun, toPlan = true, whole = false) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
-    this.#ranges = rangesOf(this.#front, alone);
+    this.#ranges = rangesOf(this.#front, alone, whole);
     this.#write();
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#budget.show(this.#front);
@@ -155,11 +158,11 @@ const [NONE, NO_STOPS] = ["Nothing planned yet. Press Plan.", "Nothing planned y
 
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
 
-/** The least and the greatest of both lengths of a front, and of other points that do not lie far beyond it; null of no front. */
-function rangesOf(front, others) {
+/** The least and the greatest of both lengths of a front, and of other points that do not lie far beyond it, or of all; null of no front. */
+function rangesOf(front, others, all) {
   if (!front.length) return [null, null];
   const ranges = [0, 1].map((axis) => endsOf(front, axis));
-  const near = others.filter(({ lengths }) => ranges.every(([least, most], axis) => lengths[axis] <= most + WIDER * (most - least)));
+  const near = all ? others : others.filter(({ lengths }) => ranges.every(([least, most], axis) => lengths[axis] <= most + WIDER * (most - least)));
   return [0, 1].map((axis) => endsOf([...front, ...near], axis));
 }
 
@@ -181,23 +184,24 @@ function options(element, { said, range }) {
     cursor: { show: false },
     padding: [TOP, RIGHT, 0, 0],
     scales: { x: { time: false, range: () => roomy(range(0), BESIDE) }, y: { range: (chart) => roomy(range(1), roomUp(chart)) } },
-    axes: [axis(0, ACROSS, apart(said), said), axis(1, UP, 40, said)],
-    series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],
+    axes: [axis(0, ACROSS, apart(said), said), axis(1, (_chart, ticks) => widthOf(ticks), 40, said)],
+    series: [{}, dots("alone", 4), { ...dots("improved", 5), ...STAIRCASE }],
   };
 }
 
 /** Pixels from one label of the first axis to the next, so that long ones do not touch. */
 const apart = (said) => (_chart, axis, least, most) => 7 * Math.max(4, said(most, axis, (most - least) / 5).length) + 16;
 
+/** Pixels for the labels of the second axis. */
+const widthOf = (ticks) => Math.max(UP, 7 * Math.max(...(ticks ?? []).map(({ length }) => length)) + 12);
+
 /** A staircase from each point to the next, around the area that the front dominates. */
-function line(name, width, points) {
+const STAIRCASE = { width: 1.5, paths: uPlot.paths.stepped({ align: 1 }) };
+
+/** Points without a line: one through those of the first try would seem to lead to the names of others. */
+function dots(name, size) {
   const stroke = () => colour(name);
-  return {
-    stroke,
-    width,
-    paths: uPlot.paths.stepped({ align: 1 }),
-    points: { show: true, size: points, fill: stroke, width: 0 },
-  };
+  return { stroke, paths: () => null, points: { show: true, size, fill: stroke, width: 0 } };
 }
 
 function axis(at, room, space, said) {

@@ -3,12 +3,14 @@
 import { figure } from "../common/amounts.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nearest } from "../result/tours.js";
+import { markAt, ticks } from "./ticks.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
 
 export class BalanceSlider {
   #input;
   #shown;
+  #ticks = ticks();
   #front = [];
   #balance = 0; // the index of the selected tour
   #objectives = UNNAMED;
@@ -18,6 +20,7 @@ export class BalanceSlider {
   constructor(input, shown, onSelect) {
     this.#input = input;
     this.#shown = shown;
+    input.after(this.#ticks);
     input.addEventListener("input", () => onSelect(nearest(this.#front, Number(input.value))));
     input.addEventListener("change", () => (input.value = this.#balance));
     input.addEventListener("keydown", (event) => this.#step(event, onSelect));
@@ -31,6 +34,7 @@ export class BalanceSlider {
     this.#front = front;
     this.#noun = noun;
     this.#input.disabled = front.length < 2;
+    markAt(this.#ticks, front.map(({ balance }) => balance));
     if (!front.length) this.#shown.textContent = "";
   }
 
@@ -40,8 +44,8 @@ export class BalanceSlider {
     this.#balance = balance;
     if (!this.#input.matches(":active") || nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
     const at = balance.toFixed(2);
-    this.#shown.textContent = at;
     const place = `${this.#noun.one} ${index + 1} of ${this.#front.length}`;
+    this.#shown.textContent = place;
     const said = this.#objectives.map((objective, axis) => `${objective.name} ${figure(lengths[axis], objective)}`);
     this.#input.setAttribute("aria-valuetext", `${at}, ${place}: ${said.join(", ")}`);
   }

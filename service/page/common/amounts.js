@@ -1,14 +1,15 @@
 /** Put lengths of objectives and measures of plans into words: vehicles are counted, and times are hours and minutes. */
 
 import { SECONDS, duration } from "./durations.js";
-import { counted, difference, length, rounded } from "./numbers.js";
-import { isCounted, isLongest, isOfThings, isTime, namesThings, perUnit, shortUnit } from "./objectives.js";
+import { counted, difference, length, metres, rounded } from "./numbers.js";
+import { isCounted, isLongest, isMetres, isOfThings, isPlural, isTime, perUnit, shortUnit } from "./objectives.js";
 
 const FEW = 10; // things; from there on nobody counts tenths
 
-/** A value to six digits, where a title beside it has the unit. */
+/** A value to six digits, where a title beside it has the unit unless it is one of time, or metres. */
 export function figure(value, objective) {
   if (isCounted(objective) || (isOfThings(objective) && Math.abs(value) >= FEW)) return length(Math.round(value));
+  if (isMetres(objective)) return metres(value);
   return isTime(objective) ? duration(value * SECONDS.get(objective.unit), { exact: true }) : length(value / perUnit(objective));
 }
 
@@ -19,10 +20,10 @@ export function compared(value, objective) {
   return figure(isCounted(objective) ? value : rounded(value / unit) * unit, objective);
 }
 
-/** A value to three digits with its unit, such as "7 vehicles", "12 min" or "340 m". */
+/** A value to three digits with its unit, such as "7 vehicles", "12 min", "340 m" or "12.4 km". */
 export function amount(value, objective) {
   if (isCounted(objective)) return counted(Math.round(value), "vehicle", "vehicles");
-  if (isTime(objective)) return compared(value, objective);
+  if (isTime(objective) || isMetres(objective)) return compared(value, objective);
   const unit = shortUnit(objective);
   return `${compared(value, objective)}${unit && ` ${unit}`}`;
 }
@@ -40,7 +41,7 @@ export function change(value, beside, objective) {
 
 /** The words that compare an objective. */
 export function wordsOf(objective) {
-  if (isCounted(objective) || namesThings(objective)) return { least: "fewest", less: "fewer", more: "more", much: "many" };
+  if (isCounted(objective) || isPlural(objective)) return { least: "fewest", less: "fewer", more: "more", much: "many" };
   if (isLongest(objective)) return { least: "shortest", less: "shorter", more: "longer", much: "long" };
   return { least: "least", less: "less", more: "more", much: "much" };
 }

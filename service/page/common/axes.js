@@ -1,8 +1,8 @@
 /** Say how the axis of an objective is written: its title, its ticks, and the steps between them that suit it. */
 
 import { SECONDS, durationOnAxis } from "./durations.js";
-import { tick } from "./numbers.js";
-import { isCounted, isTime, perUnit, withUnit } from "./objectives.js";
+import { metres, tick } from "./numbers.js";
+import { isCounted, isMetres, isTime, perUnit, withUnit } from "./objectives.js";
 
 const DAY = 86400; // seconds
 const STEPS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, DAY, ...[2, 5, 10, 50, 100, 1000].map((days) => days * DAY)];
@@ -14,6 +14,7 @@ const ROUND = [1, 2, 2.5, 5, 10];
 export function axisOf(objective) {
   const title = withUnit(objective);
   if (isCounted(objective)) return { title, steps: COUNTS, said: (value) => tick(Math.round(value), 1) };
+  if (isMetres(objective)) return { title, steps: null, said: (value, step) => metres(value, (number, per) => tick(number, step / per)) };
   if (!isTime(objective)) return inUnits(title, perUnit(objective));
   const unit = SECONDS.get(objective.unit);
   return { title, steps: STEPS.map((step) => step / unit), said: (value, step) => durationOnAxis(value * unit, step * unit) };

@@ -45,11 +45,17 @@ export const isOfThings = ({ unit }) => THINGS.includes(unit);
 /** Whether the name says what is counted, as "people met" of people does. */
 export const namesThings = ({ name, unit }) => isOfThings({ unit }) && name.split(" ").includes(unit);
 
+/** Whether there are fewer or more of it, where of other objectives there is less: "people met", or "left turns" without a unit. */
+export const isPlural = ({ name, unit }) => namesThings({ name, unit }) || (!unit && name.split(" ").some((word) => THINGS.includes(word)));
+
 /** Whether this is the longest of a plan's routes: it is shorter or longer, where sums are less or more. */
 export const isLongest = ({ over, measure }) => over === "max" || measure === "longest";
 
 /** Whether this is a time in a known unit. */
 export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || TIMES.includes(measure));
+
+/** Whether this is a distance in metres, of which many are kilometres. */
+export const isMetres = ({ unit }) => unit === "m";
 
 /** The units of loads that are carried so far, or for so long. */
 export const [LOAD_KM, LOAD_HOURS] = ["load × km", "load × hours"];
@@ -62,7 +68,7 @@ export const shortUnit = ({ unit }) => (unit && unit.length < SHORT ? unit : "")
 
 /** The title with its unit, if there is room for that, and neither the name nor the values say it; "Risk × m" of the unit "risk × m". */
 export function withUnit(objective) {
-  const said = isCounted(objective) || isTime(objective) || namesThings(objective);
+  const said = isCounted(objective) || isTime(objective) || isMetres(objective) || namesThings(objective);
   if (!shortUnit(objective) || said) return titled(objective);
   if (objective.unit.startsWith(`${objective.name} ×`)) return titled({ name: objective.unit });
   return `${titled(objective)}, ${objective.unit}`;

@@ -29,7 +29,7 @@ export function showLegend(table, plan, movers, asked, objectives, names) {
 const titleOf = (objective) => withUnit(ofRoutes(objective) ? { ...objective, name: "whole route" } : objective);
 
 /** What a plan has of the lengths of its routes, to be said behind it; "" if that is their sum. */
-function ofRoutes(objective) {
+export function ofRoutes(objective) {
   if (objective.measure === "imbalance") return ", longest minus shortest";
   return isLongest(objective) ? ", the longest" : "";
 }

@@ -15,6 +15,16 @@ export function ring(name, side) {
   return L.marker([0, 0], { icon, interactive: false, keyboard: false });
 }
 
+/** Says something beside a marker, on the side where the map has room for it. */
+export function sayAt(marker, said) {
+  const tip = marker.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip().getTooltip();
+  const [box, map] = [tip.getElement(), marker._map.getContainer()].map((each) => each.getBoundingClientRect());
+  if (box.left < map.left) tip.options.direction = "right";
+  else if (box.right > map.right) tip.options.direction = "left";
+  else if (box.top < map.top) tip.options.direction = "bottom";
+  tip.update();
+}
+
 const PANES = { streets: 300, tours: 350, stops: 400, names: 450 };
 
 /**

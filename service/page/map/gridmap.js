@@ -3,7 +3,7 @@
 import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "../common/colours.js";
 import { made } from "../common/elements.js";
-import { fitting, flatMap, ring } from "./flatmap.js";
+import { fitting, flatMap, ring, sayAt } from "./flatmap.js";
 import { GridEnds } from "./grid_ends.js";
 import { turnOf } from "./planes.js";
 import { Routes } from "./routes.js";
@@ -108,10 +108,11 @@ export class GridMap {
 
   /** Rings a place, and says what it is; null removes the ring. */
   #point(place) {
+    this.#highlight.unbindTooltip();
     this.#mark(this.#highlight, place === null ? undefined : middle(this.#cells[place]));
-    if (place === null) return this.#highlight.unbindTooltip();
+    if (place === null) return;
     const said = `place ${place + 1}${turnOf(place, this.#tour, this.#visits)}`;
-    this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
+    sayAt(this.#highlight, said);
   }
 
   /** Draws the paths of a plan's robots, `{ name, robot, stops, path, style }` each with the robot's index, and where they start; none takes them away. */

@@ -3,7 +3,7 @@
 import "../vendor/leaflet/leaflet.js";
 import { Dots } from "./dots.js";
 import { IF_LOST } from "../inputs/places.js";
-import { fitting, flatMap, ring } from "./flatmap.js";
+import { fitting, flatMap, ring, sayAt } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { Handling } from "./handling.js";
 import { Mercator } from "./mercator.js";
@@ -179,9 +179,10 @@ export class Plane {
 
   /** Rings a city, and says what it is; null removes the ring. */
   highlight(city, said = "") {
+    this.#highlight.unbindTooltip();
     this.#mark(this.#highlight, city);
-    if (city == null) this.#highlight.unbindTooltip();
-    else this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
+    if (city == null || !this.#places[city]) return;
+    sayAt(this.#highlight, said);
   }
 
   /** Rings a clicked place that is not a stop yet; null removes the ring. */

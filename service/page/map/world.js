@@ -59,6 +59,7 @@ export class World extends CanvasLayer {
     context.fillStyle = colour("water");
     context.fillRect(0, 0, x, y);
     context.strokeStyle = colour("edge");
+    context.lineWidth = 1;
     area(this.#layers.land, "ground");
     area(this.#layers.lakes, "water");
     context.beginPath();

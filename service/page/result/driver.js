@@ -1,6 +1,7 @@
 /** Write the selected tour or plan for those who drive it: a row for each stop as CSV, as GPX, and as a list to print. */
 
 import { SECONDS } from "../common/durations.js";
+import { made as newElement } from "../common/elements.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { hoursOf } from "../fleet/times.js";
@@ -116,19 +117,28 @@ export function gpxOf(routes) {
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(gpx)}\n`;
 }
 
-/** Fills the sheet that is printed: a table for each route, below its name and when it begins. A stop's name opens the map of a phone that reads the sheet. */
-export function fillSheet(sheet, routes) {
+/**
+ * Fills the sheets that are printed, a page for each route: its name, what it comes to, when it begins, and its table. A stop's name opens the
+ * map of a phone that reads the sheet.
+ *
+ * @param {{ title: string, date: Date, totals: { whole: string, ofRoutes: string[] } }} head what stands on each page: the title, the day on
+ *   which it is printed, and totals, as of `totalsOf`
+ */
+export function fillSheet(sheet, routes, { title, date, totals }) {
+  const printed = `Printed on ${date.toLocaleString("en", { dateStyle: "full", timeStyle: "short", hourCycle: "h23" })}. ${totals.whole}.`;
   sheet.replaceChildren(
-    ...routes.map(({ name, note, visits }) => {
+    ...routes.map(({ name, note, visits }, at) => {
       const part = document.createElement("section");
+      part.append(newElement("header", {}, newElement("h1", {}, title || (name ? "Plan" : "Tour")), newElement("p", {}, printed)));
       const heading = Object.assign(document.createElement("h2"), { textContent: name || "Tour" });
       const table = document.createElement("table");
       const columns = [...TIMES, "load"].filter((column) => visits.some((visit) => visit[column]));
       const told = detailsIn(visits);
       row(table.createTHead(), ["", "stop", ...told.names, ...columns]);
       const body = table.createTBody();
-      for (const [at, visit] of visits.entries()) row(body, [at + 1, linked(visit), ...told.texts(visit), ...columns.map((column) => visit[column] ?? "")]);
-      part.append(heading, ...(note ? [Object.assign(document.createElement("p"), { textContent: note })] : []), table);
+      for (const [turn, visit] of visits.entries()) row(body, [turn + 1, linked(visit), ...told.texts(visit), ...columns.map((column) => visit[column] ?? "")]);
+      const said = [totals.ofRoutes[at], note].filter(Boolean);
+      part.append(heading, ...said.map((text) => newElement("p", {}, text)), table);
       return part;
     }),
   );

@@ -7,6 +7,7 @@ import { alone, csv, curl, download, withSelected } from "./exports.js";
 import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
+import { totalsOf } from "./totals.js";
 import { csvOfPaths, drivenPaths, navPathsOf } from "./robot_paths.js";
 
 const ALONE = "This link opens the result without its maps: the request is too long for an address.";
@@ -26,7 +27,7 @@ export class ExportButtons {
   /**
    * @param {Service} service the service that has the front
    * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, known: object, example: string | null, objectives: object[],
-   *   details: Function, picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
+   *   title: string, details: Function, picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
    *   screen, what drivers are told of its stops as of `detailsByStop`, the file of its example, whether its lines can follow the streets, and the selected tour or
    *   plan, as of `routesOf`; null if the form cannot be read. `refused` is what the request would be refused for
    * @param {(problem: Problem) => string} mend shows what must be mended at its field, and returns it
@@ -52,7 +53,7 @@ export class ExportButtons {
     on("stops-csv", (shown) => download("stops.csv", "text/csv", csvOfVisits(this.#routes(shown))));
     on("tour-json", (shown) => download("tour.json", "application/json", JSON.stringify(alone(this.#shown, this.#item(shown)))));
     on("gpx", (shown) => this.#saveGpx(this.#routes(shown)));
-    on("print", (shown) => (fillSheet(element("sheet"), this.#routes(shown)), print()));
+    on("print", (shown) => (this.#fillSheet(shown), print()));
     on("path-json", (shown) => this.#savePaths(shown, "path.json", "application/json", navPathsOf));
     on("path-csv", (shown) => this.#savePaths(shown, "path.csv", "text/csv", csvOfPaths));
     on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
@@ -82,6 +83,11 @@ export class ExportButtons {
 
   #routes({ selected, known, details }) {
     return routesOf(selected, this.#shown, known, details);
+  }
+
+  #fillSheet(shown) {
+    const { selected, objectives, known, title } = shown;
+    fillSheet(element("sheet"), this.#routes(shown), { title, date: new Date(), totals: totalsOf(selected, objectives, known) });
   }
 
   #saveGpx(routes) {

@@ -141,6 +141,7 @@ export class Result {
     this.#previewed = null;
     this.#closed = answer.closed !== false;
     this.#growth.show(growth);
+    element("front-chart").parentElement.hidden = false;
     if (this.#objectives.length > 2) this.#several.show(answer.front, this.#objectives, this.#kind.noun);
     else this.#showBoth(alone, answer);
     this.#maps.place(answer.places, answer.uncovered);
@@ -162,8 +163,10 @@ export class Result {
   #showBoth(alone, answer) {
     // Until the search has found something, the best front so far is the network's.
     const improved = answer.front === alone?.front ? [] : answer.front;
-    this.#chart.show(alone?.front ?? [], improved, this.#kind.noun);
+    element("front-chart").parentElement.hidden = this.#kept && !alone;
+    this.#chart.show(alone?.front ?? [], improved, this.#kind.noun, true, this.#kept);
     this.#legend("alone", alone !== null && this.#chart.sees(alone.front));
+    element("legend").querySelector(".alone").textContent = this.#kept ? "others, no longer kept" : "first try";
     this.#legend("improved", improved.length > 0 && !this.#kept);
     this.#slider.show(answer.front, this.#kind.noun);
   }
