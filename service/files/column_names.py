@@ -84,8 +84,9 @@ _OF_VEHICLES_ONLY = {
     "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
     " fahrer",
     "plate": "plate plates platenumber platenr numberplate licenceplate licenseplate"
-    " licenceplatenumber licenseplatenumber registration registrationnumber regno regnumber kennzeichen nummernschild"
-    " immatriculation plaque targa matricula kenteken rekisterinumero rekisteritunnus",
+    " licenceplatenumber licenseplatenumber registration registrationnumber regno regnumber"
+    " kennzeichen nummernschild immatriculation plaque targa matricula kenteken"
+    " rekisterinumero rekisteritunnus",
     "capacity": "capacity capacity1 capacity2 capacity3 vehiclecapacity maxcapacity payload"
     " kapazitaet kapazitat nutzlast "
     + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
