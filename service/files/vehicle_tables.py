@@ -173,8 +173,8 @@ class _Vehicles:
 def _name_servers(stops: list[Stop], names: Mapping[str, str]) -> None:
     """Name the vehicle of each stop as the table of vehicles does, also if it has its driver."""
     for stop in stops:
-        if (server := stop.get("vehicle")) in names:
-            stop["vehicle"] = names[server]
+        if "vehicle" in stop:
+            stop["vehicle"] = names.get(stop["vehicle"], stop["vehicle"])
 
 
 def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
