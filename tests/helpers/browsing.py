@@ -224,6 +224,17 @@ def to_three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):,.6g}"
 
 
+def metres(value: float) -> str:
+    """Return a distance as the page says it, to the digits that the value has, six at most."""
+    return f"{value:,.6g} m" if value < 10_000 else f"{value / 1000:,.6g} km"
+
+
+def number_in(text: str) -> float:
+    """Return the number that the page shows, metres where it says kilometres."""
+    number, _, unit = text.replace(",", "").partition(" ")
+    return float(number) * (1000 if unit == "km" else 1)
+
+
 def tours_of_front(page: Page) -> int:
     """Return how many tours the front has that is shown, by what the slider says."""
     said = page.get_by_role("slider", name="Balance").get_attribute("aria-valuetext") or ""

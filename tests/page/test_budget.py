@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from tests.helpers.browsing import (
     SVG,
     copied,
+    metres,
     needs_chromium,
     open_page,
     saved,
@@ -42,7 +43,7 @@ def test_a_dragged_line_selects_the_tour_that_the_service_finds_within_the_budge
     limit = line.locator("span").inner_text()
     assert limits_in_picture(planned) == [limit]
     chosen = planned.get_by_role("slider", name="Balance")
-    said = f"distance {found[0]:,.6g}, risk {found[1]:,.6g}"
+    said = f"distance {metres(found[0])}, risk {found[1]:,.6g}"
     expect(chosen).to_have_attribute("aria-valuetext", re.compile(re.escape(said) + "$"))
     chosen.press("Home" if objective else "End")
     expect(line).to_have_attribute("aria-valuetext", "no limit")

@@ -13,6 +13,7 @@ from tests.helpers.browsing import (
     PHONE,
     curl_body,
     needs_chromium,
+    number_in,
     open_files,
     open_page,
     plan_city_deliveries,
@@ -293,4 +294,4 @@ def row(page: Page, name: str) -> Locator:
 
 
 def number(cell: Locator) -> float:
-    return float(cell.inner_text().replace(",", ""))
+    return number_in(cell.inner_text())

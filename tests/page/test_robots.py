@@ -18,13 +18,14 @@ from tests.helpers.browsing import (
     SVG,
     copied,
     curl_body,
+    metres,
     needs_chromium,
+    number_in,
     open_files,
     open_page,
     plan_by_network_alone,
     saved,
     select_last,
-    to_three_digits,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -81,7 +82,7 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
             [
                 route["robot"],
                 str(len(route["tour"]) - 2),
-                *map(to_three_digits, route["lengths"]),
+                *(metres(float(f"{length:.3g}")) for length in route["lengths"]),
             ]
             for route in plan["routes"]
         ]
@@ -166,7 +167,7 @@ def test_each_cost_layer_of_a_robot_has_a_limit_of_its_own(browser: Browser, rel
         expect(page.locator("#caps-said")).to_contain_text("are within the limits")
         least = min(item["lengths"][2] for item in json.loads(saved(page, "json"))["front"])
         shown = page.locator("#comparison tbody td:nth-child(2)").nth(2).inner_text()
-        assert float(shown.replace(",", "")) == pytest.approx(least, rel=1e-3)
+        assert number_in(shown) == pytest.approx(least, rel=1e-3)
 
 
 def test_a_picture_of_one_robot_has_its_map_and_path(browser: Browser, released: str) -> None:
