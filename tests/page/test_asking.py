@@ -14,6 +14,7 @@ from tests.helpers.browsing import (
     DESK,
     PHONE,
     needs_chromium,
+    number_in,
     open_files,
     open_unplanned,
     wait_until_planned,
@@ -84,7 +85,7 @@ def test_three_picks_select_what_the_service_leads_to(
     asked = pick_always_the_first(window, by_keyboard)
     found = httpx.get(f"{released}/front/{asked['front']}").json()["front"][asked["number"]]
     shown = window.locator("#comparison tbody:not(.measures) tr td:nth-child(2)").all_inner_texts()
-    lengths = [float(cell.split()[0].replace(",", "")) for cell in shown]
+    lengths = [number_in(cell) for cell in shown]
     np.testing.assert_allclose(lengths, found["lengths"], rtol=ROUNDED)
 
 

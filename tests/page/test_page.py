@@ -12,6 +12,7 @@ from tests.helpers.browsing import (
     DESK,
     PHONE,
     curl_body,
+    metres,
     needs_chromium,
     number_in,
     open_files,
@@ -136,7 +137,7 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(planned: Page) -> 
         f"{planned.url.partition('#')[0]}tour",
         params={"knee": "", "front": shown_front(planned)["id"]},
     )
-    place = f"distance {knee.json()['lengths'][0]:,.6g}"
+    place = f"distance {metres(knee.json()['lengths'][0])}"
     expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
     marker = planned.locator("#front-chart .marker.selected").bounding_box()
     label = planned.get_by_role("button", name="compromise").bounding_box()
