@@ -40,6 +40,7 @@ from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner, make_runner
 from service.mcp import check_mcp
+from service.requests.road_measurer import measured_by_road
 from service.roads.client import RoadClient
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
@@ -103,6 +104,7 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
             bodies_bytes=settings.bodies_bytes,
             share=settings.caller_share,
             parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
+            measure=None if roads is None else partial(measured_by_road, client=roads),
             streets=roads,
             tiles=Tiles(settings.tiles, settings.tiles_credit),
             agents=settings.mcp,

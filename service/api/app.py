@@ -24,6 +24,7 @@ from service.api.middleware import (
     SecurityHeadersMiddleware,
     log_request,
 )
+from service.api.offers import Measure, OfferRoutes
 from service.api.openapi import complete
 from service.api.plan import PlanRoutes
 from service.api.questions import QuestionRoutes
@@ -60,6 +61,7 @@ class Edge:
         bodies_bytes: The most bytes of all request bodies in progress; as many for answers.
         share: The share of these that the long bodies of one client may take.
         parser: The bounds of a process that parses bodies.
+        measure: Measures the costs by road of a task; by default there are none.
         streets: The streets that lines of GeoJSON may follow; by default there are none.
         tiles: The map tiles that the page draws under stops; by default there are none.
         agents: Whether agents may call, by the Model Context Protocol at `/mcp`.
@@ -74,6 +76,7 @@ class Edge:
     bodies_bytes: int = 2**27
     share: float = 0.5
     parser: ParserBounds = field(default_factory=ParserBounds)
+    measure: Measure | None = None
     streets: Streets | None = None
     tiles: Tiles = field(default_factory=Tiles)
     agents: bool = False
@@ -149,6 +152,7 @@ def create_app(
         file_router(parser, budget, most_bytes, answers_budget),
         StoredFrontRoutes(store, engine, answers).router(),
         QuestionRoutes(store, engine).router(),
+        OfferRoutes(parser, (budget, answers_budget), most_bytes, store, edge.measure).router(),
         _actor_router(actors),
         edge.metrics.router(),
         *([] if agents is None else [agents.router()]),

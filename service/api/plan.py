@@ -34,7 +34,7 @@ from service.api.responses import (
     problem_under,
     root_path_of,
 )
-from service.api.stored_fronts import find_record
+from service.api.stored_fronts import find_stored
 from service.api.task_parser import TaskParser
 from service.jobs.deadline import Deadline
 from service.jobs.engine import Engine, record_in_time
@@ -43,12 +43,10 @@ from service.jobs.store import Store
 from service.jobs.webhook import Webhook
 from service.kinds.table import empty_document
 from service.requests.fields import Geometry
-from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import encode_task
 from service.webhooks.targets import Targets
 
-_QUICK = 8  # times as fast as a request stored tours are read
 _LONG = 2**20  # bytes of a body; the task of a longer one takes a while to write
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
@@ -178,16 +176,7 @@ class PlanRoutes:
             Refusal: The front does not exist, or cannot be replanned as the body asks.
         """
         self._parser.check_replan(body.body)
-        record = await find_record(self._store, request, front)
-        if not record.finished:
-            raise not_replannable(record.id, "it is still being planned")
-        task = await self._store.task(record)
-        if task is None:
-            reason = "what it was planned from is not kept; plan what is left with POST /front"
-            raise not_replannable(record.id, reason)
-        stored = StoredFront(record.id, task, record.front)
-        length = body.length + len(task) + len(record.front.tours) // _QUICK
-        asked = ReplanSource(body.body, stored)
+        asked, length = await find_stored(self._store, request, front, body)
         return await self._parser.replan(asked, length, client_of(request))
 
     async def _planned(

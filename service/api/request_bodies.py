@@ -11,6 +11,7 @@ from service.requests.json_schemas import (
     coverage_schemas,
     fleet_schemas,
     front_schemas,
+    offers_schemas,
     reference_to,
     replan_fleet_schemas,
     replan_schemas,
@@ -30,6 +31,7 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         **coverage_schemas(limits, names),
         **replan_schemas(limits, names),
         **replan_fleet_schemas(limits),
+        **offers_schemas(limits),
         **fleet_schemas(limits),
         "FrontForm": _form_schema(reference_to("FrontFileRequest"), "matrices", file),
         "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
@@ -59,5 +61,6 @@ def _form_schema(request: Schema, file: str, description: str) -> Schema:
 _JSON = "application/json"
 FRONT_BODY = _body(reference_to("FrontRequest"), "FrontForm")
 REPLAN_BODY = _body({"anyOf": [reference_to("ReplanRequest"), reference_to("ReplanFleetRequest")]})
+OFFERS_BODY = _body(reference_to("OffersRequest"))
 COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")
 FLEET_BODY = _body(reference_to("FleetRequest"))

@@ -16,9 +16,11 @@ from service.actor_info import ActorInfo
 from service.api.turns import FairTurns
 from service.errors import Refusal
 from service.files.upload import Upload, read_upload
+from service.kinds.offers import answer_offers, parse_offers
 from service.kinds.parsing import check_replan as check_replan_body
 from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits, check_structure
+from service.requests.replan.offers import OffersTask
 from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskSource
 from service.requests.validation import check_depth
@@ -56,10 +58,10 @@ _Parse = Callable[[S, Limits, Mapping[str, ActorInfo]], T]
 class TaskParser:
     """Parses bodies under these limits, for these actors: short ones itself, others in a process.
 
-    There are two processes, one for bodies of up to 1 MiB and one for longer ones, so that the
-    shorter need not wait for the longer. The clients that wait for one have turns. Each is started
-    for its first body, and again if it was lost. A body that takes too long, or too much memory,
-    ends its process.
+    There are three processes: one for bodies of up to 1 MiB, one for longer ones, and one that
+    finds offers, so that the shorter need not wait for the longer. The clients that wait for one
+    have turns. Each is started for its first body, and again if it was lost. A body that takes too
+    long, or too much memory, ends its process.
     """
 
     def __init__(
@@ -72,7 +74,8 @@ class TaskParser:
         self._actors = dict(actors)
         self._bounds = bounds
         self._medium, self._long = (FairTurns(_MOST_WAITING, _MOST_OF_CLIENT) for _ in range(2))
-        self._processes = CapacityLimiter(2)
+        self._finding = FairTurns(_MOST_WAITING, _MOST_OF_CLIENT)
+        self._processes = CapacityLimiter(3)
 
     async def parse(self, source: TaskSource, client: str = "") -> Task:
         """Return the task in a body of a client.
@@ -103,6 +106,24 @@ class TaskParser:
         if length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
         return await self._in_turn(parse_replan, source, length, client)
+
+    async def offers(self, source: ReplanSource, length: int, client: str = "") -> OffersTask:
+        """Return what a request for offers asks for; `length` is the bytes to parse."""
+        quotes = source.body.count(b'"') + source.front.task.count(b'"')
+        if length <= _SHORT and quotes <= _FEW_QUOTES:
+            check_structure(source.body, self._limits)
+            return parse_offers(source, self._limits, self._actors)
+        self._check(source.body)
+        return await self._in_turn(parse_offers, source, length, client)
+
+    async def find_offers(self, asked: OffersTask, client: str = "") -> bytes:
+        """Return the offers that are asked for, as JSON. They are always found in a process.
+
+        Raises:
+            QueueFull: Too many requests wait for theirs.
+        """
+        async with self._finding.turn(client, self._bounds.seconds):
+            return await self._parse_in_process(answer_offers, asked)
 
     def _check(self, body: bytes) -> None:
         """Raise a refusal where a body is too complex or, unless it is long, nested too deeply.

@@ -10,16 +10,17 @@ from typing import NamedTuple
 _ALL = ("*",)
 _NONE = ()  # codes about the path, the method or the service, not about an operation
 _REPLAN = ("POST /front/{id}/replan",)
+_OFFERS = ("POST /front/{id}/offers",)
 _FLEET = ("POST /fleet",)
 _PLANNED = ("POST /front", "POST /coverage", *_REPLAN)
 _PLANS = (*_PLANNED, *_FLEET)
 _FILES = ("POST /files",)
-_BODIES = (*_PLANS, *_FILES)
+_BODIES = (*_PLANS, *_OFFERS, *_FILES)
 _TOUR = ("GET /tour",)
 _QUESTIONS = "GET /front/{id}/questions"
 _LIST = "GET /front"
 _STORED = "GET /front/{id}"
-_ROADS = ("POST /front", *_FLEET, *_REPLAN, _STORED, *_TOUR)
+_ROADS = ("POST /front", *_FLEET, *_REPLAN, *_OFFERS, _STORED, *_TOUR)
 
 
 class Problem(NamedTuple):
@@ -36,7 +37,7 @@ class Problem(NamedTuple):
 
 PROBLEMS: Mapping[str, Problem] = {
     "malformed-http": Problem(400, "the request must be HTTP/1.1: {reason}", _NONE),
-    "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
+    "malformed-json": Problem(400, "the body must be JSON: {reason}", (*_PLANS, *_OFFERS)),
     "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _BODIES),
     "unauthorized": Problem(401, "{reason}"),
     "no-front": Problem(
@@ -66,7 +67,14 @@ PROBLEMS: Mapping[str, Problem] = {
         408, "the head of a request must arrive within {limit:g} s, and has not", _NONE
     ),
     "not-replannable": Problem(
-        409, "front {front} must be one that can be replanned, and is not: {reason}", _REPLAN
+        409,
+        "front {front} must be one that can be replanned, and is not: {reason}",
+        (*_REPLAN, *_OFFERS),
+    ),
+    "no-offers": Problem(
+        409,
+        "front {front} must have plans of a fleet, as only stops of a fleet have windows",
+        _OFFERS,
     ),
     "front-unfinished": Problem(
         409,
@@ -97,8 +105,10 @@ PROBLEMS: Mapping[str, Problem] = {
     "idempotency-mismatch": Problem(422, "this Idempotency-Key was used with another body", _PLANS),
     "invalid-instance": Problem(422, "{reason}", _PLANS),
     "invalid-parts": Problem(422, "{reason}", _BODIES),
-    "invalid-request": Problem(422, "{detail}", (*_PLANS, _LIST, _STORED, _QUESTIONS, *_TOUR)),
-    "no-plan": Problem(422, "{reason}", _PLANS),
+    "invalid-request": Problem(
+        422, "{detail}", (*_PLANS, *_OFFERS, _LIST, _STORED, _QUESTIONS, *_TOUR)
+    ),
+    "no-plan": Problem(422, "{reason}", (*_PLANS, *_OFFERS)),
     "no-actor": Problem(
         422,
         "{kind} need an actor that reads them, and none is loaded",
@@ -129,7 +139,9 @@ PROBLEMS: Mapping[str, Problem] = {
         " time_limit",
         ("POST /coverage", *_REPLAN),
     ),
-    "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),
+    "over-limit": Problem(
+        422, "{name} must be at most {limit:g}, got {actual:g}", (*_PLANS, *_OFFERS)
+    ),
     "streets-too-long": Problem(
         422,
         "the streets of an answer must have at most {limit} {parts}: ask for fewer tours, or one",

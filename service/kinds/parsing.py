@@ -7,7 +7,7 @@ from service.requests.limits import Limits, check_structure
 from service.requests.notes.of_task import with_notes
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
-from service.requests.replan.way import ReplanSource, not_replannable
+from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
 from service.requests.task import Task, TaskSource
 from service.requests.task_codec import decode_task
 from service.requests.validation import parse_json
@@ -37,13 +37,22 @@ def parse_replan(source: ReplanSource, limits: Limits, actors: Actors) -> Task:
             be replanned so.
         InvalidInstance: The costs or the map cannot be planned.
     """
-    try:
-        task = decode_task(source.front.task)
-    except ValueError as error:
-        reason = "what it was planned from is damaged"
-        raise not_replannable(source.front.id, reason) from error
+    task = stored_task(source.front)
     rest = kind_of(task).rest(task.subject, task, source, limits, actors)
     return with_notes(rest, has_parts=False)
+
+
+def stored_task(front: StoredFront) -> Task:
+    """Return the task that a stored front was planned from.
+
+    Raises:
+        Refusal: It is damaged.
+    """
+    try:
+        return decode_task(front.task)
+    except ValueError as error:
+        reason = "what it was planned from is damaged"
+        raise not_replannable(front.id, reason) from error
 
 
 def check_replan(body: bytes) -> None:

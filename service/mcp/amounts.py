@@ -25,9 +25,11 @@ TIMED = frozenset(
         "now",
         "release",
     )
-) | {"service", "shift", "shifts", "window", "windows"}
+) | {"service", "shift", "shifts", "slots", "window", "windows"}
 # What such members may be in; below other members the same names mean something else.
-_HOLDERS = frozenset(("add", "breaks", "departure", "position", "routes", "stops", "vehicles"))
+_HOLDERS = frozenset(
+    ("add", "breaks", "departure", "order", "position", "routes", "stops", "vehicles")
+)
 
 
 def clock_time(time: float, unit: str | None) -> str | float:
@@ -92,14 +94,16 @@ def with_times(members: Mapping[str, Any], unit: str | None) -> dict[str, Any]:
     Raises:
         ValueError: As of `number_in`.
     """
-    return {
-        name: _numbers(value, unit)
-        if name in TIMED and not isinstance(value, Mapping)
-        else _inside(value, unit)
-        if name in _HOLDERS
-        else value
-        for name, value in members.items()
-    }
+    return {name: _member(name, value, unit) for name, value in members.items()}
+
+
+def _member(name: str, value: Any, unit: str | None) -> Any:
+    """Return a member of a request with numbers for the times in it that are texts."""
+    if name == "every" and isinstance(value, Mapping):  # all its members are times
+        return {each: _numbers(time, unit) for each, time in value.items()}
+    if name in TIMED and not isinstance(value, Mapping):
+        return _numbers(value, unit)
+    return _inside(value, unit) if name in _HOLDERS else value
 
 
 def _inside(value: Any, unit: str | None) -> Any:

@@ -14,6 +14,7 @@ from pydantic_core.core_schema import ModelSchema, StringSchema
 from service.mcp.amounts import TIMED
 from service.requests.fields import SearchFields
 from service.requests.json_schemas import RULES, WithoutNull
+from service.requests.replan.offers import EverySlot
 
 _MOST_TEXT = 2**20  # characters of a file
 # The members of forms that agents seldom need. All others are in the schemas, new ones as well.
@@ -30,6 +31,8 @@ _RARE = {
     " geometry pose grid blocked freed cost_layer cost_layers paths",
     "ReplanFleetRequest": "size reference_point seed geometry add",
     "NewStop": "coordinates costs",
+    "OffersRequest": "add",
+    "OfferedOrder": "coordinates costs",
 }
 
 
@@ -200,7 +203,8 @@ class _ForAgents(WithoutNull):
         rare = _RARE.get(schema["cls"].__name__, "").split()
         for name in rare:
             del found["properties"][name]
-        for name in TIMED & {*found["properties"]}:
+        timed = found["properties"] if schema["cls"] is EverySlot else TIMED
+        for name in {*timed} & {*found["properties"]}:
             found["properties"][name] = _or_text(found["properties"][name])
         left_out = {"title", *RULES, *(["additionalProperties"] if rare else [])}
         return {key: value for key, value in found.items() if key not in left_out}

@@ -28,6 +28,7 @@ from service.mcp.arguments import (
     schema_of,
 )
 from service.mcp.changes import changes_of
+from service.mcp.offers import offers_text
 from service.mcp.routes import names_of
 from service.mcp.summaries import (
     explanation,
@@ -41,6 +42,7 @@ from service.requests.front import FrontRequest
 from service.requests.null_members import without_null_members
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 from service.requests.validation import refusal_of
 
 # A front is parsed in the event loop of the service. For this number of stops that takes 50 ms.
@@ -201,6 +203,13 @@ async def _ask(planner: Planner, asked: AskAbout) -> str:
     return tour_text(front, question.chosen, 0, planner.link(front))
 
 
+async def _offer_slots(planner: Planner, asked: Changes) -> str:
+    front = await planner.stored(asked.front)
+    members, assumed = changes_of(front, asked.members)
+    offers = await planner.client.offers(asked.front, **cast(Any, members))
+    return offers_text(offers, assumed)
+
+
 async def _replan(planner: Planner, asked: Changes) -> str:
     front = await planner.stored(asked.front)
     members, assumed = changes_of(front, asked.members)
@@ -257,6 +266,16 @@ TOOLS = (
         " call again with all picks; at the end the answer is the tour or plan.",
         arguments=AskAbout,
         run=_ask,
+        reads_only=True,
+    ),
+    Tool(
+        name="offer_slots",
+        description="Say when an order without a time can be promised, beside the plan of a fleet"
+        " that is driven: which slots are possible, and what each costs. Nothing is changed; replan"
+        " with the order in add, and the slot as its window, takes an offer.",
+        arguments=Changes,
+        forms=(Changes, DayOfFleet, OffersRequest),
+        run=_offer_slots,
         reads_only=True,
     ),
     Tool(

@@ -18,6 +18,7 @@ from service.requests.limits import Limits, defaults
 from service.requests.maps.fields import USELESS
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 from service.requests.stops import ROAD_MEASURES
 
 Schema = dict[str, Any]
@@ -84,6 +85,13 @@ def replan_fleet_schemas(limits: Limits) -> dict[str, Schema]:
     schemas = _limited(ReplanFleetRequest, limits)
     whole = schemas["ReplanFleetRequest"]
     _at_most(limits.fleet_stops, whole, "routes", "add", "remove")
+    return schemas
+
+
+def offers_schemas(limits: Limits) -> dict[str, Schema]:
+    """Return the schema of a request for offers, and of all that is in it, by name."""
+    schemas = _limited(OffersRequest, limits)
+    _at_most(limits.fleet_stops, schemas["OffersRequest"], "routes", "add", "remove")
     return schemas
 
 
@@ -161,7 +169,8 @@ def _limited(model: type[BaseModel], limits: Limits) -> dict[str, Schema]:
     schemas: dict[str, Schema] = {**whole.pop("$defs", {}), model.__name__: whole}
     fields = whole["properties"]
     for name, most in (("size", limits.size), ("time_limit", limits.seconds)):
-        fields[name] |= {"maximum": most, "default": defaults(limits)[name]}
+        if name in fields:
+            fields[name] |= {"maximum": most, "default": defaults(limits)[name]}
     if "geometry" in fields and not limits.roads:
         fields["geometry"]["enum"].remove("roads")
     if "TrafficItem" in schemas and not limits.traffic:

@@ -15,6 +15,7 @@ from service.requests.fleet_fields import VehicleItem
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 
 
 def help_on(function: Callable[..., Any]) -> str:
@@ -36,6 +37,7 @@ def help_on(function: Callable[..., Any]) -> str:
         (paretour.replan, ReplanRequest),
         (Client.replan_fleet, ReplanFleetRequest),
         (paretour.replan, ReplanFleetRequest),
+        (Client.offers, OffersRequest),
     ],
 )
 def test_the_help_says_what_each_member_of_the_request_is(

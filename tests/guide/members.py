@@ -14,6 +14,7 @@ from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 from service.requests.tour import TourQuery
 from tests.guide.offered import inputs, options
 from tests.guide.pages import ROOT
@@ -27,6 +28,7 @@ FORMS: Mapping[str, type[BaseModel]] = {
     "RobotsRequest": CoverageRequest,
     "ReplanRequest": ReplanRequest,
     "ReplanFleetRequest": ReplanFleetRequest,
+    "OffersRequest": OffersRequest,
 }
 _OF_ROBOTS = ("robots", "over")
 _SHARED = {"SearchOptions": SearchFields, "PlanOptions": PlanFields}
@@ -92,7 +94,7 @@ def json_file() -> str:
 def type_file() -> str:
     """Return the module with the type of each request, and of all that is in it."""
     types: dict[str, str] = {}
-    for request in ("SearchOptions", *_BASES):
+    for request in ("SearchOptions", *_BASES, "OffersRequest"):
         schema = _form(request)
         _add(types, request, schema, schema.get("$defs", {}))
     return "\n\n".join((_HEAD, *types.values()))

@@ -120,12 +120,18 @@ async def check_replanning(
 ) -> dict[str, Any]:
     """Replan at eleven, when one van is out and an order is new, and say by whom what was done."""
     plan, now = chosen["number"], chosen["routes"][0]["times"][2]
-    added = {"id": "new", "location": [24.95, 60.14], "demand": [1], "window": ["8:00", "17:00"]}
+    added = {"id": "new", "location": [24.95, 60.14], "demand": [1]}
     routes = stored[plan]["routes"]
     done = {route["vehicle"]: route["stops"][:2] for route in routes}
     planned = {"front": morning["front"], "plan": plan, "now": now, "time_limit": 0.2}
     refused = await said(client, "replan", True, **planned, done={"Ann": []})
     assert "'Ann' is no vehicle with a route" in refused
+    hours = {"from": "8:00", "to": "18:00", "length": "2:00 h"}
+    offered = await call(client, "offer_slots", **planned, done=done, order=added, every=hours)
+    assert [each["slot"] for each in offered["not_possible"]][:1] == [["8:00", "10:00"]]
+    latest = offered["slots"][-1]
+    assert latest["rise"].keys() == {"distance", "time"}
+    added["window"] = latest["window"]
     said_by_van = await call(client, "replan", **planned, done=done, add=[added])
     visited = {stop for each in said_by_van["routes"] for stop in each["stops"]}
     assert "new" in visited

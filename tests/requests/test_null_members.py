@@ -16,11 +16,19 @@ from service.requests.front import FrontRequest
 from service.requests.null_members import drop_null_members, without_null_members
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 from service.requests.validation import parse_json
 from tests.helpers.serving import LIMITS
 
 Schema = Mapping[str, Any]
-FORMS = (FrontRequest, FleetRequest, CoverageRequest, ReplanRequest, ReplanFleetRequest)
+FORMS = (
+    FrontRequest,
+    FleetRequest,
+    CoverageRequest,
+    ReplanRequest,
+    ReplanFleetRequest,
+    OffersRequest,
+)
 KEPT = {"costs/cost"}  # no way there, instead of an entry without a cost
 
 

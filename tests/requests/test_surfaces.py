@@ -21,10 +21,18 @@ from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 from tests.helpers.serving import LIMITS
 
 Fields = dict[str, dict[str, Any]]
-FORMS = (FrontRequest, FleetRequest, CoverageRequest, ReplanRequest, ReplanFleetRequest)
+FORMS = (
+    FrontRequest,
+    FleetRequest,
+    CoverageRequest,
+    ReplanRequest,
+    ReplanFleetRequest,
+    OffersRequest,
+)
 FACTS = ("type", "default", "minimum", "maximum", "enum", "description")
 OF_LIMITS = {"maximum", "enum"}  # of the service, and of the actors that it has loaded
 TYPES = {"integer": int, "number": float, "string": str, "boolean": bool}

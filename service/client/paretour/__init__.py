@@ -39,11 +39,13 @@ from paretour.members import (
     FleetRequest,
     FrontRequest,
     ObjectiveRequest,
+    OffersRequest,
     ReplanRequest,
     RobotRequest,
     RobotsRequest,
     StopRequest,
 )
+from paretour.offers import Offer, OfferChoice, Offers
 from paretour.plans import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.ros.maps import read_ros_map
@@ -80,6 +82,10 @@ __all__ = [
     "ListedFront",
     "Objective",
     "ObjectiveRequest",
+    "Offer",
+    "OfferChoice",
+    "Offers",
+    "OffersRequest",
     "Path",
     "Plan",
     "Progress",

@@ -94,6 +94,7 @@ class AsyncClient:
     coverage = _result(Calls.coverage)
     replan = _result(Calls.replan)
     replan_fleet = _result(Calls.replan_fleet)
+    offers = _result(Calls.offers)
     fleet = _result(Calls.fleet)
     robots = _result(Calls.robots)
     plan = _result(Calls.plan)

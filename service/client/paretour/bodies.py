@@ -5,7 +5,7 @@ import zlib
 from collections.abc import Iterator
 
 import httpx
-from paretour.expect import UnexpectedAnswer, unexpected
+from paretour.expect import Members, UnexpectedAnswer, parse_json, unexpected
 
 MOST_BYTES = 2**27  # of an answer, decompressed: what the service has for all its answers together
 ACCEPTED = {"Accept-Encoding": "gzip"}
@@ -90,3 +90,16 @@ class Body:
             content=bytes(self._content),
             request=self._response.request,
         )
+
+
+def answer_of(response: httpx.Response) -> Members:
+    """Return the members of the JSON object that a response holds.
+
+    Raises:
+        UnexpectedAnswer: It does not hold a JSON object.
+    """
+    content_type = response.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if content_type and not content_type.endswith("json"):
+        start = f"{content_type!r:.80} with {response.content[:60]!r}"
+        raise UnexpectedAnswer(f"answer must be JSON, got {start}")
+    return parse_json(response.content, "answer")

@@ -11,11 +11,11 @@ from typing import Any, Literal, TypeVar, Unpack
 
 import httpx
 from paretour.actors import Actor, parse_actor
-from paretour.bodies import ACCEPTED
+from paretour.bodies import ACCEPTED, answer_of
 from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
-from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
+from paretour.expect import each, members, text, unexpected
 from paretour.explaining import explaining
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.listing import PAGE, ListedFront, next_page, parse_listed
@@ -23,10 +23,12 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    OffersRequest,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
 )
+from paretour.offers import Offers, parse_offers
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.questions import OPTIONS, QUESTIONS, Question, parse_question
 from paretour.requests import (
@@ -37,6 +39,7 @@ from paretour.requests import (
     fleet_plan,
     front_path,
     front_plan,
+    offers_plan,
     parts_of,
     replan_plan,
 )
@@ -129,6 +132,19 @@ class Calls:
         """
         return self.plan_fleet(replan_plan(front, request))
 
+    @explaining(OffersRequest)
+    def offers(self, front: FleetFront | str, **request: Unpack[OffersRequest]) -> Call[Offers]:
+        """Return in which slots an order can be promised, and what each costs the plan.
+
+        Nothing is changed. `replan_fleet(front, **offer.replan)` takes an offer.
+
+        Args:
+            front: The front, or its id.
+            **request: The order, the slots, and what has changed.
+        """
+        plan = offers_plan(front, request)
+        return parse_offers(answer_of((yield from self._post(plan, self.timeout + plan.seconds))))
+
     @explaining(FleetRequest)
     def fleet(self, **request: Unpack[FleetRequest]) -> Call[FleetFront]:
         """Plan a front of plans for a fleet and wait for it."""
@@ -217,7 +233,7 @@ class Calls:
 
     def stored(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
         """Return a front as it is now, parsed by `parse`."""
-        return parse(_answer((yield from self._get(front_path(front_id)))).document)
+        return parse(answer_of((yield from self._get(front_path(front_id)))).document)
 
     def result(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
         """Return the front of a job that has ended, parsed by `parse`.
@@ -225,7 +241,7 @@ class Calls:
         Raises:
             Refused: The job failed.
         """
-        answer = _answer((yield from self._get(front_path(front_id))))
+        answer = answer_of((yield from self._get(front_path(front_id))))
         if answer.read("status", text) == "failed":
             raise Refused(answer.read("problem", members).document)
         return parse(answer.document)
@@ -238,7 +254,7 @@ class Calls:
         response = yield from self._send(self._delete(front_id))
         if response.status_code == httpx.codes.NO_CONTENT:  # it ended meanwhile
             return front
-        return parse(_answer(response).document)
+        return parse(answer_of(response).document)
 
     def forget(self, front_id: str) -> Call[None]:
         """Delete the front of a job that has ended."""
@@ -249,7 +265,7 @@ class Calls:
     ) -> Call[Tour]:
         """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
         params = parameters({"angle": angle, **choice}, front)
-        return parse_tour(_answer((yield from self._get("/tour", params))).document)
+        return parse_tour(answer_of((yield from self._get("/tour", params))).document)
 
     def ask(
         self,
@@ -265,7 +281,7 @@ class Calls:
         """
         given = {"picks": ",".join(map(str, picks)), "questions": questions, "options": options}
         return parse_question(
-            _answer((yield from self._get(f"{front_path(front)}/questions", given)))
+            answer_of((yield from self._get(f"{front_path(front)}/questions", given)))
         )
 
     def geojson(
@@ -281,7 +297,7 @@ class Calls:
         """
         headers = {"Accept": "application/geo+json"}
         query = {"geometry": geometry} if plan is None else {"geometry": geometry, "plan": plan}
-        answer = _answer((yield from self._get(front_path(front), query, headers)))
+        answer = answer_of((yield from self._get(front_path(front), query, headers)))
         if (kind := answer.read("type", text)) != "FeatureCollection":
             raise unexpected("answer/type", "FeatureCollection", kind)
         return dict(answer.document)
@@ -295,7 +311,7 @@ class Calls:
         """
         content = {"files": parts_of(files, columns)}
         request = HttpRequest(method="POST", path="/files", content=content, timeout=self.timeout)
-        answer = _answer((yield from self._send(request)))
+        answer = answer_of((yield from self._send(request)))
         kind, request = answer.read("kind", text), answer.read("request", members)
         answer.read("notes", each(members))
         return PlanOfFiles(f"/{kind}", request.document, answer=answer.document)
@@ -311,7 +327,7 @@ class Calls:
             more = {} if after is None else {"after": after}
             params = {"limit": min(most - len(found), PAGE), **more}
             response = yield from self._get("/front", params)
-            page = _answer(response).read("fronts", each(parse_listed))
+            page = answer_of(response).read("fronts", each(parse_listed))
             found += page
             after = next_page(response)
             if not page or after is None:
@@ -320,21 +336,21 @@ class Calls:
 
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""
-        return _answer((yield from self._get("/actors"))).read("actors", each(parse_actor))
+        return answer_of((yield from self._get("/actors"))).read("actors", each(parse_actor))
 
     def events(self, front_id: str) -> JobEvents:
         """Return the events of a job, before the first one is read."""
         return JobEvents(front_id, self.timeout, self.patience)
 
     def _plan(self, plan: Plan, parse: Parse[AnyFront]) -> Call[AnyFront]:
-        return parse(_answer((yield from self._post(plan, self.timeout + plan.seconds))).document)
+        return parse(answer_of((yield from self._post(plan, self.timeout + plan.seconds))).document)
 
     def _submit(
         self, plan: Plan, parse: Parse[AnyFront], webhook: str | None = None
     ) -> Call[Submitted[AnyFront]]:
         headers = {"Prefer": "respond-async", **({"Webhook-Url": webhook} if webhook else {})}
         response = yield from self._post(plan, self.timeout, **headers)
-        return _answer(response).read("id", text), parse
+        return answer_of(response).read("id", text), parse
 
     def _send(self, request: HttpRequest) -> Call[httpx.Response]:
         """Send a request, again while the service asks for that, and return the response.
@@ -381,16 +397,3 @@ def address_of(url: str) -> str:
 def client_headers(api_key: str | None) -> dict[str, str]:
     """Return the headers of every request: the accepted encoding, and the API key if any."""
     return ACCEPTED if api_key is None else {**ACCEPTED, "Authorization": f"Bearer {api_key}"}
-
-
-def _answer(response: httpx.Response) -> Members:
-    """Return the members of the JSON object that a response holds.
-
-    Raises:
-        UnexpectedAnswer: It does not hold a JSON object.
-    """
-    content_type = response.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if content_type and not content_type.endswith("json"):
-        start = f"{content_type!r:.80} with {response.content[:60]!r}"
-        raise UnexpectedAnswer(f"answer must be JSON, got {start}")
-    return parse_json(response.content, "answer")

@@ -345,3 +345,46 @@ class ReplanFleetRequest(SearchOptions, total=False):
     remove: Sequence[int | str] | ArrayLike
     costs: Sequence[CostEntryRequest]
     geometry: Literal["straight", "roads"]
+
+
+class OfferedOrderRequest(TypedDict, total=False):
+    """An order whose time is not agreed yet: a stop without windows and without a prize."""
+
+    coordinates: Sequence[ArrayLike | None] | ArrayLike
+    costs: Sequence[StopCostsRequest | None]
+    id: Required[str]
+    location: ArrayLike | None
+    demand: ArrayLike
+    service: float
+    due: float | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
+
+
+# Slots of equal length, one after another, in the unit of the clock.
+EverySlotRequest = TypedDict(
+    "EverySlotRequest",
+    {
+        "from": Required[float],
+        "to": Required[float],
+        "length": Required[float],
+        "step": float | None,
+    },
+    total=False,
+)
+
+
+class OffersRequest(TypedDict, total=False):
+    """An order without a time, the slots to choose from, and what has changed since the plan."""
+
+    plan: int | None
+    now: float | None
+    routes: Sequence[RouteOnTheWayRequest]
+    add: Sequence[NewFleetStopRequest]
+    remove: Sequence[int | str] | ArrayLike
+    costs: Sequence[CostEntryRequest]
+    order: Required[OfferedOrderRequest]
+    slots: ArrayLike
+    every: EverySlotRequest | None
+    time_limit: float

@@ -18,6 +18,7 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    OffersRequest,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
@@ -187,6 +188,12 @@ def replan_plan(
     """Return the request to replan a front, given as such or by its id."""
     path = front_path(front if isinstance(front, str) else front.id)
     return Plan(f"{path}/replan", without_frames(request))
+
+
+def offers_plan(front: FleetFront | str, request: OffersRequest) -> Plan:
+    """Return the request for offers about a front, given as such or by its id."""
+    path = front_path(front if isinstance(front, str) else front.id)
+    return Plan(f"{path}/offers", without_frames(request))
 
 
 def front_path(front_id: str) -> str:

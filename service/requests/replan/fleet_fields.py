@@ -46,8 +46,8 @@ class RouteOnTheWay(StrictModel):
     )
 
 
-class ReplanFleetRequest(SearchFields):
-    """The changes since a fleet was planned, and the options of the front of the rest."""
+class FleetChanges(StrictModel):
+    """The changes since a fleet was planned."""
 
     plan: NonNegativeInteger | None = Field(
         default=None,
@@ -66,4 +66,9 @@ class ReplanFleetRequest(SearchFields):
     costs: Items[CostEntry] = Field(
         default_factory=list, description="single costs that have changed"
     )
+
+
+class ReplanFleetRequest(FleetChanges, SearchFields):
+    """The changes since a fleet was planned, and the options of the front of the rest."""
+
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
