@@ -10,7 +10,9 @@ from service.objectives import NTH
 # English and German, then French, Italian, Spanish, Portuguese, Dutch and Finnish.
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
-    " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
+    " customerno custno deliveryid deliveryno deliverynumber dono donumber shipmentid"
+    " jobreferencenumber jobno jobnumber taskid taskno tasknumber"
+    " bestellnummer auftragsnummer kundennummer auftrag"
     " stop ref reference code key name stopname ordername alias customer kunde node label site no"
     " nr number"
     " commande numerocommande ordine numeroordine pedido numeropedido bestelling tilaus"
@@ -24,23 +26,31 @@ _NAMES = {
     "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
     "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
     "demand": "demand qty quantity load amount pallets parcels packages pieces cartons crates boxes"
-    " items weight volume menge"
+    " items weight volume quantities packagecount parcelcount palletcount piececount boxcount"
+    " itemcount productcount numberofpackages numberofparcels numberofpallets numberofpieces"
+    " numberofboxes numberofitems menge"
     " bedarf gewicht demanda cantidad kg quantite poids colis quantita peso colli carico"
     " bultos paquetes carga quantidade volumes hoeveelheid paketten maara paino cube units",
-    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
+    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime"
+    " timeslotfrom timeslotstart slotfrom slotstart deliverywindowfrom deliverywindowstart"
+    " deliverystart deliverystarttime deliverytimefrom deliverytimestart allowedstart"
+    " scheduleddeliverydateandallowedstart"
     " twstart twfrom twopen timewindowopen readytime ready earliest earliesttime earlieststart"
     " earlieststarttime earliestarrival earliestarrivaltime earliestdelivery earliestdeliverytime"
     " notbefore noearlierthan arriveafter deliverafter completeafter open opens opening opentime"
     " opendate openingtime from begin von start"
     " heuredebut debut ouverture orainizio inizio apertura horainicio inicio desde abertura"
     " begintijd starttijd alkaa alku",
-    "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
+    "window_to": "windowto windowend timewindowend timewindowto timewindowstop timeto endtime"
+    " timeslotto timeslotend slotto slotend deliverywindowto deliverywindowend deliveryend"
+    " deliveryendtime deliverytimeto deliverytimeend allowedend twend twto twclose"
     " timewindowclose duedate duetime latest latesttime latestend latestendtime latestarrival"
     " latestarrivaltime lateststart latestdelivery latestdeliverytime notafter nolaterthan"
     " arrivebefore completebefore close closes closing closetime closingtime to until end bis"
     " heurefin fin fermeture orafine chiusura horafin hasta cierre horafim fim fechamento"
     " eindtijd paattyy loppu",
-    "window": "window timewindow tw deliverywindow zeitfenster windows timewindows deliverywindows"
+    "window": "window timewindow tw deliverywindow deliverytimewindow"
+    " zeitfenster windows timewindows deliverywindows"
     " businesshours deliveryhours receivinghours"
     " creneau creneauhoraire fenetre fasciaoraria finestra finestraoraria ventana ventanahoraria"
     " franjahoraria janela janelahoraria janeladetempo tijdvenster tijdslot aikaikkuna",
@@ -58,9 +68,10 @@ _NAMES = {
     "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
     "release": "release releasetime releasedate availablefrom readyatdepot",
     "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
-    " qualifications qualification"
+    " qualifications qualification requiredtags specialtynames"
     " vehiclefeatures driverskills",
     "vehicle": "vehicle vehicleid vehiclename van vanid driver driverid drivername truck truckid"
+    " assignto requiredvehicle"
     " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer vehicule camion"
     " chauffeur veicolo furgone autista vehiculo conductor veiculo motorista voertuig ajoneuvo"
     " kuljettaja",
@@ -126,6 +137,9 @@ NAMES_OF_VEHICLES = {
 }
 _PLACES = ("longitude", "latitude", "x", "y")
 _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
+# Of the place of an order, unless the table has two places of each.
+_TO = re.compile(r"^(destination|delivery|dropoff|recipient|client|order|job|task)(?=l(at|on|ng))")
+_FROM = re.compile(r"(pickup|origin|start|source|from|collection)l(at|on|ng)")
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")  # between the words of serviceTimeSeconds
@@ -227,7 +241,7 @@ def best_fields(
     and the other one gets None.
     """
     known = _by_name(names)
-    ranks = [_rank(plain_name(name), known, names) for name in heading]
+    ranks = [_rank(name, known, names) for name in _plain_names(heading)]
     taken = [*chosen] or [None] * len(heading)
     given = {*taken}
     for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):
@@ -284,6 +298,14 @@ def _rank(
         if field in fields and pattern.fullmatch(plain):
             return field, _LAST
     return None, 0
+
+
+def _plain_names(heading: Sequence[str]) -> list[str]:
+    """Return the plain names of a heading: `Destination_Latitude` alone is a latitude."""
+    plain = [plain_name(name) for name in heading]
+    if any(_FROM.match(name) for name in plain):
+        return plain
+    return [_TO.sub("", name) for name in plain]
 
 
 def plain_name(name: str) -> str:

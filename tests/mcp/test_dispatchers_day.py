@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Iterator
 from contextlib import nullcontext
+from dataclasses import replace
 from typing import Any
 
 import httpx
@@ -52,7 +53,8 @@ TABLE = "id,lat,lon,demand\ndepot,60.13,24.93,\n" + "".join(
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    with serving(app_of(limits=LIMITS, edge=Edge(agents=True))) as address:
+    limits = replace(LIMITS, seconds=30)  # of offers, which take no time unless others do
+    with serving(app_of(limits=limits, edge=Edge(agents=True))) as address:
         yield address
 
 
@@ -126,9 +128,10 @@ async def check_replanning(
     planned = {"front": morning["front"], "plan": plan, "now": now, "time_limit": 0.2}
     refused = await said(client, "replan", True, **planned, done={"Ann": []})
     assert "'Ann' is no vehicle with a route" in refused
-    hours = {"from": "8:00", "to": "18:00", "length": "2:00 h"}
-    offered = await call(client, "offer_slots", **planned, done=done, order=added, every=hours)
-    assert [each["slot"] for each in offered["not_possible"]][:1] == [["8:00", "10:00"]]
+    hours = {"from": "6:00", "to": "18:00", "length": "2:00 h"}
+    asked = {**planned, "done": done, "order": added, "every": hours, "time_limit": 30}
+    offered = await call(client, "offer_slots", **asked)
+    assert [each["slot"] for each in offered["not_possible"]][:1] == [["6:00", "8:00"]]
     latest = offered["slots"][-1]
     assert latest["rise"].keys() == {"distance", "time"}
     added["window"] = latest["window"]
