@@ -37,7 +37,7 @@ from service.fleet.search.working_plan import (
     link,
     unlink,
 )
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
 
@@ -96,7 +96,7 @@ def _near(state: State, pickup: int, stop: int, best: Place) -> tuple[Place, int
     return best, tried
 
 
-@compiled
+@standalone
 def _in_route(state: State, pickup: int, slot: int, best: Place) -> Place:
     """Return the better of two places: the best so far, and the best in a route not tried yet."""
     problem, plan, _ = state

@@ -24,7 +24,7 @@ from service.fleet.search.working_plan import (
     take_in,
     unlink,
 )
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 from service.search.local_search import random_below
 
 _MOST_OUTSIDE = 10  # stops outside that an iteration tries to put in
@@ -39,7 +39,7 @@ _CHANCES = 20  # see _most()
 _OFTEN = 10  # one iteration in so many passes by many places
 
 
-@inlined
+@standalone
 def recreate(state: State, order: int) -> None:
     """Insert the removed stops, sorted in an order, where each costs the least.
 

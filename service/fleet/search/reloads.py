@@ -5,10 +5,10 @@ import numpy as np
 from service.fleet.search.problem import Problem
 from service.fleet.search.route import measure
 from service.fleet.search.working_plan import State, WorkingPlan, way
-from service.jit import compiled, inlined
+from service.jit import inlined, standalone
 
 
-@compiled
+@standalone
 def load_anew(state: State, slot: int) -> None:
     """Let the vehicle of a route load where that adds the least to its legs, if that costs less.
 

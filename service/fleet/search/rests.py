@@ -10,7 +10,7 @@ import numpy as np
 from service.fleet.rounding import is_over
 from service.fleet.search.problem import RELEASED, Array, Problem
 from service.fleet.search.working_plan import MOST_STATES, WorkingPlan, leg
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
 
@@ -37,7 +37,7 @@ class Times(NamedTuple):
     late: float
 
 
-@compiled
+@standalone
 def rested(problem: Problem, plan: WorkingPlan, slot: int) -> Times:
     """Return the times of a route with the breaks of its vehicle."""
     start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]

@@ -25,7 +25,7 @@ from service.fleet.search.working_plan import (
     mark_used,
     way,
 )
-from service.jit import compiled, inlined
+from service.jit import inlined, standalone
 
 _is_over = inlined(is_over)
 
@@ -127,7 +127,7 @@ def values_of(plan: WorkingPlan, slot: int) -> Values:
     return Values(value[FIRST], value[SECOND], value[OVERTIME], value[LATENESS], value[LOADED])
 
 
-@compiled
+@standalone
 def measure(state: State, slot: int) -> bool:
     """Work out what is known along a route and its cost; return whether it keeps all rules."""
     problem, plan, _ = state
