@@ -72,6 +72,8 @@ def fleets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     """The benchmark, which stores in a folder of its own."""
     monkeypatch.setattr(provenance, "RESULTS", tmp_path / "results")
     monkeypatch.setattr(provenance, "changed_files", list)
+    for package in ("ortools", "pyvrp"):
+        pytest.importorskip(package, reason="needs the extra bench")
     return pytest.importorskip("tests.benchmarks.fleets", reason="needs the extra bench")
 
 
