@@ -15,6 +15,7 @@ import pytest
 
 from tests.helpers.ports import free_port
 from tests.helpers.processes import PATIENCE, until_ok
+from tests.helpers.sampled import at_night
 
 PARETOUR = str(Path(sys.executable).with_name("paretour"))
 CITIES = [[float(i), float(i * i % 7), float(i * 3 % 5), float(i)] for i in range(12)]
@@ -48,7 +49,11 @@ def log_of(folder: Path) -> Path:
 
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize(  # a package hides a module of its name
-    "names", [["service/__init__.py"], ["service.py", "numpy.py", "signal.py"]]
+    "names",
+    [
+        ["service/__init__.py", "numpy.py", "signal.py"],
+        pytest.param(["service.py"], marks=at_night),
+    ],
 )
 def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
     tmp_path: Path, quick_actors: dict[str, str], names: list[str]
