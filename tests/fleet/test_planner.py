@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, Refusal
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
@@ -220,19 +219,17 @@ def test_where_no_rule_can_be_broken_there_is_a_plan_in_any_time(
         assert not any(violations(fleet, plan) for plan in front.plans)
 
 
-@pytest.mark.parametrize("units", [(1e-200, 1e-200), (1e-150, 1e-9), (1e9, 1e-9), (1e9, 1e150)])
 @pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
-def test_units_of_any_size_change_no_front(
-    units: tuple[float, float], over: tuple[Over, Over]
-) -> None:
+def test_units_of_any_size_change_no_front(over: tuple[Over, Over]) -> None:
     costs = np.random.default_rng(0).integers(1, 50, (2, 14, 14)).astype(float)
     rules = Rules(visits=(Visit(),) * 14, vehicles=(OPEN,), over=over)
-    options = FleetOptions(time_limit=inf, iterations=2000)
-    scaled = costs * np.array(units)[:, np.newaxis, np.newaxis]
+    options = FleetOptions(time_limit=inf, iterations=300)
     expected = plan_fleet(Fleet(rules=rules, costs=costs), options)
-    front = plan_fleet(Fleet(rules=rules, costs=scaled), options)
-    assert share_of_front(expected, front) == pytest.approx(1.0, abs=0.005)
-    assert len(front.plans) > 2
+    for units in ((1e-200, 1e-200), (1e-150, 1e-9), (1e9, 1e-9), (1e9, 1e150)):
+        scaled = costs * np.array(units)[:, np.newaxis, np.newaxis]
+        front = plan_fleet(Fleet(rules=rules, costs=scaled), options)
+        assert share_of_front(expected, front) == pytest.approx(1.0, abs=0.005)
+        assert len(front.plans) > 2
 
 
 OPEN = VehicleType(start=0, count=3)
@@ -272,7 +269,7 @@ def plain_deliveries(n: int) -> Fleet:
 
 
 def shuffler() -> Shuffler:
-    return Shuffler(info=info_of("shuffler", "matrices"), estimate=CallEstimate("matrices"))
+    return Shuffler(info=info_of("shuffler", "matrices"))
 
 
 def test_without_time_the_tours_of_the_network_are_cut() -> None:
@@ -369,7 +366,7 @@ def test_a_search_ends_where_vans_in_limited_time_load_again_what_is_released() 
         "from service.fleet.fronts import FleetOptions\n"
         "from service.fleet.planner import plan_fleet\n"
         "from tests.fleet.test_planner import crowded\n"
-        "for seed in range(6):\n"
+        "for seed in range(3):\n"
         "    try: plan_fleet(crowded(seed), FleetOptions(time_limit=1.5, seed=seed))\n"
         "    except Refusal: pass\n"
     )
