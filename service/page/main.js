@@ -33,7 +33,7 @@ const [{ Result }, { Today }] = await Promise.all([import("./result/result.js"),
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
 const result = new Result(service, {
-  onClick: (...place) => [placing, replanForm, today].forEach((each) => each.clicked(...place)),
+  onClick: (...place) => [placing, replanForm, today, input].forEach((each) => each.clicked(...place)),
   onMove(...moved) {
     input.moveCity(...moved);
     if (input.priced) say("Moved. Costs given as a matrix did not change.");
@@ -53,6 +53,7 @@ const opening = new Opening(service, result, {
   offer,
   onDone: () => planning || say(""),
   open,
+  recall: () => input.recall(),
   asked: () => input.asked,
   plan,
   fail,
@@ -112,6 +113,7 @@ function edited(instance, fit) {
   const isAsked = (request) => request && keysOf(request).planned === keysOf(asked).planned; // details are not planned
   const again = isAsked(last?.asked);
   if (answer && isAsked(answered)) {
+    result.retell(input.instance);
     if (again) tell(last.state);
     return;
   }
@@ -152,7 +154,7 @@ async function screen() {
     example: examples.unchanged(asked),
     title: opening.title,
     objectives,
-    details: detailsByStop(input.asked),
+    details: detailsByStop(way?.asked ?? input.asked),
     ...result.taken,
   };
 }

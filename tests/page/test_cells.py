@@ -16,6 +16,7 @@ CELL = """async ([table, title, text, second]) => {
   return [read, cellText(item, column, second), hintOf(column, second)];
 }"""
 HOUR, MINUTE = 3600, 60
+LUNCH = {"window": [12 * HOUR, 13 * HOUR], "length": 30 * MINUTE}
 
 
 def read(node: Node, table: str, title: str, text: str, second: int = 1) -> list[Any]:
@@ -30,6 +31,9 @@ def read(node: Node, table: str, title: str, text: str, second: int = 1) -> list
         ("stops", "Demand", "2", {"demand": [2]}, "2"),
         ("stops", "Demand", "2, 5", {"demand": [2, 5]}, "2, 5"),
         ("stops", "Service", "5 min", {"service": 300}, "5 min"),
+        ("stops", "Service", "5", {"service": 300}, "5 min"),
+        ("stops", "Service", "120", {"service": 7200}, "120 min"),
+        ("stops", "Service", "45.5 s", {"service": 45.5}, "45.5 s"),
         ("stops", "Service", "0:05:30", {"service": 330}, "330 s"),
         ("stops", "Service", "1 h 5 min", {"service": 3900}, "65 min"),
         ("stops", "Window", "8-12", {"window": [8 * HOUR, 12 * HOUR]}, "8:00-12:00"),
@@ -55,6 +59,8 @@ def read(node: Node, table: str, title: str, text: str, second: int = 1) -> list
             {"breaks": [{"window": [11.5 * HOUR, 12.5 * HOUR], "length": 30 * MINUTE}]},
             "11:30-12:30 30 min",
         ),
+        ("vehicles", "Breaks", "12-13 30", {"breaks": [LUNCH]}, "12:00-13:00 30 min"),
+        ("vehicles", "Longest route", "8 h", {"longest": 8 * HOUR}, "480 min"),
         ("vehicles", "Start", "depot", {"start": "depot"}, "depot"),
         ("vehicles", "Count", "", {}, ""),
     ],
@@ -80,6 +86,8 @@ def test_a_cell_is_read_as_people_write_it(
         ("stops", "Window", "8:00-10:00; 9:00-12:00", "that neither overlap nor touch"),
         ("vehicles", "Shift", "8:00-12:00; 12:00-16:00", "that neither overlap nor touch"),
         ("stops", "Service", "-5", "how long it takes"),
+        ("stops", "Service", "300", "as 5 min, 0:05 or 300 s"),  # seconds, or five hours
+        ("vehicles", "Longest route", "8", "as 8 h, 480 min or 8:00"),
         ("stops", "Due", "8.5", "a time, as 10:30"),
         ("vehicles", "Breaks", "12:00-13:00", "when it may begin and how long it takes"),
         ("vehicles", "Start", "yard", None),
@@ -96,6 +104,8 @@ def test_a_cell_that_is_not_understood_keeps_its_text_and_says_what_to_write(
 
 def test_times_of_a_clock_that_is_none_are_numbers(node: Node) -> None:
     assert read(node, "stops", "Window", "8-12", second=0)[0] == {"window": [8, 12]}
+    assert read(node, "stops", "Service", "300", second=0)[0] == {"service": 300}
+    assert read(node, "stops", "Service", "5", second=60)[0] == {"service": 5}
     assert read(node, "stops", "Due", "x", second=0)[2] == "a number in the unit of the times"
 
 

@@ -165,6 +165,17 @@ def test_vehicles_have_the_same_names_in_files_lanes_and_tables(stored: Page) ->
     assert stored.locator("#fleet-lanes .name").all_text_contents() == NAMES
 
 
+def test_each_vehicle_says_when_it_leaves_and_when_it_is_back(stored: Page) -> None:
+    hours = [("8:05", "9:35"), ("7:30", "7:50"), ("8:00", "8:55"), ("10:00", "10:05")]
+    expect(stored.locator("#choice")).to_contain_text("The last vehicle is done at 10:05.")
+    cells = [row.split("\t") for row in stored.locator("#fleet-legend tr").all_inner_texts()]
+    places = [cells[0].index(title) for title in ("Leaves", "Back")]
+    assert [tuple(row[at] for at in places) for row in cells[1:-1]] == hours
+    assert [cells[-1][at] for at in places] == ["7:30, the first", "10:05, the last"]
+    front = csv.DictReader(io.StringIO(saved(stored, "CSV").decode()))
+    assert [(row["leaves"], row["back"]) for row in front] == hours
+
+
 def test_gpx_says_the_times_of_each_point(stored: Page) -> None:
     gpx = ElementTree.fromstring(given(stored, "Save the selected tour as GPX"))
     said = [each.findtext(f"{GPX}desc") for each in gpx.iter(f"{GPX}rtept")]
@@ -177,9 +188,11 @@ def test_a_vehicle_that_leaves_after_its_shift_begins_says_why(stored: Page) -> 
     stored.get_by_role("button", name="Print the stops of the selected tour").click()
     parts = stored.locator("#sheet section")
     assert parts.locator("h2").all_text_contents() == NAMES
-    assert [parts.nth(at).locator("> p").last.text_content() == WHY for at in range(4)] == [
-        True,
-        *[False] * 3,
+    assert [parts.nth(at).locator("> p").last.text_content() for at in range(4)] == [
+        f"{WHY[:-1]}; back at 9:35.",
+        "Leaves at 7:30, back at 7:50.",
+        "Leaves at 8:00, back at 8:55.",
+        "Leaves at 10:00, done at 10:05.",
     ]
     heads = [part.locator("thead td").all_text_contents() for part in parts.all()]
     assert heads[0] == ["", "stop", "window", "arrives", "waits", "break", "leaves", "load"]
@@ -237,6 +250,10 @@ def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(
         assert at(following["arrives"]) == pytest.approx(at(row["leaves"]) + 600, abs=60), rows
 
 
+def closing(arrives: str, closes: str, stop: str) -> dict[str, Any]:
+    return {**visit(arrives, arrives, stop=stop), "closes": at(closes)}
+
+
 NOTE = """async (visits) => {
   const { departureNote } = await import("./page/fleet/visit_sentence.js");
   const minutes = (time) => String((time / 60) % 60).padStart(2, "0");
@@ -256,13 +273,20 @@ def visit(arrives: str, begins: str, opens: str = "", stop: str = "A") -> dict[s
     [
         ([visit("8:15", "8:15", "8:15")], ", to be at A when it opens at 8:15"),
         ([visit("8:10", "8:10"), visit("8:15", "8:15", "8:15", "B")], ", to be at B when it opens"),
+        # Later than that it would be late, and so it waits at the next stop all the same.
+        ([closing("8:15", "8:15", "B"), visit("8:20", "9:01")], " for B, which closes at 8:15"),
+        (
+            [visit("8:10", "8:10", "8:10"), closing("8:15", "8:15", "B"), visit("8:20", "9:01")],
+            " for B, which closes at 8:15",
+        ),
+        ([closing("8:15", "8:40", "B"), visit("8:20", "9:01")], ""),
         ([visit("8:10", "8:15", "8:15")], ""),  # it waits there
         ([visit("8:10", "8:12"), visit("8:15", "8:15", "8:15", "B")], ""),  # or before
         ([{**visit("8:15", "8:15", "8:15"), "waiting": 20}], ""),  # for some seconds
         ([visit("8:15", "8:15")], ""),
     ],
 )
-def test_a_vehicle_leaves_for_a_stop_that_opens_only_if_it_does_not_wait(
+def test_a_vehicle_leaves_for_the_stop_that_keeps_it_from_leaving_later(
     node: Node, visits: list[dict[str, Any]], why: str
 ) -> None:
     start = {**visit("8:05", "8:05", stop="depot"), "shift": at("7:30"), "released": 0}

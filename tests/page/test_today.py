@@ -136,7 +136,8 @@ CHANGES = """async ([routes, vehicle, day]) => {
   const after = progressOf(routes[1], { now: null, turned: new Set() });
   const clock = after.clock && { said: after.clock.said, second: 60 };
   const known = { ...day, out: new Set(day.out), removed: new Set(day.removed) };
-  return changesOf(before.vans, after.vans, clock, known);
+  const customerOf = (stop) => (stop === "B" ? "Bo" : "");
+  return changesOf(before.vans, after.vans, clock, { ...known, customerOf });
 }"""
 
 
@@ -152,7 +153,7 @@ def test_what_changes_is_said_for_each_stop_and_vehicle(node: Node) -> None:
     day: dict[str, Any] = {"out": ["van 1"], "removed": [], "unassigned": []}
     found = node.evaluate(CHANGES, [[DRIVEN, rest], "van", {**day, "added": [{"id": "E"}]}])
     assert found["said"] == [
-        "B moves from van 1 to van 2, 1 h 30 min later: 11:30",
+        "B (Bo) moves from van 1 to van 2, 1 h 30 min later: 11:30",
         "E is new: van 2 at 11:50",
         "D stays with van 2, 5 min later: 11:05",
     ]
@@ -174,12 +175,12 @@ def test_what_changes_is_said_for_each_stop_and_vehicle(node: Node) -> None:
     assert found["said"] == [
         "D is left out: van 2 does not come",
         "E is new, and is left out",
-        "B is cancelled: van 1 does not come",
+        "B (Bo) is cancelled: van 1 does not come",
     ]
     del routes[0]["arrivals"]
     untimed = {**DRIVEN, "routes": [{**each, "arrivals": None} for each in ROUTES]}
     found = node.evaluate(CHANGES, [[untimed, rest], "van", {**day, "unassigned": []}])
-    assert found["said"] == ["B is cancelled: van 1 does not come"]
+    assert found["said"] == ["B (Bo) is cancelled: van 1 does not come"]
     assert found["last"] == ""
 
 

@@ -5,11 +5,12 @@ import { cellNumber } from "../common/numbers.js";
 import { clockUnit } from "./units.js";
 
 const [MINUTE, HOUR] = [60, 3600]; // seconds
-const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+) ?s)?$/;
+const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+(?:\.\d+)?) ?s)?$/;
 const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
 const MINUTES = /^\d{3}$/; // in a unit of minutes: 540 is 9:00
 const DOUBTFUL = /^\d\d?[.,]\d$/; // 8.5 may be 8:30 or 8:50
 const HALF_OF_DAY = /[ap]\.?m\.?$/i;
+const MOST_MINUTES = 120; // 300 may be minutes or seconds
 const COUNTED = "a number in the unit of the times";
 
 // The types of columns of numbers.
@@ -31,7 +32,8 @@ const TYPES = {
   loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), load), hint: "a whole number such as 2, or one for each kind of load, such as 2, 5" },
   words: { write: listed, read: (text) => pieces(text, /[;,|]/) },
   time: { write: writtenTime, read: time, hint: "a time, as 10:30" },
-  lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300" },
+  lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300 s" },
+  long: { write: lastingText, read: (text, second) => (second && isPlain(text) ? undefined : lasting(text, second)), hint: "how long it is, as 8 h, 480 min or 8:00" },
   spans: {
     write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
     read: (text, second) => apart(all(pieces(text, /[;,]/), (each) => span(each, second))),
@@ -53,17 +55,27 @@ export function cellText(item, column, second) {
   return value === undefined || value === null ? "" : typeof value === "string" ? value : TYPES[column.type].write(value, second);
 }
 
-export const isNumber = (type) => type in NUMBERS;
+const isNumber = (type) => type in NUMBERS;
 
 /** Whether a cell holds what is not understood or refused, or the name of a stop or vehicle that there is not. */
 export const isUnread = (item, column) => unknownIn(item, column) !== undefined;
+
+/** Columns as EditableTable takes them. */
+export const headed = (columns) => columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: !isNumber(type) }));
+
+/** The row of a stop or vehicle as EditableTable takes it; `details` are texts of the columns that are details. */
+export const rowOf = (item, columns, second, details = []) => ({
+  name: item?.id ?? "",
+  cells: columns.map((each) => (each.detail === undefined ? cellText(item, each, second) : (details[each.detail] ?? ""))),
+  unread: columns.flatMap((each, at) => (isUnread(item, each) ? [at] : [])),
+});
 
 /** The first text in a cell that is not understood, or not such a name; undefined if there is none. */
 export const unknownIn = (item, column) =>
   listOf(valueOf(item, column)).find((each) => typeof each === "string" && !(column.names?.includes(each) ?? ["text", "words"].includes(column.type)));
 
 /** What to write into a cell of a column. */
-export const hintOf = ({ type }, second) => (!second && ["time", "spans", "lasting"].includes(type) ? COUNTED : TYPES[type].hint);
+export const hintOf = ({ type }, second) => (!second && ["time", "spans", "lasting", "long"].includes(type) ? COUNTED : TYPES[type].hint);
 
 /** A stop or vehicle with another text in one of its cells; without text, its member goes. */
 export function withText(item, { member, several, part, type }, text, second) {
@@ -102,6 +114,7 @@ function numbers(accepts, hint) {
 }
 
 const only = (accepts, value) => (accepts(value) ? value : undefined);
+const isPlain = (text) => /^[\d.,]+$/.test(text);
 const load = (text) => only((value) => value >= 0 && Number.isInteger(value), number(text));
 
 function number(text) {
@@ -121,15 +134,19 @@ function writtenTime(value, second) {
   return timeText(value * second) ?? String(value);
 }
 
+/** How long something takes; a plain number is one of minutes, unless it is too large to be that without doubt. */
 function lasting(text, second) {
   const [whole, hours = 0, minutes = 0, seconds = 0] = LASTING.exec(text) ?? [];
-  return whole ? second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second : text.includes(":") ? time(text, second) : NUMBERS.amount.read(text);
+  if (whole) return second && (HOUR * hours + MINUTE * minutes + Number(seconds)) / second;
+  if (text.includes(":")) return time(text, second);
+  const value = NUMBERS.amount.read(text);
+  return second && value > MOST_MINUTES ? undefined : second && value !== undefined ? (value * MINUTE) / second : value;
 }
 
 function lastingText(value, second) {
   const seconds = value * second;
-  if (!Number.isInteger(seconds) || seconds < 0) return String(value);
-  return seconds % MINUTE ? `${seconds} s` : `${seconds / MINUTE} min`;
+  if (!(seconds >= 0)) return String(value);
+  return seconds % MINUTE ? `${Number(seconds.toFixed(3))} s` : `${seconds / MINUTE} min`;
 }
 
 function span(text, second) {

@@ -41,7 +41,7 @@ const ALL = { stops: OF_STOPS, vehicles: OF_VEHICLES };
 export function columnsOf(table, { clock, ...asked }) {
   return ALL[table].map((column) => {
     const names = column.list && asked[`${column.list.replace("-names", "")}s`]?.map((each) => each?.id);
-    return column.member === "longest" && clock ? { ...column, type: "lasting" } : { ...column, names };
+    return column.member === "longest" && clock ? { ...column, type: "long" } : { ...column, names };
   });
 }
 

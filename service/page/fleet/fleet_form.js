@@ -2,10 +2,12 @@
 
 import { tellFault } from "../planning/faults.js";
 import { counted } from "../common/numbers.js";
+import { detailColumns, withDetail } from "../inputs/details.js";
 import { EditableTable } from "../inputs/table.js";
 import { ObjectiveFields, isSpeedRead } from "../inputs/objective_fields.js";
 import { nearest } from "../common/nearest.js";
-import { cellText, hintOf, isNumber, isUnread, secondsIn, unknownIn, withText } from "./cells.js";
+import { cellText, headed, hintOf, isUnread, rowOf, secondsIn, unknownIn, withText } from "./cells.js";
+import { EverydayForm } from "./everyday_form.js";
 import { columnsOf, isShown } from "./columns.js";
 import { vehiclesIn } from "./fleet_request.js";
 import { byIds, vehicleRenamed, withVehicle } from "./references.js";
@@ -20,6 +22,7 @@ export class FleetForm {
   #vehicles;
   #objectives;
   #clock;
+  #everyday;
   #asked = null; // the request of the fleet; null if there is none
   #added = { stops: new Set(), vehicles: new Set() }; // members whose columns are shown though they are empty
 
@@ -34,13 +37,15 @@ export class FleetForm {
       element("vehicles"),
       {
         onName: (row, text) => onChange(vehicleRenamed(this.#asked, row, text)),
-        onCell: (...cell) => this.write("vehicles", ...cell),
+        onCells: (cells) => this.write("vehicles", cells),
         onDelete: (row) => onChange({ ...this.#asked, vehicles: this.#asked.vehicles.toSpliced(row, 1) }),
       },
       "Vehicle",
+      element("fill-vehicles"),
     );
     this.#objectives = new ObjectiveFields(element("fleet-objectives"), (axis, change) => this.#measure(axis, change));
     this.#clock = new ObjectiveFields(element("fleet-clock"), (_, change) => onChange({ ...this.#asked, clock: { ...this.#asked.clock, ...change } }, isSpeedRead(change)));
+    this.#everyday = new EverydayForm((changed) => this.#onTrade(changed));
     element("add-vehicle").addEventListener("click", () => this.#addVehicle());
     element("against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAgainst));
     element("also-against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAlsoAgainst));
@@ -56,6 +61,8 @@ export class FleetForm {
     this.#asked = asked;
     this.#added = { stops: new Set(), vehicles: new Set() };
     this.#vehicles.forget();
+    this.#everyday.open();
+    if (!asked) this.#everyday.show(null);
     for (const each of document.querySelectorAll(".of-fleet")) each.hidden = !asked;
     element("objectives").hidden = Boolean(asked);
     if (asked) this.#showTrade();
@@ -67,8 +74,19 @@ export class FleetForm {
     const second = secondsIn(asked);
     this.#show("stops", this.#stops, second);
     this.#show("vehicles", this.#vehicles, second);
+    this.#everyday.show(asked);
     element("vehicle-count").textContent = counted(vehiclesIn(asked), "vehicle", "vehicles");
     element("vehicle-names").replaceChildren(...asked.vehicles.map((each) => new Option(each?.id)));
+  }
+
+  /** Fills in what is remembered of every day. */
+  recall() {
+    this.#everyday.recall();
+  }
+
+  /** Takes the place where a map was clicked. */
+  clicked(...place) {
+    this.#everyday.clicked(...place);
   }
 
   /** Marks the cells that are not understood, and says what the first of each table must be; faults were cleared before. */
@@ -95,12 +113,19 @@ export class FleetForm {
     }
   }
 
-  /** Takes the text of a cell. */
-  write(table, row, column, text) {
-    const items = this.#items(table);
-    const written = this.#shown(table)[column];
-    const item = withText(items[row], written, text, secondsIn(this.#asked));
-    this.#onChange({ ...this.#asked, [table]: items.with(row, item) }, !isUnread(item, written));
+  /** Takes the texts of cells, each `{ row, column, text }`. */
+  write(table, cells) {
+    const columns = this.#shown(table);
+    const second = secondsIn(this.#asked);
+    let isRead = true;
+    const changed = cells.reduce((asked, { row, column, text }) => {
+      const written = columns[column];
+      if (written.detail !== undefined) return withDetail(asked, written.detail, row, text);
+      const item = withText(asked[table][row], written, text, second);
+      isRead &&= !isUnread(item, written);
+      return { ...asked, [table]: asked[table].with(row, item) };
+    }, this.#asked);
+    this.#onChange(changed, isRead);
   }
 
   #items(table) {
@@ -108,20 +133,16 @@ export class FleetForm {
   }
 
   #shown(table) {
-    return columnsOf(table, this.#asked).filter((each) => isShown(each, this.#items(table), this.#added[table]));
+    const told = table === "stops" ? detailColumns(this.#asked) : [];
+    return [...told, ...columnsOf(table, this.#asked).filter((each) => isShown(each, this.#items(table), this.#added[table]))];
   }
 
   #show(name, table, second) {
     const columns = this.#shown(name);
     const items = byIds(this.#asked)[name] ?? [];
-    const headed = columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: !isNumber(type) }));
-    const rows = items.map((item) => ({
-      name: item?.id ?? "",
-      cells: columns.map((each) => cellText(item, each, second)),
-      unread: columns.flatMap((each, at) => (isUnread(item, each) ? [at] : [])),
-    }));
-    table.show(headed, rows);
-    const missing = columnsOf(name, this.#asked).filter((each) => !columns.some(({ title }) => title === each.title) && each.part === undefined);
+    const details = (row) => this.#asked.details?.map(({ texts }) => texts[row]);
+    table.show(headed(columns), items.map((item, row) => rowOf(item, columns, second, details(row))));
+    const missing = columnsOf(name, this.#asked).filter(({ member, part }) => part === undefined && !columns.some((each) => each.member === member));
     element(`${name}-column`).replaceChildren(new Option("Add a column", ""), ...missing.map(({ title, member }) => new Option(title, member)));
   }
 

@@ -1,7 +1,8 @@
 /** One vehicle's lane over time: a line while it is under way, and what it does at each stop. */
 
 import { svgElement } from "../common/elements.js";
-import { departureNote } from "./visit_sentence.js";
+import { withCustomer } from "../inputs/details.js";
+import { departureNote, limitsOf } from "./visit_sentence.js";
 
 export const LANE = 42; // pixels of height; the name takes the upper half
 const [NAME, BAR] = [17, 12]; // pixels: where the bar begins, and its height
@@ -24,8 +25,9 @@ export function laneElements({ name, style, visits }, at, { left, top, place, sa
     return svgElement("rect", { x: place(from), y: y + NAME, width, height: BAR, class: kind, fill });
   };
   const stopOf = (visit, order) => {
-    const { stop, kind, arrival, begin, end, waiting, due, late, closing } = visit;
-    const label = `${name}, ${stop}${DOES[kind]}, ${said(begin)}${end > begin ? ` to ${said(end)}` : ""}${late ? `, ${lasting(late)} late` : ""}${closing && `, ${closing}`}`;
+    const { stop, customer, kind, arrival, begin, end, waiting, due, late, closing } = visit;
+    const times = [`${said(begin)}${end > begin ? ` to ${said(end)}` : ""}`, ...(late ? [`${lasting(late)} late`] : []), ...limitsOf(visit, said), ...(closing ? [closing] : [])];
+    const label = `${name}, ${withCustomer(stop, customer)}${DOES[kind]}, ${times.join(", ")}`;
     const made = svgElement("g", { class: "stop", role: "button", tabindex: -1, "aria-label": label, "aria-pressed": false, "data-lane": at, "data-at": order });
     const x = place(begin);
     if (waiting) made.append(box("wait", arrival, begin, "var(--card)"));

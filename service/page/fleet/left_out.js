@@ -1,5 +1,6 @@
 /** Say which stops a plan leaves out, and why. */
 
+import { withCustomer } from "../inputs/details.js";
 import { counted, length } from "../common/numbers.js";
 import { shortUnit } from "../common/objectives.js";
 
@@ -18,11 +19,12 @@ const paying = (objectives) => objectives.find(({ measure }) => measure === "una
  * Each stop that is left out, with its prize if it is known.
  *
  * @param {Map<string, object>} asked the stops of the request by id
+ * @param {(stop: string) => string} customerOf as of `customersIn`
  */
-export function leftOut({ unassigned = [] }, asked, objectives) {
+export function leftOut({ unassigned = [] }, asked, customerOf, objectives) {
   const unit = shortUnit(paying(objectives));
   return unassigned.map((stop) => {
-    const prize = asked.get(stop)?.prize;
-    return prize == null ? stop : `${stop}: prize ${length(prize)}${unit && ` ${unit}`}`;
+    const [prize, name] = [asked.get(stop)?.prize, withCustomer(stop, customerOf(stop))];
+    return prize == null ? name : `${name}: prize ${length(prize)}${unit && ` ${unit}`}`;
   });
 }

@@ -2,6 +2,7 @@
 
 import { UNNAMED } from "../common/objectives.js";
 import { visitItem } from "../common/elements.js";
+import { customersIn, withCustomer } from "../inputs/details.js";
 import { nameOf } from "../inputs/places.js";
 import { ChosenVisit } from "./chosen_visit.js";
 import { knownFleet } from "./known_fleet.js";
@@ -21,8 +22,10 @@ export class PlanView {
   #asked = {}; // the request, as far as it is known
   #editable = true;
   #objectives = UNNAMED;
+  #customerOf = () => "";
   #plan = null;
   #movers = null; // of its routes
+  #hours = new Map(); // when each stop is visited, in words
 
   /**
    * @param {(stop: string | null) => void} onChoose called with the stop that is chosen in a lane
@@ -37,8 +40,16 @@ export class PlanView {
   /** Takes the request whose plans will be shown; `editable` says whether it can be changed. */
   open(asked, editable) {
     this.#asked = asked;
+    this.#customerOf = customersIn(asked);
     this.#editable = editable;
     this.show(null);
+  }
+
+  /** Takes other details of the stops. */
+  retell(asked) {
+    this.#asked = asked;
+    this.#customerOf = customersIn(asked);
+    this.name(this.#objectives);
   }
 
   /** Sets the names of the lengths. */
@@ -47,6 +58,11 @@ export class PlanView {
     const plan = this.#plan;
     this.show(null);
     if (plan?.lengths.length === objectives.length) this.show(plan, this.#movers);
+  }
+
+  /** When a stop is visited, in words, if it is visited once; "" if that is not known. */
+  hourOf(stop) {
+    return (this.#plan && this.#hours.get(stop)) ?? "";
   }
 
   /** Takes the stop that is chosen on a map; null if none is. */
@@ -65,24 +81,29 @@ export class PlanView {
     element("fleet-listed").textContent = movers.listed;
     const known = knownFleet(this.#asked);
     const names = namesOf(plan.routes, movers, this.#asked);
-    showLegend(element("fleet-legend"), plan, movers, this.#asked, this.#objectives, names);
-    this.#showTimes(plan, names);
+    const times = timetable(plan.routes, names, this.#asked);
+    showLegend(element("fleet-legend"), plan, movers, this.#asked, this.#objectives, { names, ...times });
+    this.#showTimes(plan, names, times);
     element("fleet-left-out-title").textContent = reason(plan, this.#objectives);
-    list("fleet-left-out", leftOut(plan, known.stops, this.#objectives));
+    list("fleet-left-out", leftOut(plan, known.stops, this.#customerOf, this.#objectives));
   }
 
   /** Shows a lane for each vehicle if the plan has times, and the stops of each vehicle in order. */
-  #showTimes(plan, names) {
+  #showTimes(plan, names, { lanes, clock }) {
     const { routes } = plan;
-    const { lanes, clock } = timetable(routes, names, this.#asked);
+    this.#hours = hoursByStop(lanes, clock);
     this.#lanes.show(lanes, clock);
     this.#chosen.show(plan, lanes, clock);
     showSigns(lanes);
-    const visit = (stop, time) => visitItem(nameOfStop(stop), time && arrivalIn(time, clock.said));
+    const visit = (stop, time) => visitItem(withCustomer(nameOfStop(stop), this.#customerOf(nameOfStop(stop))), time && arrivalIn(time, clock.said));
     const visits = (route, lane) => route[this.#movers.through].map((stop, at) => visit(stop, lanes[lane]?.visits[at]));
     element("fleet-stops").replaceChildren(...routes.map((route, at) => listed(names[at], visits(route, at))));
   }
 }
+
+/** When each stop is visited, by its id: not of those at which vehicles start, load and end. */
+const hoursByStop = (lanes, clock) =>
+  new Map(lanes.flatMap(({ visits }) => visits.filter(({ kind }) => kind === "visit").map((visit) => [visit.stop, arrivalIn(visit, clock.said)])));
 
 /** Shows what the signs in the lanes mean, of those that there are. */
 function showSigns(lanes) {

@@ -1,5 +1,7 @@
 /** Say in one sentence when a vehicle visits a stop, and why it is late or waits there. */
 
+import { withCustomer } from "../inputs/details.js";
+
 /**
  * @param {{ name: string, visits: object[] }} lane the route of a vehicle, with what it does at each stop, by `visitTimes`
  * @param {number} at the place of the stop on it
@@ -9,53 +11,74 @@ export function visitSentence({ name: named, visits }, at, { said, lasting }) {
   const visit = visits[at];
   const name = named.includes(", ") ? `${named},` : named; // with its shift
   const from = at ? ` from ${visits[at - 1].stop}` : "";
-  const { stop, kind, arrival, begin, waiting, rests, due, late, released } = visit;
+  const { kind, arrival, begin, waiting, rests, due, late, released } = visit;
+  const stop = called(visit);
   if (kind === "start") {
     const shift = laterThanShift(visit, said);
-    return `${stop}: ${name} ${leaving(visits, said)}${shift && `; its shift is from ${shift}`}.`;
+    return `${stop}: ${name} leaves ${departure(visits, said)}${shift && `; its shift is from ${shift}`}.`;
   }
   const arrives = `${name} arrives at ${said(arrival)}${from}`;
   if (kind === "end") return `${stop}: ${arrives}${late ? `, ${lasting(late)} after its shift ends at ${said(due)}` : " and is done"}.`;
   const waits = waiting ? ` and waits ${lasting(waiting)}` : "";
   const rest = rests.length ? `; the driver has a break from ${spansIn(rests, said).join(" and from ")}` : "";
   if (kind === "loading") return `${stop}: ${name} loads again at ${said(begin)}${waited(released, begin)}; it arrives at ${said(arrival)}${from}${waits}${rest}.`;
-  return `${stop}: ${asked(visit, said)}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${rest}${tripOf(visits, at, said)}.`;
+  return `${stop}: ${limitsOf(visit, said).map((each) => `${each}, `).join("")}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${rest}${tripOf(visits, at, said)}.`;
 }
 
+const called = ({ stop, customer }) => withCustomer(stop, customer);
 const waited = (released, begin) => (released && released >= begin ? ", when its load is released" : "");
 
 /** The sentence that a vehicle leaves later than its shift begins, and why; "" if it does not. */
 export function departureNote(visits, said) {
   const shift = laterThanShift(visits[0], said);
-  return shift && `Shift from ${shift}; ${leaving(visits, said)}.`;
+  return shift && `Shift from ${shift}; leaves ${departure(visits, said)}.`;
+}
+
+/** When a vehicle leaves, why if that is later than its shift begins, and when it is back. */
+export function routeNote(visits, said) {
+  const shift = laterThanShift(visits[0], said);
+  const ends = `${visits.at(-1).kind === "end" ? "back" : "done"} at ${said(visits.at(-1).leaves)}.`;
+  return shift ? `Shift from ${shift}; leaves ${departure(visits, said)}; ${ends}` : `Leaves ${departure(visits, said)}, ${ends}`;
 }
 
 /** When the shift of a vehicle begins that leaves later; "" if none does. */
 const laterThanShift = ({ shift, arrival }, said) => (arrival > shift && said(arrival) !== said(shift) ? said(shift) : "");
 
-/**
- * When a vehicle leaves, and what for, if it could leave earlier: it would wait at the first stop that opens when it is visited.
- * That is not why if the vehicle waits all the same, there or before.
- */
-function leaving(visits, said) {
+/** When a vehicle leaves, and what for, if it could leave earlier. */
+function departure(visits, said) {
   const { arrival, released } = visits[0];
   const loaded = waited(released, arrival);
-  const opening = visits.find(({ opens, waiting }) => opens !== undefined || waiting);
-  const inTime = opening && opening.opens !== undefined && !opening.waiting;
-  const why = inTime && !loaded && laterThanShift(visits[0], said);
-  return `leaves at ${said(arrival)}${loaded}${why ? `, to be at ${opening.stop} when it opens at ${said(opening.opens)}` : ""}`;
+  const why = !loaded && laterThanShift(visits[0], said) ? reasonIn(visits, said) : "";
+  return `at ${said(arrival)}${loaded}${why}`;
 }
 
-/** What the stop asks for: when it is open, and when a visit is due. */
-function asked({ windows, due }, said) {
-  return `${windows.length ? `open ${spansIn(windows, said).join(" or ")}, ` : ""}${due === undefined ? "" : `due ${said(due)}, `}`;
+/**
+ * Why a vehicle leaves when it does: it leaves as late as it can without being done later. If it still waits somewhere, the
+ * stop is why that closes as its visit begins, before it waits; if not, the first that opens then.
+ */
+function reasonIn(visits, said) {
+  const waits = visits.findIndex(({ waiting }) => waiting);
+  const before = waits < 0 ? visits : visits.slice(0, waits);
+  const closing = before.find(({ begin, closes }) => closes !== undefined && said(begin) === said(closes));
+  if (closing && waits >= 0) return ` for ${called(closing)}, which closes at ${said(closing.closes)}`;
+  const opening = before.find(({ opens }) => opens !== undefined);
+  return opening ? `, to be at ${called(opening)} when it opens at ${said(opening.opens)}` : "";
 }
 
-/** When a vehicle arrives, when the visit begins if that is later, and how soon its window closes, such as "12:13, waits until 13:00". */
-export function arrivalIn({ arrival, begin, rests, closing }, said) {
+/**
+ * When a vehicle arrives, when the visit begins if that is later, when the stop is open or the visit due, and how soon its
+ * window closes, such as "12:13, waits until 13:00, open 13:00 to 15:00".
+ */
+export function arrivalIn({ arrival, begin, rests, closing, ...visit }, said) {
   const [arrives, begins] = [said(arrival), said(begin)];
   const later = arrives === begins ? "" : `${rests.length ? "begins" : "waits until"} ${begins}`;
-  return [arrives, later, closing].filter(Boolean).join(", ");
+  return [arrives, later, ...limitsOf(visit, said), closing].filter(Boolean).join(", ");
+}
+
+/** When the stop of a visit is open, and when the visit is due, of those that are known. */
+export function limitsOf({ kind, windows, due }, said) {
+  const open = windows.length ? [`open ${spansIn(windows, said).join(" or ")}`] : [];
+  return kind === "visit" && due !== undefined ? [...open, `due ${said(due)}`] : open;
 }
 
 /** Windows or breaks in words, such as "8:00 to 10:00". */

@@ -42,5 +42,27 @@ export function detailsByStop({ details = [], stops, ids }) {
   return (name) => details.map(({ column, texts }) => [column, texts[rowOf(name)] ?? ""]);
 }
 
+/** The columns of a table for the details of a request, each with its number among them in `detail`. */
+export const detailColumns = ({ details = [] }) => details.map(({ column }, detail) => ({ title: column, member: "details", type: "text", text: true, detail }));
+
+/** The request with another text in the cell of a detail. */
+export const withDetail = (asked, detail, row, text) => ({
+  ...asked,
+  details: asked.details.map((each, at) => (at === detail ? { ...each, texts: asked.stops.map((_, stop) => (stop === row ? text : (each.texts[stop] ?? ""))) } : each)),
+});
+
+const BRIEF = 60; // characters
+
+/** Who or what is at the stop of a name, in a few words: what its details say; "" where nothing is known. */
+export function customersIn(asked) {
+  const known = detailsByStop(asked ?? {});
+  return (name) => cut(known(name).map(([, text]) => text).filter(Boolean).join(", "));
+}
+
+const cut = (text) => (text.length > BRIEF ? `${text.slice(0, BRIEF - 1).trimEnd()}…` : text);
+
+/** The name of a stop with what is behind it, such as "A10260 (Bakery Kanto)". */
+export const withCustomer = (name, customer) => (customer ? `${name} (${customer})` : name);
+
 const isTexts = (texts) => Array.isArray(texts) && texts.every((text) => typeof text === "string");
 const isSound = (details) => Array.isArray(details) && details.every((each) => typeof each?.column === "string" && isTexts(each.texts));

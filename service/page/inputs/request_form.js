@@ -14,19 +14,17 @@ import { IF_LOST, isCity, nameOf, rounded, textOf } from "./places.js";
 import { PlanLine } from "./plan_line.js";
 import { RobotCount } from "./robot_count.js";
 import { ObjectiveFields, isSpeedRead } from "./objective_fields.js";
-import { isMeasured, isPriced, moved, put, renamed, withAnother, without } from "./stops.js";
+import { columnsOfPlaces, hasTable, misplacedIn, rowsOfPlaces, withCells, withNumbers } from "./places_table.js";
+import { isMeasured, isPriced, put, renamed, withAnother, without } from "./stops.js";
 import { EditableTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
-import { cellNumber, counted } from "../common/numbers.js";
+import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 import { firstFault, problemOf, readAgain } from "../planning/faults.js";
 import { say } from "../planning/status.js";
 
 const element = (id) => document.getElementById(id);
-const titled = (titles, members) => titles.map((title) => ({ title, members }));
-const COLUMNS = { coordinates: titled(["x₁", "y₁", "x₂", "y₂"]), stops: titled(["Longitude", "Latitude"], "location") };
-const DEGREES = [180, 90]; // at most
 const FIXED = "No stop can be added: its costs to the other stops are not known. Open a file that has it.";
 
 export class RequestForm {
@@ -69,11 +67,12 @@ export class RequestForm {
     this.#fields = new Fields(form);
     this.#planLine = new PlanLine(form);
     this.#objectiveFields = new ObjectiveFields(element("objectives"), (axis, change) => this.#measure(axis, change));
-    this.#table = new EditableTable(element("stops"), {
+    const told = {
       onName: (row, text) => this.#onceRead(() => this.#rename(row, text)),
-      onCell: (row, column, text) => this.#onceRead(() => this.#move(row, column, text)),
+      onCells: (cells) => this.#onceRead(() => this.#write(cells)),
       onDelete: (row) => this.#onceRead(() => this.#delete(row, IF_LOST)),
-    });
+    };
+    this.#table = new EditableTable(element("stops"), told, "Stop", element("fill-stops"));
     this.#fleet = new FleetForm(this.#table, (...changed) => this.#change(...changed));
     element("cities").addEventListener("input", () => this.#typed());
     for (const name of ["start", "end", "open", "cell_size", "robot_radius"]) form[name].addEventListener("change", () => onEnds(this.instance));
@@ -153,20 +152,8 @@ export class RequestForm {
     return problemOf(this.#untaken ?? this.#misplaced ?? this.#fields.fault);
   }
 
-  /** The first place that is not of numbers, as an error of a request. */
   get #misplaced() {
-    const form = formOf(this.#brought);
-    const columns = this.#columns(form);
-    const rows = this.#brought.stops?.map(({ location }) => [location ?? []].flat()) ?? this.#rows;
-    for (const [row, place] of rows.entries()) {
-      const column = columns.findIndex((_, at) => at in place && !this.#isPlaced(place[at], at));
-      const at = form === "stops" ? `location/${column}` : column;
-      if (column >= 0) return { pointer: `/${form}/${row}/${at}`, detail: `${columns[column].title} of ${this.ids?.[row] ?? `stop ${row + 1}`} must be a number` };
-    }
-  }
-
-  #isPlaced(value, column) {
-    return Number.isFinite(value) && !(this.#brought.stops && Math.abs(value) > DEGREES[column]);
+    return misplacedIn(formOf(this.#brought), this.#brought.stops, this.#rows, (row) => this.ids?.[row]);
   }
 
   /** Reads what was typed now, as `TypedRows.settle` does. */
@@ -196,7 +183,7 @@ export class RequestForm {
       return this.#edited(false);
     }
     const row = this.#drawn[city];
-    this.#write(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...there) : each)), false);
+    this.#takeRows(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...there) : each)), false);
   }
 
   /** Puts an end of a robot's tour into a cell of its map; null takes it away. */
@@ -209,6 +196,16 @@ export class RequestForm {
   /** Whether some costs are those of a matrix, and not measured between places. */
   get priced() {
     return isPriced(this.#brought);
+  }
+
+  /** Fills in what a dispatcher has every day, and a file of a fleet does not say. */
+  recall() {
+    if (this.#isFleet) this.#fleet.recall();
+  }
+
+  /** Takes the place where a map was clicked. */
+  clicked(...place) {
+    if (this.#isFleet) this.#fleet.clicked(...place);
   }
 
   /** Has a stop of a fleet served by a type of vehicles; by any without its id. */
@@ -256,7 +253,7 @@ export class RequestForm {
     element("cities").value = textOf(rows);
   }
 
-  #write(rows, fit) {
+  #takeRows(rows, fit) {
     this.#show(rows);
     this.#edited(fit);
   }
@@ -265,9 +262,9 @@ export class RequestForm {
   #edited(fit = true, isRead = true) {
     const form = formOf(this.#brought);
     const count = (form === "coordinates" ? this.#rows : (this.#brought.stops ?? [])).length;
-    const shown = this.#isFleet || Boolean(COLUMNS[form]);
+    const shown = this.#isFleet || hasTable(form);
     if (this.#isFleet) this.#fleet.show(this.#brought);
-    else this.#table.show(this.#columns(form), this.#tableRows(form));
+    else this.#table.show(columnsOfPlaces(form, this.#brought, this.#objectives), rowsOfPlaces(form, this.#brought, this.#rows));
     element("count").textContent = shown ? counted(count, "stop", "stops") : "";
     const isFixed = form !== "coordinates" && !isMeasured(this.#brought);
     element("add").disabled = element("place").disabled = isFixed;
@@ -303,20 +300,6 @@ export class RequestForm {
     if (this.#isFleet) this.#fleet.mark();
   }
 
-  /** The columns of the table; those of planes below the objective that is measured in them. */
-  #columns(form) {
-    const columns = COLUMNS[form] ?? [];
-    if (form !== "coordinates") return columns;
-    return columns.map((column, at) => ({ ...column, group: this.#objectives[Math.floor(at / 2)].name }));
-  }
-
-  #tableRows(form) {
-    const shown = (value) => (typeof value === "number" ? cellNumber(value) : value);
-    if (form === "coordinates") return this.#rows.map((cells, city) => ({ name: nameOf(this.ids, city), cells: cells.map(shown) }));
-    if (form !== "stops") return [];
-    return this.#brought.stops.map(({ id, location }) => ({ name: id, cells: [location ?? []].flat().map(shown) }));
-  }
-
   #rename(row, text) {
     if (this.#isFleet) this.#brought = stopRenamed(this.#brought, row, text);
     else if (this.#brought.stops) this.#brought = renamed(this.#brought, row, text);
@@ -324,12 +307,15 @@ export class RequestForm {
     this.#edited(false);
   }
 
-  #move(row, column, text) {
-    if (this.#isFleet) return this.#fleet.write("stops", row, column, text);
-    const value = numberOr(text.replace(",", "."));
-    if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
-    else this.#show(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)));
-    this.#edited(IF_LOST, this.#isPlaced(value, column));
+  /** Takes the texts of cells, each `{ row, column, text }`. */
+  #write(cells) {
+    if (this.#isFleet) return this.#fleet.write("stops", cells);
+    const { stops } = this.#brought;
+    const columns = columnsOfPlaces(formOf(this.#brought), this.#brought, this.#objectives);
+    const [changed, isRead] = stops ? withCells(this.#brought, columns, cells) : withNumbers(this.#rows, cells);
+    if (stops) this.#brought = changed;
+    else this.#show(changed);
+    this.#edited(IF_LOST, isRead);
   }
 
   #delete(row, fit = false) {
@@ -339,7 +325,7 @@ export class RequestForm {
       return this.#edited(fit);
     }
     Object.assign(this.#brought, { ids: this.#brought.ids?.toSpliced(row, 1), ...detailsWithout(this.#brought, row) });
-    this.#write(this.#rows.toSpliced(row, 1), fit);
+    this.#takeRows(this.#rows.toSpliced(row, 1), fit);
   }
 
   /** How many stops have a row in the table. */
@@ -361,7 +347,7 @@ export class RequestForm {
     if (ids) this.#brought.ids = [...ids, name];
     if (!stops) {
       Object.assign(this.#brought, detailsWithAnother(this.#brought));
-      return this.#write([...this.#rows, row], false);
+      return this.#takeRows([...this.#rows, row], false);
     }
     this.#brought = withAnother(this.#brought, name, row);
     this.#edited(false);
@@ -392,10 +378,6 @@ export class RequestForm {
 }
 
 const isFleet = (request) => kindOf(request).path === "fleet";
-
-function numberOr(text) {
-  return text === "" || Number.isNaN(Number(text)) ? text : Number(text);
-}
 
 function middleOf(rows, width) {
   const sum = (column) => rows.reduce((all, row) => all + (Number(row[column]) || 0), 0);

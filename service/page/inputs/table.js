@@ -2,6 +2,8 @@
 
 import { made } from "../common/elements.js";
 import { isOwnName } from "../planning/faults.js";
+import { say } from "../planning/status.js";
+import { blockOf, cellsOf, filledSaid } from "./filling.js";
 
 const PAGE = 50; // rows that are shown at once, since thousands of inputs are slow
 const MOST_REVEALED = 500; // rows
@@ -14,18 +16,74 @@ export class EditableTable {
   #columns = [];
   #rows = [];
   #drawn = ""; // which cells are in the document
+  #fill = null; // the button that copies a cell down
+  #last = null; // the cell that had the focus last, of its column
 
   /**
-   * @param {{ onName: (row: number, text: string) => void, onCell: (row: number, column: number,
-   *   text: string) => void, onDelete: (row: number) => void }} told callbacks for changes by the user
+   * @param {{ onName: (row: number, text: string) => void, onCells: (cells: { row: number, column: number, text: string }[]) => void,
+   *   onDelete: (row: number) => void }} told callbacks for changes by the user
    * @param {string} noun what a row is
+   * @param {HTMLButtonElement | null} fill copies the cell that had the focus last into all below it, as Ctrl+D does
    */
-  constructor(element, told, noun = "Stop") {
+  constructor(element, told, noun = "Stop", fill = null) {
     this.#element = element;
     this.#told = told;
     this.#noun = noun;
     element.addEventListener("change", ({ target }) => this.#changed(target));
     element.addEventListener("click", ({ target }) => this.#clicked(target));
+    element.addEventListener("paste", (event) => this.#paste(event));
+    if (!fill) return;
+    this.#fill = fill;
+    fill.addEventListener("click", () => this.#copyDown());
+    element.addEventListener("focusin", ({ target }) => this.#note(target));
+    element.addEventListener("keydown", (event) => {
+      if (event.key.toLowerCase() !== "d" || !(event.ctrlKey || event.metaKey) || fill.disabled) return;
+      event.preventDefault();
+      this.#copyDown();
+    });
+  }
+
+  /** The cells that a text fills which is pasted into a cell; null if it fills only that, or is a table of its own. */
+  blockAt({ dataset: { column } = {} }, text) {
+    return isNumbered(column) ? blockOf(text, this.#columns.length - Number(column)) : null;
+  }
+
+  #paste(event) {
+    const block = this.blockAt(event.target, event.clipboardData.getData("text"));
+    if (!block) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const { row, column } = event.target.dataset;
+    this.#take(cellsOf(block, Number(row), Number(column), this.#rows.length), Number(row) + block.length - this.#rows.length);
+  }
+
+  /** Offers to copy a cell down that has the focus. */
+  #note({ dataset: { row, column } }) {
+    this.#last = isNumbered(column) ? { row: Number(row), column: Number(column) } : null;
+    this.#offer();
+  }
+
+  #offer() {
+    if (!this.#fill) return;
+    const title = this.#last && this.#columns[this.#last.column]?.title;
+    this.#fill.disabled = !title || this.#last.row >= this.#rows.length - 1;
+    this.#fill.textContent = title ? `Fill down ${title.toLowerCase()}` : "Fill down";
+  }
+
+  /** What is typed in the cell, and not read yet, is copied as well. */
+  #copyDown() {
+    const { row, column } = this.#last;
+    const text = this.#element.querySelector(`[data-row="${row}"][data-column="${column}"]`)?.value.trim() ?? this.#rows[row].cells[column] ?? "";
+    this.#take(this.#rows.slice(row).map((_, down) => ({ row: row + down, column, text: String(text) })), 0);
+  }
+
+  #take(cells, left) {
+    for (const { row, column, text } of cells) {
+      const input = this.#element.querySelector(`[data-row="${row}"][data-column="${column}"]`);
+      if (input) input.value = input.dataset.shown = text;
+    }
+    this.#told.onCells(cells);
+    say(filledSaid(cells.length, Math.max(left, 0)));
   }
 
   /**
@@ -38,6 +96,7 @@ export class EditableTable {
     this.#columns = columns;
     this.#rows = rows;
     this.#draw();
+    this.#offer();
   }
 
   /** Goes back to the first cell. */
@@ -77,7 +136,7 @@ export class EditableTable {
   #draw() {
     const rows = this.#rows.slice(0, this.#shown);
     const wanted = JSON.stringify([this.#columns, rows.length, this.#rows.length]);
-    if (wanted === this.#drawn) return this.#fill();
+    if (wanted === this.#drawn) return this.#fillIn();
     this.#drawn = wanted;
     const className = this.#columns[0]?.group ? "grouped" : "";
     const table = made("table", { className }, head(this.#noun, this.#columns), body(this.#columns, rows));
@@ -85,10 +144,10 @@ export class EditableTable {
     const left = this.#rows.length - rows.length;
     if (left > 0) this.#element.append(button("more", `Show ${Math.min(left, PAGE)} more of ${left}`));
     this.#element.hidden = !this.#rows.length;
-    this.#fill();
+    this.#fillIn();
   }
 
-  #fill() {
+  #fillIn() {
     for (const input of this.#element.querySelectorAll("input")) this.#write(input);
     for (const each of this.#element.querySelectorAll(".remove")) {
       each.setAttribute("aria-label", `Delete ${this.#rows[each.dataset.remove].name}`);
@@ -111,7 +170,7 @@ export class EditableTable {
     input.dataset.shown = input.value;
     const value = input.value.trim();
     if (column === "name") this.#named(input, Number(row), value);
-    else if (column !== undefined) this.#told.onCell(Number(row), Number(column), value);
+    else if (column !== undefined) this.#told.onCells([{ row: Number(row), column: Number(column), text: value }]);
   }
 
   #named(input, row, text) {
@@ -161,4 +220,5 @@ function remove(row) {
   return each;
 }
 
+const isNumbered = (column) => /^\d+$/.test(column ?? "");
 const button = (className, said) => made("button", { type: "button", className }, said);

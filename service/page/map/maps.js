@@ -47,14 +47,16 @@ export class Maps {
    * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
    * @param {(city: number) => void} onDelete called with the stop to delete
    * @param {(stop: string | null) => void} onChoose called with the id of a fleet's stop that is chosen
+   * @param {(name: string) => string[]} more what is said of a stop: see Planes
    * @param {{ onMove: function, onRefused: function }} ofEnds called for ends on a robot's map: see GridEnds
    */
-  constructor({ onClick, onMove, onDelete, onChoose, ofEnds }) {
+  constructor({ onClick, onMove, onDelete, onChoose, ofEnds, more }) {
     const clicked = (plane, place) => onClick(plane, place, this.#form === "stops" || Boolean(this.#kind.movers));
     this.#planes = new Planes([element("plane-1"), element("plane-2")], {
       onClick: clicked,
       onMove,
       onDelete,
+      more,
       onChoose: (city) => this.#kind.movers && onChoose(city === null ? null : this.#ids?.[city] ?? null),
     });
     this.#planes.follow((cities) => this.#ways.along(cities));

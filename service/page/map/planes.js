@@ -1,6 +1,7 @@
 /** Two linked maps of the same cities: a city that is pointed at on one is marked on both. */
 
 import { ChosenStop } from "./chosen_stop.js";
+import { withCustomer } from "../inputs/details.js";
 import { Plane } from "./plane.js";
 
 export class Planes {
@@ -9,14 +10,17 @@ export class Planes {
   #routes = []; // the routes of the plan that is drawn
   #ids = null;
   #chosen;
+  #more;
 
   /**
    * @param {(plane: number, place: number[]) => void} onClick called with the place where a map was clicked
    * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
    * @param {(city: number) => void} onDelete called with the stop to delete
    * @param {(city: number | null) => void} onChoose called with the stop that is chosen on a map
+   * @param {(name: string) => string[]} more what else is said of a stop that is pointed at: who is there, and when it is visited
    */
-  constructor(elements, { onClick, onMove, onDelete, onChoose }) {
+  constructor(elements, { onClick, onMove, onDelete, onChoose, more }) {
+    this.#more = more;
     const chosen = (city) => {
       this.#highlight(city);
       onChoose(city);
@@ -107,8 +111,14 @@ export class Planes {
   }
 
   #highlight(city) {
-    const said = city === null ? "" : this.#nameOf(city) + turnOf(city, this.#tour, this.#routes);
+    const said = city === null ? "" : this.#said(city);
     this.#maps.forEach((map) => map.highlight(city, said));
+  }
+
+  #said(city) {
+    const [customer, hour] = this.#more(this.#ids?.[city] ?? String(city + 1));
+    const turn = turnOf(city, this.#tour, this.#routes);
+    return `${withCustomer(this.#nameOf(city), customer)}${turn}${hour && `${turn ? "," : ":"} ${hour}`}`;
   }
 
   #nameOf(city) {

@@ -27,10 +27,10 @@ export class Opening {
   });
 
   /**
-   * @param {{ leave: () => void, offer: () => void, onDone: () => void, open: (request: object, names: object[]) => void, asked: () => object,
+   * @param {{ leave: () => void, offer: () => void, onDone: () => void, open: (request: object, names: object[]) => void, recall: () => void, asked: () => object,
    *   plan: () => void, fail: (error: Problem, said: string) => void, settings: () => Promise<object | null>, started: () => Promise<void> }} page
-   *   leaves any planning; offers what can be done when a reading begins or ends; is told that one is done; shows a request; has the one that is
-   *   shown; plans it; shows an error, and what has failed; has the settings of the service; and knows when the first view is decided
+   *   leaves any planning; offers what can be done when a reading begins or ends; is told that one is done; shows a request; fills in what is
+   *   remembered of every day; has the request that is shown; plans it; shows an error, and what has failed; has the settings of the service; and knows when the first view is decided
    */
   constructor(service, result, page) {
     this.#service = service;
@@ -97,6 +97,7 @@ export class Opening {
         this.forget();
         const kept = withTyped((columns.length ? withEdited : withFleet)(brought, asked.vehicles, this.#vehiclesRead), opened !== files && asked, this.#stopsRead);
         this.#open(kept);
+        if (brought.columns) this.#page.recall(); // what a table seldom says
         this.#ofStops = ofStops;
         this.#notes.show(opened, columns, kept);
       });

@@ -1,13 +1,11 @@
 /** Write the selected tour or plan for those who drive it: a row for each stop as CSV, as GPX, and as a list to print. */
 
-import { SECONDS } from "../common/durations.js";
 import { made as newElement } from "../common/elements.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { hoursOf } from "../fleet/times.js";
-import { timetable } from "../fleet/timetable.js";
-import { clockUnit } from "../fleet/units.js";
-import { departureNote, spansIn } from "../fleet/visit_sentence.js";
+import { hoursOfPlan } from "../fleet/timetable.js";
+import { routeNote, spansIn } from "../fleet/visit_sentence.js";
 import { quoted } from "./exports.js";
 
 const TIMES = ["window", "arrives", "waits", "break", "leaves"];
@@ -44,12 +42,12 @@ function routeOfTour(tour, round) {
 /** The routes of a plan; without times if their unit is not one of time, or not known. */
 function routesOfPlan(routes, movers, asked) {
   const names = namesOf(routes, movers, asked);
-  const { lanes, clock } = SECONDS.has(clockUnit(asked)) ? timetable(routes, names, asked) : { lanes: [] };
+  const { lanes, clock } = hoursOfPlan(routes, names, asked);
   const { stops } = knownFleet(asked);
   return routes.map((route, at) => {
     const times = lanes[at]?.visits;
     const visit = (stop, place) => ({ stop, ...(times && inWords(times[place], clock)), load: stops.get(stop)?.demand?.join(", ") });
-    return { name: names[at], note: times ? departureNote(times, clock.said) : "", visits: route[movers.through].map(visit) };
+    return { name: names[at], note: times ? routeNote(times, clock.said) : "", visits: route[movers.through].map(visit) };
   });
 }
 

@@ -3,6 +3,7 @@
 import { kindNamed } from "../common/kinds.js";
 import { unnamed } from "../common/objectives.js";
 import { moversOf } from "../fleet/routes_of_plan.js";
+import { hoursOfPlan } from "../fleet/timetable.js";
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {
@@ -27,7 +28,10 @@ export function csv({ kind, front }, { objectives, asked }, selected) {
   const { movers } = kindNamed({ kind });
   const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(titled);
   if (movers) {
-    const plans = front.map((plan) => ({ ...plan, names: moversOf(plan.routes, movers, asked ?? {}) }));
+    const plans = front.map((plan) => {
+      const names = moversOf(plan.routes, movers, asked ?? {});
+      return { ...plan, names, ...hoursOfPlan(plan.routes, names, asked ?? {}) };
+    });
     // Where the plan compares its routes, each row has the whole of its own.
     const ofRoutes = objectives.map(({ measure, unit }, axis) => (measure === "imbalance" ? titled({ name: "whole route", unit }) : `route ${titles[axis]}`));
     return csvOfPlans(plans, titles, ofRoutes, movers, selected);
@@ -40,18 +44,21 @@ export function csv({ kind, front }, { objectives, asked }, selected) {
   return [[...before, ...titles, "tour", "selected"], ...rows].map(line).join("");
 }
 
-/** A route on each line, after the members of its plan, with the name of its vehicle or robot; with its shift, if its vehicle has several. */
+/** A route on each line, after the members of its plan, with the name of its vehicle or robot; with its shift, if its vehicle has several; and when it leaves and is back. */
 function csvOfPlans(plans, titles, ofRoutes, { one, stops, through }, selected) {
   const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
-  const rows = plans.flatMap(({ balance, lengths, routes, names }, plan) =>
+  const timed = plans.some(({ clock }) => clock);
+  const rows = plans.flatMap(({ balance, lengths, routes, names, lanes, clock }, plan) =>
     routes.map((route, at) => {
+      const visits = lanes[at]?.visits;
+      const hours = visits ? [visits[0].arrival, visits.at(-1).leaves].map(clock.said) : ["", ""];
       const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
       const before = balance === undefined ? [plan] : [plan, balance];
-      return [...before, ...lengths, names[at], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, places, yesOrNo(plan === selected)];
+      return [...before, ...lengths, names[at], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, ...(timed ? hours : []), places, yesOrNo(plan === selected)];
     }),
   );
   const flat = titles.length === 2 ? ["balance"] : [];
-  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, stops.toLowerCase(), "selected"];
+  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, ...(timed ? ["leaves", "back"] : []), stops.toLowerCase(), "selected"];
   return [head, ...rows].map(line).join("");
 }
 

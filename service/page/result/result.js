@@ -8,6 +8,7 @@ import { placeIn } from "./chosen.js";
 import { compare } from "./comparison.js";
 import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
+import { customersIn, withCustomer } from "../inputs/details.js";
 import { nameOf } from "../inputs/places.js";
 import { shadeOf } from "../map/gridmap.js";
 import { showGround } from "../map/key.js";
@@ -16,6 +17,7 @@ import { roundOf } from "../map/planes.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
 import { PlanView } from "../fleet/plan_view.js";
+import { lastBack } from "../fleet/timetable.js";
 import { hoursOf } from "../fleet/times.js";
 import { visitItem } from "../common/elements.js";
 import { UNNAMED } from "../common/objectives.js";
@@ -38,6 +40,7 @@ export class Result {
   #planView;
   #asking;
   #asked = {}; // the request, as far as it is known
+  #customerOf = () => ""; // of a stop, by its name
   #kind = kindOf({}); // of the front
   #front = [];
   #closed = true;
@@ -64,7 +67,8 @@ export class Result {
     this.#onSelected = edited.onSelected;
     this.#planView = new PlanView((stop) => this.#maps.choose(stop), edited.onServe);
     const onSelect = (index) => this.#choose(index);
-    this.#maps = new Maps({ ...edited, onChoose: (stop) => this.#planView.choose(stop) });
+    const more = (stop) => [this.#customerOf(stop), this.#planView.hourOf(stop)];
+    this.#maps = new Maps({ ...edited, more, onChoose: (stop) => this.#planView.choose(stop) });
     const onPreview = (index) => this.#preview(index);
     const told = { onSelect, onPreview, onBudget: (index) => this.#choose(index) };
     this.#chart = new FrontChart(element("front-chart"), element("front-labels"), told);
@@ -97,6 +101,7 @@ export class Result {
     this.#maps.show(instance, fit, editable);
     this.#planView.open(instance, editable);
     this.#asked = instance;
+    this.#customerOf = customersIn(instance);
     this.#kind = kindOf(instance);
     showUnreached(null);
     this.#sayShade(instance);
@@ -116,6 +121,12 @@ export class Result {
     this.#drawPin();
     this.#draw();
     showFigures(element("figures"), null, null);
+  }
+
+  /** Takes other details of the stops, of which nothing else is another. */
+  retell(instance) {
+    this.#customerOf = customersIn(instance);
+    this.#planView.retell(instance);
   }
 
   /** Shades a robot's map by the cost layer that the request names. */
@@ -237,9 +248,10 @@ export class Result {
     return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, limits, maps };
   }
 
-  /** The sentence about a tour or plan. */
+  /** What is said of a tour or plan. */
   #said(item) {
-    return this.#kept ? choiceKept(this.#kind.noun) : choiceOf(this.#front, item, this.#objectives, this.#kind.noun);
+    const said = this.#kept ? choiceKept(this.#kind.noun) : choiceOf(this.#front, item, this.#objectives, this.#kind.noun);
+    return `${said}${this.#kind.movers ? lastBack(item, this.#asked) : ""}`;
   }
 
   /** The cities of a tour, back to its start if it is closed; none for a plan. */
@@ -351,7 +363,7 @@ export class Result {
     element("order").hidden = !this.#selected || Boolean(this.#kind.movers);
     if (!element("order").open || element("order").hidden) return;
     const hours = hoursOf(this.#selected);
-    element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visitItem(name, hours[at])));
+    element("order").querySelector("ol").replaceChildren(...this.#names().map((name, at) => visitItem(withCustomer(name, this.#customerOf(name)), hours[at])));
   }
 }
 

@@ -1,6 +1,7 @@
 /** Say what changes for whom, from the plan that is driven to another one of what is left. */
 
 import { duration } from "../common/durations.js";
+import { withCustomer } from "../inputs/details.js";
 import { leftOf } from "./progress.js";
 
 const MINUTE = 60; // seconds
@@ -14,27 +15,28 @@ const NEAR = 300; // seconds: a stop that is visited within as many of its time 
  * @param {object[]} lanes those of the other plan, `{ name, visits }`, by `progressOf` as well
  * @param {{ said: (time: number) => string, second: number } | null} clock puts times into words, and has their unit in seconds; null
  *   where that is not known
- * @param {{ out: Set<string>, removed: Set<string>, added: object[], unassigned: string[] }} day what is out of service,
- *   cancelled, new, and left out of the other plan
+ * @param {{ out: Set<string>, removed: Set<string>, added: object[], unassigned: string[],
+ *   customerOf: (stop: string) => string }} day what is out of service, cancelled, new, and left out of the other plan; and who is at a stop
  */
-export function changesOf(vans, lanes, clock, { out, removed, added, unassigned }) {
+export function changesOf(vans, lanes, clock, { out, removed, added, unassigned, customerOf }) {
   const [before, after] = [vans, lanes].map(visitsIn);
   const words = wordsOf(clock);
   const stops = [...new Set([...before.keys(), ...after.keys()])];
   const isNew = new Set(added.map(({ id }) => id));
-  const known = stops.map((stop) => ({ stop, from: before.get(stop), to: after.get(stop), isNew: isNew.has(stop) }));
+  const called = (stop) => withCustomer(stop, customerOf(stop));
+  const known = stops.map((stop) => ({ stop, name: called(stop), from: before.get(stop), to: after.get(stop), isNew: isNew.has(stop) }));
   const left = known.filter(({ stop }) => !removed.has(stop));
   const moved = left.filter(({ from, to }) => from && to && from.name !== to.name);
   const stayed = left.filter(({ from, to }) => from && to && from.name === to.name);
   const retimed = stayed.filter(({ from, to }) => words.differ(from, to));
   const skipped = new Set(unassigned);
   const said = [
-    ...moved.map(({ stop, from, to }) => `${stop} moves from ${from.name} to ${to.name}${words.shifted(from, to)}`),
-    ...left.filter(({ from, to }) => !from && to).map(({ stop, to, isNew: fresh }) => `${stop} ${fresh ? "is new" : "was left out"}: ${to.name}${words.at(to)}`),
-    ...left.filter(({ stop, from }) => from && skipped.has(stop)).map(({ stop, from }) => `${stop} is left out: ${from.name} does not come`),
-    ...[...isNew].filter((stop) => skipped.has(stop)).map((stop) => `${stop} is new, and is left out`),
-    ...known.filter(({ stop, from }) => from && removed.has(stop)).map(({ stop, from }) => `${stop} is cancelled: ${from.name} does not come`),
-    ...retimed.map(({ stop, from, to }) => `${stop} stays with ${to.name}${words.shifted(from, to)}`),
+    ...moved.map(({ name, from, to }) => `${name} moves from ${from.name} to ${to.name}${words.shifted(from, to)}`),
+    ...left.filter(({ from, to }) => !from && to).map(({ name, to, isNew: fresh }) => `${name} ${fresh ? "is new" : "was left out"}: ${to.name}${words.at(to)}`),
+    ...left.filter(({ stop, from }) => from && skipped.has(stop)).map(({ name, from }) => `${name} is left out: ${from.name} does not come`),
+    ...[...isNew].filter((stop) => skipped.has(stop)).map((stop) => `${called(stop)} is new, and is left out`),
+    ...known.filter(({ stop, from }) => from && removed.has(stop)).map(({ name, from }) => `${name} is cancelled: ${from.name} does not come`),
+    ...retimed.map(({ name, from, to }) => `${name} stays with ${to.name}${words.shifted(from, to)}`),
   ];
   return { said, same: stayed.length - retimed.length, last: words.last(vans, lanes), vehicles: vehiclesOf(vans, lanes, out, words) };
 }

@@ -1,6 +1,6 @@
 /** The orders that have come since a fleet was planned: rows of a table that are typed, clicked on the map, or pasted. */
 
-import { cellText, hintOf, isUnread, secondsIn, isNumber, withText } from "../fleet/cells.js";
+import { cellText, headed, hintOf, isUnread, rowOf, secondsIn, withText } from "../fleet/cells.js";
 import { columnsOf, isShown } from "../fleet/columns.js";
 import { Placing } from "../inputs/placing.js";
 import { isMeasured } from "../inputs/stops.js";
@@ -27,7 +27,7 @@ export class Orders {
     this.#service = service;
     const told = {
       onName: (row, id) => this.#write(row, { ...this.#added[row], id }),
-      onCell: (row, column, text) => this.#write(row, withText(this.#added[row], this.#columns[column], text, secondsIn(this.#asked))),
+      onCells: (cells) => this.#take(this.#withCells(cells)),
       onDelete: (row) => this.#take(this.#added.toSpliced(row, 1)),
     };
     this.#table = new EditableTable(element("orders"), told, "Order");
@@ -88,6 +88,16 @@ export class Orders {
     return this.#asked.stops.some((stop) => stop.id === id);
   }
 
+  #withCells(cells) {
+    const columns = this.#columns;
+    return cells.reduce((added, { row, column, text }) => added.with(row, withText(added[row], columns[column], text, secondsIn(this.#asked))), this.#added);
+  }
+
+  /** Whether a text that is pasted there fills cells of the table. */
+  fills(target, text) {
+    return Boolean(target.closest?.("#orders") && this.#table.blockAt(target, text));
+  }
+
   #write(row, order) {
     this.#take(this.#added.with(row, order));
   }
@@ -106,14 +116,7 @@ export class Orders {
     const second = secondsIn(this.#asked);
     const columns = this.#columns;
     element("orders").hidden = !this.#added.length;
-    this.#table.show(
-      columns.map(({ title, member, several = "", list, type }) => ({ title, members: `${member} ${several}`, list, text: !isNumber(type) })),
-      this.#added.map((order) => ({
-        name: order.id,
-        cells: columns.map((each) => cellText(order, each, second)),
-        unread: columns.flatMap((each, at) => (isUnread(order, each) ? [at] : [])),
-      })),
-    );
+    this.#table.show(headed(columns), this.#added.map((order) => rowOf(order, columns, second)));
     element("orders-fault").textContent = "";
     this.#table.mark();
   }

@@ -3,9 +3,10 @@
 import { knownFleet } from "../fleet/known_fleet.js";
 import { timetable } from "../fleet/timetable.js";
 import { kindsOf } from "../fleet/visit_times.js";
+import { customersIn } from "../inputs/details.js";
 
 /**
- * Each route of a plan: its `name`, and its `visits`, each with the `stop`, its `kind` as of `visitTimes`, whether it is
+ * Each route of a plan: its `name`, and its `visits`, each with the `stop`, the `customer` there, its `kind` as of `visitTimes`, whether it is
  * `done`, and with a clock `begin`, when it begins; `isOut`, whether its vehicle has left; `isBack`, whether all is done;
  * and where the vehicle is: `at` is the visit that it goes on from, and `share` how far it has come from there to the next.
  * A visit that has begun is done. Once somebody has taken a stop back or added one, the vehicle is at the last that is done.
@@ -17,7 +18,8 @@ import { kindsOf } from "../fleet/visit_times.js";
 export function progressOf({ routes, names, asked }, { now, turned }) {
   const { lanes, clock } = timetable(routes, names, asked);
   const { types } = knownFleet(asked);
-  const visitsOf = (route, at) => lanes[at]?.visits ?? kindsOf(route, types.get(route.vehicle)).map((kind, place) => ({ kind, stop: route.stops[place] }));
+  const customerOf = customersIn(asked);
+  const visitsOf = (route, at) => lanes[at]?.visits ?? kindsOf(route, types.get(route.vehicle)).map((kind, place) => ({ kind, stop: route.stops[place], customer: customerOf(route.stops[place]) }));
   return { clock, vans: routes.map((route, at) => vanOf(names[at], visitsOf(route, at), now, turned)) };
 }
 

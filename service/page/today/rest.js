@@ -53,7 +53,7 @@ export class FleetRest {
     const { asked } = driven;
     const positions = routes.map(({ position }) => position).filter((position) => position?.id);
     const stops = [...asked.stops, ...add, ...positions];
-    this.asked = this.instance = { ...asked, stops, details: undefined };
+    this.asked = this.instance = { ...asked, stops };
     this.names = stops.map(({ id }) => id);
   }
 

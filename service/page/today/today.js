@@ -7,6 +7,7 @@ import { knownFleet } from "../fleet/known_fleet.js";
 import { stylesOf } from "../fleet/route_styles.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { clockUnit } from "../fleet/units.js";
+import { customersIn } from "../inputs/details.js";
 import { rounded } from "../inputs/places.js";
 import { pastedFile } from "../opening/reading.js";
 import { showFaults } from "../planning/faults.js";
@@ -170,8 +171,7 @@ export class Today {
     const { plan, way } = this.#proposed;
     const { asked, day } = way;
     const { vans, clock } = progressOf({ routes: plan.routes, names: namesOf(plan.routes, VEHICLES, asked), asked }, PLANNED);
-    const second = SECONDS.get(clockUnit(asked));
-    showChanges(plan, changesOf(day.vans, vans, clock && second ? { said: clock.said, second } : null, { ...day, unassigned: plan.unassigned ?? [] }));
+    showChanges(plan, changesOf(day.vans, vans, clock?.second ? clock : null, { ...day, unassigned: plan.unassigned ?? [], customerOf: customersIn(asked) }));
   }
 
   /** Has the proposed plan driven from now on. */
@@ -187,7 +187,8 @@ export class Today {
   #paste(event) {
     const { open, hidden } = element("today");
     if (!open || hidden || !this.#orders.canAdd || element("request").contains(event.target)) return;
-    const file = pastedFile(event.clipboardData.getData("text"));
+    const text = event.clipboardData.getData("text");
+    const file = this.#orders.fills(event.target, text) ? null : pastedFile(text);
     if (!file) return;
     event.preventDefault();
     event.stopPropagation();

@@ -2,6 +2,8 @@
 
 import { made } from "../common/elements.js";
 import { swatch } from "../fleet/route_styles.js";
+import { limitsOf } from "../fleet/visit_sentence.js";
+import { withCustomer } from "../inputs/details.js";
 
 export class VanList {
   #element;
@@ -39,10 +41,12 @@ function vanItem({ name, style, said, visits, at, isOut: hasLeft }, { clock, isO
   return made("li", { className: "van" }, head, made("ul", { className: "chips" }, ...stops));
 }
 
-function stopItem({ stop, done, begin }, { clock, isNext, removed }) {
+function stopItem({ stop, customer, done, begin, ...visit }, { clock, isNext, removed }) {
   const isCancelled = !done && removed.has(stop);
   const when = clock ? ` ${clock.said(begin)}` : "";
-  const turn = made("button", { type: "button", className: "of", disabled: isCancelled }, `${done ? "✓ " : ""}${stop}${when}`);
+  const [who] = (customer ?? "").split(", ");
+  const open = clock ? limitsOf(visit, clock.said) : [];
+  const turn = made("button", { type: "button", className: "of", disabled: isCancelled, title: [withCustomer(stop, customer), ...open].join(", ") }, `${done ? "✓ " : ""}${stop}${who && ` ${who}`}${when}`);
   turn.dataset.turn = stop;
   turn.setAttribute("aria-pressed", String(done));
   const item = made("li", { className: done ? "done" : isCancelled ? "gone" : isNext ? "here" : "" }, turn);

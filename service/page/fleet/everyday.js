@@ -1,0 +1,199 @@
+/** What every dispatcher has, as members of a request: a depot, minutes at the stops, shifts, and a speed. */
+
+import { duration, timeText } from "../common/durations.js";
+import { isMeasured, without } from "../inputs/stops.js";
+import { secondsIn } from "./cells.js";
+import { byIds } from "./references.js";
+import { timedBy } from "./trade.js";
+
+const [DAY, NEAR] = [86400, 100]; // seconds; kilometres from a depot that is remembered to a stop, at most
+const DEGREE = 111; // kilometres
+const ADDED = /^depot( \d+)?$| \(depot\)$/; // names of depots that are no rows of a file
+
+/** Whether all of it can be said of a request: its stops lie on the earth, and its times are in a known unit. */
+export const isAskable = (asked) => isMeasured(asked) && asked.stops?.length > 0 && asked.stops.every(({ location }) => location) && asked.vehicles.length > 0 && Boolean(secondsIn(asked));
+
+/**
+ * What is given: `depot` is a name, `service` and `shift` are in seconds, and `speed` is in km/h. Each is null if nothing is given,
+ * and undefined if it differs from row to row. `missing` counts the rows without.
+ */
+export function everydayIn(asked) {
+  const { stops, vehicles } = byIds(asked);
+  const second = secondsIn(asked);
+  const visited = visitedIn(asked);
+  const depot = common(vehicles.map(({ start, end }) => start ?? end ?? undefined));
+  const services = visited.map(({ service }) => service);
+  const shifts = vehicles.map(({ shift, shifts }) => (shifts ? shifts.flat() : shift));
+  const lacking = (values) => values.filter((value) => value === undefined).length;
+  const shift = common(shifts);
+  const service = common(services);
+  return {
+    depot: depot === null || stops.some(({ id }) => id === depot) ? depot : undefined,
+    service: service && service * second,
+    shift: shift?.length > 2 ? undefined : (shift?.map((time) => time * second) ?? shift),
+    speed: speedIn(asked),
+    missing: { depot: vehicles.filter(isFree).length, service: lacking(services), shift: lacking(shifts) },
+  };
+}
+
+/** The value that all have that have one; null if none has, undefined if they differ. */
+function common(values) {
+  const given = values.filter((value) => value !== undefined);
+  if (!given.length) return null;
+  return given.every((value) => String(value) === String(given[0])) ? given[0] : undefined;
+}
+
+const isFree = (vehicle) => vehicle.start === undefined && vehicle.end === undefined;
+
+/** Says what is missing, in one line; "" if nothing is. */
+export function missingSaid({ depot, service, shift, missing }) {
+  const said = [
+    [depot, missing.depot, "No depot is given: vehicles start and end at any stop.", "of the vehicles start and end at any stop."],
+    [service, missing.service, "No time at the stops is given: 0 min.", "of the stops have no time given: 0 min."],
+    [shift, missing.shift, "No shifts are given: vehicles leave at any time of the day.", "of the vehicles leave at any time of the day."],
+  ];
+  return said.flatMap(([value, count, none, some]) => (count ? [value === null ? none : `${count} ${some}`] : [])).join(" ");
+}
+
+/** The stops at which no vehicle starts, ends or loads again. */
+function visitedIn(asked) {
+  const depots = depotsIn(asked);
+  return asked.stops.filter(({ id }) => !depots.has(id));
+}
+
+const depotsIn = (asked) => new Set(byIds(asked).vehicles.flatMap(({ start, end, reload = [] }) => [start, end, ...reload]));
+
+/** Whether a value is only for the rows without one: others have different ones, or the file gives them. */
+const isForRest = (value, count) => value === undefined || (value !== null && count > 0);
+
+/** The request with a time at the stops in seconds: at those without one, or at all if they have the same; null takes it away. */
+export function withService(asked, seconds) {
+  const timed = withClock(asked);
+  const { service: before, missing } = everydayIn(timed);
+  const depots = depotsIn(timed);
+  const isKept = (stop) => depots.has(stop.id) || (isForRest(before, missing.service) && stop.service !== undefined);
+  const value = seconds === null ? null : seconds / secondsIn(timed);
+  return { ...timed, stops: timed.stops.map((stop) => (isKept(stop) ? stop : withMember(stop, "service", value))) };
+}
+
+/** The request with a shift in seconds of the day, in the same way. */
+export function withShift(asked, shift) {
+  const timed = withClock(asked);
+  const { shift: before, missing } = everydayIn(timed);
+  const isKept = (vehicle) => isForRest(before, missing.shift) && (vehicle.shift ?? vehicle.shifts);
+  const value = shift?.map((time) => time / secondsIn(timed));
+  const shifted = ({ shifts: _, ...vehicle }) => withMember(vehicle, "shift", value);
+  return { ...timed, vehicles: timed.vehicles.map((vehicle) => (isKept(vehicle) ? vehicle : shifted(vehicle))) };
+}
+
+function withMember(item, member, value) {
+  const { [member]: _, ...others } = item;
+  return value === null || value === undefined ? others : { ...others, [member]: value };
+}
+
+/** A shift that ends with the day, if only its begin is given. */
+export const wholeShift = (times) => (times.length === 1 ? [times[0], Math.max(DAY, times[0])] : times);
+
+/** The request with times, if it has none. */
+function withClock(asked) {
+  if (asked.clock) return asked;
+  const { measure, from } = asked.objectives[1];
+  return timedBy(asked, measure || from === "road_distance" ? "own" : "second");
+}
+
+/** The speed of straight lines; null if no time is measured by one, undefined if they differ. */
+const speedIn = ({ objectives, clock }) => common([...objectives, typeof clock === "object" ? clock : {}].map(({ speed }) => speed ?? undefined));
+
+export function withSpeed(asked, speed) {
+  const faster = (source) => (source?.speed ? { ...source, speed } : source);
+  return { ...asked, objectives: asked.objectives.map(faster), ...(asked.clock && { clock: faster(asked.clock) }) };
+}
+
+/** The request whose vehicles start and end at a stop; of an order a depot is added at its place. Undefined without such a stop. */
+export function withDepotAt(asked, id) {
+  const named = byIds(asked);
+  const stop = named.stops.find((each) => each.id === id);
+  if (!stop) return undefined;
+  if (isOrder(stop, named)) return withDepot(named, { id: `${id} (depot)`, location: stop.location });
+  const { service: _, ...bare } = stop;
+  return homed({ ...named, stops: named.stops.map((each) => (each === stop ? bare : each)) }, id);
+}
+
+/** The request whose vehicles start and end at a place; a depot that they have is moved there, unless it is an order. */
+export function withDepot(asked, { id = "depot", location }) {
+  const named = byIds(asked);
+  const depot = homeOf(named);
+  const kept = named.stops.findIndex((stop) => stop.id === depot && !isOrder(stop, named));
+  if (kept >= 0) return homed({ ...named, stops: named.stops.with(kept, { ...named.stops[kept], location }) }, depot);
+  const name = freeName(named.stops, id);
+  const details = named.details && { details: named.details.map((each) => ({ ...each, texts: named.stops.map((_, row) => each.texts[row] ?? "") })) };
+  return homed({ ...named, stops: [...named.stops, { id: name, location }], ...details }, name);
+}
+
+/** The depot of all vehicles; undefined if some have none, or they differ. */
+function homeOf(asked) {
+  const { depot, missing } = everydayIn(asked);
+  return missing.depot ? undefined : depot;
+}
+
+function freeName(stops, id) {
+  const taken = new Set(stops.map((stop) => stop.id));
+  let [name, number] = [id, 1];
+  while (taken.has(name)) name = `${id} ${(number += 1)}`;
+  return name;
+}
+
+/** Whether something is delivered or done at a stop, so that it stays one to visit. */
+function isOrder({ id, demand, window, windows, due, prize }, { stops, shipments = [] }) {
+  const isLoaded = (each) => each?.some((amount) => amount > 0);
+  const isTimed = !stops.some((stop) => isLoaded(stop.demand)) && (window ?? windows ?? due ?? prize) !== undefined;
+  return isLoaded(demand) || isTimed || shipments.some(({ pickup, delivery }) => [pickup, delivery].includes(id));
+}
+
+/** The request whose vehicles start, end and load where they did not say so, or did so at the depot before. */
+function homed(asked, id) {
+  const before = homeOf(asked);
+  const moved = (stop) => (stop === before ? id : stop);
+  const vehicles = asked.vehicles.map((vehicle) => {
+    if (isFree(vehicle)) return { ...vehicle, start: id, end: id };
+    const ends = Object.fromEntries(["start", "end"].filter((end) => end in vehicle).map((end) => [end, moved(vehicle[end])]));
+    return { ...vehicle, ...ends, ...(vehicle.reload && { reload: vehicle.reload.map(moved) }) };
+  });
+  const row = before === id ? -1 : asked.stops.findIndex((stop) => stop.id === before && ADDED.test(stop.id) && !isOrder(stop, asked));
+  const placed = { ...asked, vehicles };
+  return row < 0 ? placed : without(placed, row);
+}
+
+/** What is to be remembered of a request: `depot` is `{ id, location }`; what differs from row to row is not there. */
+export function rememberedOf(asked) {
+  const { depot, service, shift, speed } = everydayIn(asked);
+  const place = byIds(asked).stops.find(({ id }) => id === depot);
+  return { depot: place && { id: place.id, location: place.location }, service: service ?? undefined, shift: shift ?? undefined, speed: speed ?? undefined };
+}
+
+/**
+ * The request with what is remembered and not given, and what is said of that, in a few words each. A depot that is far from all
+ * stops is one of another city.
+ */
+export function recalled(asked, { depot, service, shift, speed }) {
+  if (!isAskable(asked)) return { asked, said: [] };
+  const given = everydayIn(asked);
+  const steps = [
+    [given.depot === null && depot && isNear(asked, depot.location), (each) => withDepotOf(each, depot), () => `depot ${depot.id}`],
+    [given.service === null && service, (each) => withService(each, service), () => `${duration(service)} at each stop`],
+    [given.shift === null && shift, (each) => withShift(each, shift), () => `shifts from ${shift.map(timeText).join(" to ")}`],
+    [given.speed && speed && given.speed !== speed, (each) => withSpeed(each, speed), () => `${speed} km/h`],
+  ].filter(([isMeant]) => isMeant);
+  return { asked: steps.reduce((changed, [, change]) => change(changed), asked), said: steps.map(([, , said]) => said()) };
+}
+
+/** A stop of the name of the depot is it, if it is at its place. */
+function withDepotOf(asked, depot) {
+  const isThere = asked.stops.some(({ id, location }) => id === depot.id && String(location) === String(depot.location));
+  return (isThere && withDepotAt(asked, depot.id)) || withDepot(asked, depot);
+}
+
+function isNear({ stops }, [longitude, latitude]) {
+  const wide = Math.cos((latitude * Math.PI) / 180);
+  return stops.some(({ location: [x, y] }) => DEGREE * Math.hypot((x - longitude) * wide, y - latitude) <= NEAR);
+}

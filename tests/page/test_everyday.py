@@ -1,0 +1,169 @@
+"""What every dispatcher has, asked once: a depot, minutes at the stops, shifts and a speed."""
+
+from typing import Any
+
+import pytest
+
+from tests.helpers.node import Node
+
+HOUR = 3600
+EIGHT_TO_FOUR = [8 * HOUR, 16 * HOUR]
+YARD = [24.93, 60.17]
+ORDERS = [
+    {"id": "A", "location": [24.94, 60.17], "demand": [2]},
+    {"id": "B", "location": [24.95, 60.18], "demand": [3]},
+]
+METRES: dict[str, Any] = {
+    "stops": ORDERS,
+    "vehicles": [{"id": "Pekka"}, {"id": "Anna"}],
+    "objectives": [
+        {"name": "distance", "from": "great_circle"},
+        {"name": "longest route", "from": "great_circle", "over": "max"},
+    ],
+    "details": [{"column": "Customer", "texts": ["Bo", "Cy"]}],
+}
+FLEET: dict[str, Any] = {
+    **METRES,
+    "objectives": [METRES["objectives"][0], {**METRES["objectives"][1], "speed": 30}],
+    "clock": "longest route",
+}
+HOME = {"start": "depot", "end": "depot"}
+NOTHING = (
+    "No depot is given: vehicles start and end at any stop. No time at the stops is given: 0 min."
+    " No shifts are given: vehicles leave at any time of the day."
+)
+EVERYDAY = """async ([asked, steps]) => {
+  const everyday = await import("./page/fleet/everyday.js");
+  const end = steps.reduce((before, [name, given]) => everyday[name](before, given), asked);
+  const known = everyday.everydayIn(end);
+  return [end, known, everyday.missingSaid(known)];
+}"""
+RECALLED = """async ([asked, known]) =>
+  (await import("./page/fleet/everyday.js")).recalled(asked, known)"""
+
+
+def given(node: Node, asked: dict[str, Any], *steps: tuple[str, Any]) -> Any:
+    """Return the request after these changes, what it gives, and what is said of the rest."""
+    return node.evaluate(EVERYDAY, [asked, steps])
+
+
+def test_what_is_missing_is_said_in_one_line(node: Node) -> None:
+    assert given(node, FLEET)[2] == NOTHING
+    steps = ("withDepot", {"location": YARD}), ("withService", 480), ("withShift", EIGHT_TO_FOUR)
+    asked, known, said = given(node, FLEET, *steps)
+    assert said == ""
+    assert known["depot"] == "depot"
+    assert (known["service"], known["shift"], known["speed"]) == (480, EIGHT_TO_FOUR, 30)
+    assert asked["stops"] == [
+        *({**order, "service": 480} for order in ORDERS),
+        {"id": "depot", "location": YARD},
+    ]
+    assert asked["details"] == [{"column": "Customer", "texts": ["Bo", "Cy"]}]
+    assert asked["vehicles"] == [
+        {"id": name, **HOME, "shift": EIGHT_TO_FOUR} for name in ("Pekka", "Anna")
+    ]
+    some = {**FLEET, "stops": [{**ORDERS[0], "service": 60}, ORDERS[1]]}
+    assert "1 of the stops have no time given: 0 min." in given(node, some)[2]
+
+
+def test_times_are_filled_in_where_there_are_none_and_changed_where_all_are_alike(
+    node: Node,
+) -> None:
+    def services(asked: dict[str, Any], *seconds: int | None) -> list[Any]:
+        steps = [("withService", each) for each in seconds]
+        return [stop.get("service") for stop in given(node, asked, *steps)[0]["stops"]]
+
+    assert services(FLEET, 480, 600) == [600, 600]
+    assert services(FLEET, 480, None) == [None, None]
+    some = {**FLEET, "stops": [{**ORDERS[0], "service": 60}, ORDERS[1]]}
+    assert services(some, 480) == services(some, 480, 600) == [60, 480]
+    one = {**FLEET, "vehicles": [{"id": "Pekka", "shift": [0, 9]}, {"id": "Anna"}]}
+    vehicles = given(node, one, ("withShift", EIGHT_TO_FOUR))[0]["vehicles"]
+    assert [each["shift"] for each in vehicles] == [[0, 9], EIGHT_TO_FOUR]
+
+
+def test_a_fleet_without_times_has_some_once_they_are_asked_for(node: Node) -> None:
+    asked, known, _ = given(node, METRES, ("withService", 480), ("withSpeed", 20))
+    assert asked["clock"] == "longest route"
+    assert asked["objectives"][1]["speed"] == known["speed"] == 20
+    traded = {
+        **METRES,
+        "objectives": [METRES["objectives"][0], {"name": "v", "measure": "vehicles"}],
+    }
+    asked, *_ = given(node, traded, ("withShift", EIGHT_TO_FOUR))
+    assert asked["clock"] == {"name": "time", "from": "great_circle", "speed": 30}
+
+
+def test_a_depot_is_a_row_or_a_place_and_moves_with_its_vehicles(node: Node) -> None:
+    rows = {**FLEET, "stops": [{"id": "yard", "location": YARD, "service": 60}, *ORDERS]}
+    asked, *_ = given(node, rows, ("withDepotAt", "yard"))
+    assert asked["stops"] == [{"id": "yard", "location": YARD}, *ORDERS]
+    assert [each["start"] for each in asked["vehicles"]] == ["yard", "yard"]
+    # An order stays one that is visited: a depot is added beside it.
+    asked, *_ = given(node, rows, ("withDepotAt", "A"))
+    assert asked["stops"][-1] == {"id": "A (depot)", "location": ORDERS[0]["location"]}
+    # Another click moves it, and another row takes its place.
+    steps = [("withDepot", {"location": YARD}), ("withDepot", {"location": [25, 60]})]
+    asked, *_ = given(node, FLEET, *steps)
+    assert asked["stops"] == [*ORDERS, {"id": "depot", "location": [25, 60]}]
+    asked, *_ = given(node, rows, *steps, ("withDepotAt", "yard"))
+    assert [stop["id"] for stop in asked["stops"]] == ["yard", "A", "B"]
+    # What a vehicle says itself stays.
+    own = {**FLEET, "vehicles": [{"id": "Pekka", "start": "A", "end": None}, {"id": "Anna"}]}
+    asked, known, _ = given(node, own, ("withDepot", {"location": YARD}))
+    assert asked["vehicles"] == [own["vehicles"][0], {"id": "Anna", **HOME}]
+    assert "depot" not in known  # they differ
+
+
+REMEMBERED = {
+    "depot": {"id": "depot", "location": YARD},
+    "service": 480,
+    "shift": EIGHT_TO_FOUR,
+    "speed": 25,
+}
+SAID = ["depot depot", "8 min at each stop", "shifts from 8:00 to 16:00", "25 km/h"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "known", "said"),
+    [
+        (FLEET, REMEMBERED, SAID),
+        (FLEET, {"service": 480}, SAID[1:2]),
+        (FLEET, {}, []),
+        # What the file gives stays; and another city has another depot.
+        (
+            {**FLEET, "vehicles": [{"id": "Pekka", "shift": [0, 9]}]},
+            REMEMBERED,
+            SAID[:2] + SAID[3:],
+        ),
+        (FLEET, {"depot": {"id": "depot", "location": [13.4, 52.5]}}, []),
+        ({**FLEET, "stops": [{"id": "A"}]}, REMEMBERED, []),
+    ],
+)
+def test_what_is_remembered_fills_in_what_a_file_does_not_give(
+    node: Node, asked: dict[str, Any], known: dict[str, Any], said: list[str]
+) -> None:
+    found = node.evaluate(RECALLED, [asked, known])
+    assert found["said"] == said
+    if said == SAID:
+        assert found["asked"]["stops"][-1] == {"id": "depot", "location": YARD}
+        assert "service" not in found["asked"]["stops"][-1]
+
+
+@pytest.mark.parametrize(
+    ("text", "room", "cells"),
+    [
+        ("8-12\n9-12\n", 3, [["8-12"], ["9-12"]]),
+        ("5\tfrost\r\n7\tlift", 2, [["5", "frost"], ["7", "lift"]]),
+        ("2, 5\n3, 1", 1, [["2, 5"], ["3, 1"]]),
+        ("a\tb", 2, [["a", "b"]]),
+        ("8-12", 3, None),  # one cell is the browser's
+        ("id\tlon\tlat\nA\t1\t2", 2, None),  # wider than the table from there: it is a file
+        ("id,lon,lat\nA,24.9,60.1", 3, None),
+        ('{"stops":\n[]}', 3, None),
+    ],
+)
+def test_pasted_cells_fill_cells_and_a_pasted_table_is_opened(
+    node: Node, text: str, room: int, cells: list[list[str]] | None
+) -> None:
+    assert node.call("inputs/filling.js", "blockOf", text, room) == cells
