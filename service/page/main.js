@@ -8,8 +8,8 @@ import { formOf, kindNamed, kindOf } from "./common/kinds.js";
 import { detailsByStop } from "./inputs/details.js";
 import { chosenOf, keptAnswer } from "./result/chosen.js";
 import { linked } from "./result/link.js";
-import { UNNAMED, isUnnamed, namesIn } from "./common/objectives.js";
-import { withUnits } from "./fleet/units.js";
+import { UNNAMED } from "./common/objectives.js";
+import { namesShown } from "./fleet/units.js";
 import { keysOf } from "./inputs/request_keys.js";
 import { without } from "./inputs/instance.js";
 import { offerNoRoads } from "./inputs/objective_fields.js";
@@ -29,7 +29,7 @@ import { Problem, Service } from "./planning/service.js";
 const element = (id) => document.getElementById(id);
 const DROPPED = "The plan was not of these stops and vehicles: Undo brings it back. What changes while it is driven is told below the plan.";
 // Charts and maps are most of the page's bytes: the first view does not wait for them.
-const [{ Result }, { Today }] = await Promise.all([import("./result/result.js"), import("./today/today.js")]);
+const [{ Result }, { Today, restIn }] = await Promise.all([import("./result/result.js"), import("./today/today.js")]);
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
 const result = new Result(service, {
@@ -151,6 +151,8 @@ async function screen() {
     refused: input.refused,
     asked,
     known,
+    linked: way?.replanned ? input.asked : answered,
+    rest: way?.linked(input.asked),
     example: examples.unchanged(asked),
     title: opening.title,
     objectives,
@@ -191,7 +193,7 @@ function ended() {
 
 function show(state) {
   if (state.answer) {
-    objectives = namesOf(state.answer);
+    objectives = namesShown(state.answer, objectives, input.instance);
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered = input.asked;
@@ -205,13 +207,6 @@ function show(state) {
     last = state.stage === "done" && !way?.replanned ? { asked: answered, state } : null;
   }
   tell(state);
-}
-
-/** The names of the objectives of an answer; those on the page where the service had none, as when the rest of a tour is planned. */
-function namesOf({ objectives: named, scale }) {
-  if (!named && !(scale?.length > 2)) return objectives;
-  const found = withUnits(namesIn({ objectives: named, scale }), input.instance);
-  return isUnnamed(found) && found.length === objectives.length ? objectives : found;
 }
 
 function plan() {
@@ -324,9 +319,11 @@ async function openLinked(link) {
   if (!link) return false;
   if (!(await openAsked(link))) return true;
   if (!link.id) return true;
-  const carried = keptAnswer(link, input.instance, input.ids);
+  way = restIn(link.asked, input);
+  if (way) result.clear(way.instance, { editable: false });
+  const carried = keptAnswer(link, way?.instance ?? input.instance, way?.names ?? input.ids);
   result.want(link.balance, carried?.front[0], link.asked?.limits);
-  const request = link.asked?.request || examples.chosen ? input.request : null;
+  const request = !way && (link.asked?.request || examples.chosen) ? input.request : null;
   const known = { request, searched: input.asked.time_limit !== 0, carried };
   await run((mine) => stored(mine, link.id, known));
   return true;
@@ -340,15 +337,16 @@ async function openAsked({ example, asked }) {
   return true;
 }
 
-/** What is shown, as a link; null where that is nothing, or an example without a front. The front of a rest is not of the request. */
+/** What is shown, as a link; null where that is nothing, or an example without a front. */
 function draft() {
   if (!shown) return null;
   const request = input.asked;
   const example = examples.unchanged(request);
   const { balance, limits, selected } = result.taken;
-  const { id } = (!way?.replanned && selected && answer) || {};
+  const { id } = (selected && answer) || {};
   if (!id) return example ? null : { asked: { request, objectives } };
-  return { id, balance, example, asked: { request, objectives, limits, chosen: chosenOf(answer, selected.item, true) } };
+  const chosen = way?.replanned ? undefined : chosenOf(answer, selected.item, true);
+  return { id, balance, example, asked: { request, objectives, limits, chosen, rest: way?.linked(request) } };
 }
 
 form.addEventListener("submit", (event) => {

@@ -108,6 +108,11 @@ def test_a_depot_is_a_row_or_a_place_and_moves_with_its_vehicles(node: Node) -> 
     assert asked["stops"] == [*ORDERS, {"id": "depot", "location": [25, 60]}]
     asked, *_ = given(node, rows, *steps, ("withDepotAt", "yard"))
     assert [stop["id"] for stop in asked["stops"]] == ["yard", "A", "B"]
+    # Where vehicles load again moves as well.
+    asked, *_ = given(node, rows, steps[0], ("withReload", True), ("withDepotAt", "yard"))
+    assert [each["reload"] for each in asked["vehicles"]] == [["yard"], ["yard"]]
+    asked, *_ = given(node, asked, ("withReload", False))
+    assert asked["vehicles"][0] == {"id": "Pekka", "start": "yard", "end": "yard"}
     # What a vehicle says itself stays.
     own = {**FLEET, "vehicles": [{"id": "Pekka", "start": "A", "end": None}, {"id": "Anna"}]}
     asked, known, _ = given(node, own, ("withDepot", {"location": YARD}))
@@ -120,21 +125,28 @@ REMEMBERED = {
     "service": 480,
     "shift": EIGHT_TO_FOUR,
     "speed": 25,
+    "reload": True,
 }
-SAID = ["depot depot", "8 min at each stop", "shifts from 8:00 to 16:00", "25 km/h"]
+SAID = [
+    "the depot",
+    "vehicles load again there",
+    "8 min at each stop",
+    "shifts from 8:00 to 16:00",
+    "25 km/h",
+]
 
 
 @pytest.mark.parametrize(
     ("asked", "known", "said"),
     [
         (FLEET, REMEMBERED, SAID),
-        (FLEET, {"service": 480}, SAID[1:2]),
+        (FLEET, {"service": 480}, SAID[2:3]),
         (FLEET, {}, []),
         # What the file gives stays; and another city has another depot.
         (
             {**FLEET, "vehicles": [{"id": "Pekka", "shift": [0, 9]}]},
             REMEMBERED,
-            SAID[:2] + SAID[3:],
+            SAID[:3] + SAID[4:],
         ),
         (FLEET, {"depot": {"id": "depot", "location": [13.4, 52.5]}}, []),
         ({**FLEET, "stops": [{"id": "A"}]}, REMEMBERED, []),

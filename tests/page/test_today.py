@@ -63,6 +63,32 @@ def test_what_is_done_comes_from_the_times_of_the_plan(
     assert node.evaluate(PROGRESS, [DRIVEN, now, turned])[0] == first
 
 
+LOADING = """async ([driven, now, out]) => {
+  const { progressOf } = await import("./page/today/progress.js");
+  const { loadingSaid } = await import("./page/today/said.js");
+  const { vans } = progressOf(driven, { now, turned: new Set() });
+  return loadingSaid(vans, driven.routes, driven.asked, new Set(out));
+}"""
+
+
+@pytest.mark.parametrize(
+    ("now", "out", "van", "can"),
+    [
+        (540, [], {}, True),  # the second has not left
+        (540, ["van 2"], {}, False),
+        (630, [], {}, False),
+        (630, [], {"reload": ["depot"]}, True),
+        (630, [], {"count": 3}, True),
+    ],
+)
+def test_the_page_says_when_nobody_can_load_new_orders(
+    node: Node, now: int, out: list[str], van: dict[str, Any], can: bool
+) -> None:
+    asked = {**ASKED, "vehicles": [{**ASKED["vehicles"][0], **van}]}  # type: ignore[dict-item]
+    said = node.evaluate(LOADING, [{**DRIVEN, "asked": asked}, now, out])
+    assert said == "" if can else said.startswith("New orders have to be loaded first")
+
+
 BODY = """async ([driven, now, tips, out, cancelled, added]) => {
   const { progressOf } = await import("./page/today/progress.js");
   const { FleetRest, bodyOf } = await import("./page/today/rest.js");

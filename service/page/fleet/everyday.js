@@ -14,7 +14,8 @@ const ADDED = /^depot( \d+)?$| \(depot\)$/; // names of depots that are no rows 
 export const isAskable = (asked) => isMeasured(asked) && asked.stops?.length > 0 && asked.stops.every(({ location }) => location) && asked.vehicles.length > 0 && Boolean(secondsIn(asked));
 
 /**
- * What is given: `depot` is a name, `service` and `shift` are in seconds, and `speed` is in km/h. Each is null if nothing is given,
+ * What is given: `depot` is a name, `service` and `shift` are in seconds, `speed` is in km/h, and `reload` says whether vehicles load again at
+ * the depot. Each is null if nothing is given,
  * and undefined if it differs from row to row. `missing` counts the rows without.
  */
 export function everydayIn(asked) {
@@ -32,6 +33,7 @@ export function everydayIn(asked) {
     service: service && service * second,
     shift: shift?.length > 2 ? undefined : (shift?.map((time) => time * second) ?? shift),
     speed: speedIn(asked),
+    reload: common(vehicles.map(({ start, reload = [] }) => Boolean(start) && reload.includes(start))),
     missing: { depot: vehicles.filter(isFree).length, service: lacking(services), shift: lacking(shifts) },
   };
 }
@@ -109,6 +111,12 @@ export function withSpeed(asked, speed) {
   return { ...asked, objectives: asked.objectives.map(faster), ...(asked.clock && { clock: faster(asked.clock) }) };
 }
 
+/** The request whose vehicles load again where they start during the day, or nowhere. */
+export function withReload(asked, isMeant) {
+  const loading = ({ reload: _, ...vehicle }) => (isMeant && vehicle.start != null ? { ...vehicle, reload: [vehicle.start] } : vehicle);
+  return { ...asked, vehicles: asked.vehicles.map(loading) };
+}
+
 /** The request whose vehicles start and end at a stop; of an order a depot is added at its place. Undefined without such a stop. */
 export function withDepotAt(asked, id) {
   const named = byIds(asked);
@@ -166,20 +174,22 @@ function homed(asked, id) {
 
 /** What is to be remembered of a request: `depot` is `{ id, location }`; what differs from row to row is not there. */
 export function rememberedOf(asked) {
-  const { depot, service, shift, speed } = everydayIn(asked);
+  const { depot, service, shift, speed, reload } = everydayIn(asked);
   const place = byIds(asked).stops.find(({ id }) => id === depot);
-  return { depot: place && { id: place.id, location: place.location }, service: service ?? undefined, shift: shift ?? undefined, speed: speed ?? undefined };
+  return { depot: place && { id: place.id, location: place.location }, service: service ?? undefined, shift: shift ?? undefined, speed: speed ?? undefined, reload };
 }
 
 /**
  * The request with what is remembered and not given, and what is said of that, in a few words each. A depot that is far from all
  * stops is one of another city.
  */
-export function recalled(asked, { depot, service, shift, speed }) {
+export function recalled(asked, { depot, service, shift, speed, reload }) {
   if (!isAskable(asked)) return { asked, said: [] };
   const given = everydayIn(asked);
+  const isHome = given.depot === null && depot && isNear(asked, depot.location);
   const steps = [
-    [given.depot === null && depot && isNear(asked, depot.location), (each) => withDepotOf(each, depot), () => `depot ${depot.id}`],
+    [isHome, (each) => withDepotOf(each, depot), () => (depot.id === "depot" ? "the depot" : `depot ${depot.id}`)],
+    [isHome && reload, (each) => withReload(each, true), () => "vehicles load again there"],
     [given.service === null && service, (each) => withService(each, service), () => `${duration(service)} at each stop`],
     [given.shift === null && shift, (each) => withShift(each, shift), () => `shifts from ${shift.map(timeText).join(" to ")}`],
     [given.speed && speed && given.speed !== speed, (each) => withSpeed(each, speed), () => `${speed} km/h`],

@@ -2,7 +2,7 @@
 
 import { Placing } from "../inputs/placing.js";
 import { cellText, hintOf, withText } from "./cells.js";
-import { everydayIn, isAskable, missingSaid, recalled, rememberedOf, wholeShift, withDepot, withDepotAt, withService, withShift, withSpeed } from "./everyday.js";
+import { everydayIn, isAskable, missingSaid, recalled, rememberedOf, wholeShift, withDepot, withDepotAt, withReload, withService, withShift, withSpeed } from "./everyday.js";
 import { remember, remembered } from "./remembered.js";
 
 const element = (id) => document.getElementById(id);
@@ -24,6 +24,7 @@ export class EverydayForm {
   constructor(onChange) {
     this.#onChange = onChange;
     this.#placing = new Placing(element("place-depot"), element("everyday-help"), (location) => this.#take(withDepot(this.#asked, { location })), () => {}, { once: true });
+    element("everyday-reload").addEventListener("change", ({ target }) => this.#take(withReload(this.#asked, target.checked)));
     for (const name of INPUTS) element(`everyday-${name}`).addEventListener("change", ({ target }) => this.#typed(name, target));
   }
 
@@ -44,6 +45,7 @@ export class EverydayForm {
     element("everyday-service").value = cellText(given, COLUMNS.service, 1);
     element("everyday-shift").value = cellText(given, COLUMNS.shift, 1);
     element("everyday-speed").value = given.speed ?? "";
+    Object.assign(element("everyday-reload"), { checked: Boolean(given.reload), indeterminate: given.reload === undefined, disabled: given.depot === null });
     element("everyday-speed").parentElement.hidden = given.speed === null;
     for (const name of INPUTS) {
       const input = element(`everyday-${name}`);
@@ -104,6 +106,6 @@ function read(name, text) {
 
 /** The request whose vehicles start and end anywhere, if they did so at one depot. */
 function withoutDepot(asked) {
-  const vehicles = asked.vehicles.map(({ start: _, end: __, ...others }) => others);
+  const vehicles = asked.vehicles.map(({ start: _, end: __, reload: ___, ...others }) => others);
   return everydayIn(asked).depot === undefined ? undefined : { ...asked, vehicles };
 }

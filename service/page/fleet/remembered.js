@@ -21,9 +21,10 @@ export function remembered() {
 }
 
 /** Other versions of the page may have written it. */
-const sound = ({ depot, service, shift, speed }) => ({
+const sound = ({ depot, service, shift, speed, reload }) => ({
   ...(typeof depot?.id === "string" && isNumbers(depot.location, 2) && { depot }),
   ...(service >= 0 && { service }),
   ...(isNumbers(shift, 2) && { shift }),
   ...(speed > 0 && { speed }),
+  reload: reload === true,
 });

@@ -1,6 +1,6 @@
 /** The units of a fleet's times, and of objectives that are measures of plans. */
 
-import { LOAD_HOURS, LOAD_KM } from "../common/objectives.js";
+import { LOAD_HOURS, LOAD_KM, isUnnamed, namesIn } from "../common/objectives.js";
 
 /** The unit of the clock of a request: that of an objective, or of times that are not an objective; "" if it is not known. */
 export function clockUnit({ clock, objectives }) {
@@ -21,6 +21,13 @@ export function unitOfRoutes(request) {
 export function loadUnit(objectives) {
   const { name, unit } = objectives.find(({ measure }) => !measure) ?? objectives[0];
   return { m: LOAD_KM, s: LOAD_HOURS }[unit] ?? `load × ${unit || name}`;
+}
+
+/** The names of the objectives of an answer; those `before` where the service had none, as when the rest of a tour is planned. */
+export function namesShown({ objectives: named, scale }, before, instance) {
+  if (!named && !(scale?.length > 2)) return before;
+  const found = withUnits(namesIn({ objectives: named, scale }), instance);
+  return isUnnamed(found) && found.length === before.length ? before : found;
 }
 
 /** These objectives with units for those that are measures of plans of a request, or cost layers of its map. */

@@ -51,6 +51,9 @@ export const withDetail = (asked, detail, row, text) => ({
   details: asked.details.map((each, at) => (at === detail ? { ...each, texts: asked.stops.map((_, stop) => (stop === row ? text : (each.texts[stop] ?? ""))) } : each)),
 });
 
+/** The names of the details that have a text, for a sentence. */
+export const columnsIn = ({ details = [] }) => details.filter(({ texts }) => texts.some(Boolean)).map(({ column }) => column).join(", ").replace(/, ([^,]*)$/, " and $1");
+
 const BRIEF = 60; // characters
 
 /** Who or what is at the stop of a name, in a few words: what its details say; "" where nothing is known. */

@@ -10,6 +10,7 @@ import { timeOfDay } from "../common/durations.js";
 export class Way {
   constructor(instance, ids, cities) {
     this.instance = instance;
+    this.added = []; // stops since the tour was planned first
     this.keys = ids ?? Array.from({ length: cities }, (_, city) => city);
     this.names = this.keys.map((key) => (typeof key === "number" ? String(key + 1) : key));
   }
@@ -46,8 +47,21 @@ export class Way {
         : this.instance;
     const way = new Way(instance, [...this.keys.map(String), ...stops.map(({ id }) => id)]);
     way.replanned = true;
+    way.added = [...this.added, ...stops];
     way.names = [...this.names, ...stops.map(({ id }) => id)];
     return way;
+  }
+
+  /** What a link says of it beside the request of the whole tour, once it is replanned. */
+  linked() {
+    return this.replanned && { added: this.added };
+  }
+
+  /** The way of a link; null if it says none, as links come from anywhere. */
+  static of(instance, ids, { added }) {
+    const isPlaced = (each) => typeof each?.id === "string" && Array.isArray(each.row) && each.row.every(Number.isFinite);
+    const cities = (instance.coordinates ?? instance.stops ?? instance.matrices?.[0])?.length;
+    return Array.isArray(added) && added.every(isPlaced) && cities ? new Way(instance, ids, cities).with(added) : null;
   }
 
   /** The answer about the rest, with its tours in cities of this way. */

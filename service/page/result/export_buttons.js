@@ -1,6 +1,6 @@
 /** The buttons that copy what is on the screen, or save it as a file. */
 
-import { withoutDetails } from "../inputs/details.js";
+import { columnsIn, withoutDetails } from "../inputs/details.js";
 import { chosenOf, placeIn } from "./chosen.js";
 import { areLocated, csvOfVisits, fillSheet, gpxOf, routesOf } from "./driver.js";
 import { alone, csv, curl, download, withSelected } from "./exports.js";
@@ -26,9 +26,9 @@ export class ExportButtons {
 
   /**
    * @param {Service} service the service that has the front
-   * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, known: object, example: string | null, objectives: object[],
+   * @param {() => Promise<{ request: object, refused: Problem | null, asked: object, known: object, linked: object, rest: object, example: string | null, objectives: object[],
    *   title: string, details: Function, picture: object, balance: number, driven: boolean, selected: object } | null>} screen what is on the
-   *   screen, what drivers are told of its stops as of `detailsByStop`, the file of its example, whether its lines can follow the streets, and the selected tour or
+   *   screen, the request for a link and the rest of a day that it is of, what drivers are told of its stops as of `detailsByStop`, the file of its example, whether its lines can follow the streets, and the selected tour or
    *   plan, as of `routesOf`; null if the form cannot be read. `refused` is what the request would be refused for
    * @param {(problem: Problem) => string} mend shows what must be mended at its field, and returns it
    */
@@ -46,7 +46,7 @@ export class ExportButtons {
       });
     onRequest("curl", ({ request }) => curl(request));
     onRequest("python", ({ request, balance }) => python(request, balance));
-    on("link", (shown, button) => this.#copyLink(shown, button));
+    for (const id of ["link", "link-details"]) on(id, (shown, button) => this.#copyLink(shown, button));
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
     on("csv", (shown) => download("front.csv", "text/csv", csv(this.#shown, shown, this.#place(shown))));
     on("geojson", (shown) => this.#saveGeojson(shown.driven, this.#place(shown)));
@@ -64,6 +64,7 @@ export class ExportButtons {
   show(answer) {
     this.#shown = answer;
     say("");
+    element("link-details").hidden = true;
     for (const id of OF_FRONT) element(id).disabled = !answer;
     element("paths").hidden = !answer?.places;
     if (answer?.kept) for (const id of KEPT_BY_SERVICE) element(id).disabled = true;
@@ -102,12 +103,15 @@ export class ExportButtons {
   }
 
   async #copyLink(shown, button) {
-    const { asked, example, objectives, balance, limits } = shown;
+    const { asked, linked, rest, example, objectives, balance, limits } = shown;
     const chosen = chosenOf(this.#shown, this.#item(shown), Boolean(asked));
-    const carried = { request: example || !asked ? undefined : withoutDetails(asked), objectives, limits, chosen };
-    const { hash, whole } = await fragment(this.#shown.id, balance, carried, example);
+    const isWhole = button.id === "link-details";
+    const request = example || !linked ? undefined : isWhole ? linked : withoutDetails(linked);
+    const { hash, whole } = await fragment(this.#shown.id, balance, { request, objectives, limits, chosen, rest }, example);
     history.replaceState(null, "", hash);
-    say(whole || !carried.request ? "" : ALONE);
+    const left = request && whole && !isWhole ? columnsIn(linked) : "";
+    say(request && !whole ? ALONE : left && `The link leaves out ${left}, which you and the drivers see.`);
+    element("link-details").hidden = !left && !isWhole;
     await copy(location.href, button);
   }
 

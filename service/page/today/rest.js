@@ -57,6 +57,20 @@ export class FleetRest {
     this.names = stops.map(({ id }) => id);
   }
 
+  /** What a link says of it, beside the request of the whole day: stops that are not in that, and the vehicles of the plan that is driven. */
+  linked({ stops }) {
+    const { routes, names } = this.driven;
+    const vans = routes.map(({ vehicle, shift, place }, at) => ({ vehicle, shift, place: place ?? at, name: names[at] }));
+    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under] };
+  }
+
+  /** The rest of a link; null if it says none of this request, as links come from anywhere. */
+  static of(asked, { stops, vans, under }) {
+    const isNamed = (each) => typeof each?.name === "string" && typeof each.vehicle === "string" && Number.isInteger(each.place);
+    if (!areStops(stops) || !Array.isArray(vans) || !vans.every(isNamed) || !Array.isArray(under) || !under.every((at) => vans[at])) return null;
+    return new FleetRest({ routes: vans, names: vans.map(({ name }) => name), asked }, { routes: under.map((route) => ({ route })), add: stops }, null);
+  }
+
   /** The answer of the service, whose vehicles have the names and the colours that they have in the plan that is driven. */
   answer(found) {
     return { ...found, front: found.front.map((plan) => ({ ...plan, routes: this.#named(plan.routes) })) };
@@ -87,6 +101,8 @@ export class FleetRest {
     return found < 0 ? undefined : waiting.splice(found, 1)[0];
   }
 }
+
+const areStops = (stops) => Array.isArray(stops) && stops.every((stop) => typeof stop?.id === "string" && Array.isArray(stop.location ?? []));
 
 /** The name of a vehicle that the plan before did without: "van 3" beside "van 1" and "van 2". */
 function freeName(vehicle, taken) {

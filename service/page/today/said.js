@@ -39,6 +39,24 @@ export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
   return capacity.map((_, axis) => carried.reduce((sum, visit) => sum + demand(visit, axis), 0)).join(", ");
 }
 
+const NO_LOADING =
+  "New orders have to be loaded first, and so has what a vehicle out of service has on board: all vehicles have left, and none loads again today. So only orders without a load can be added. Plan the day with “Vehicles load again at the depot”, above the stops, to have them come back for more.";
+
+/**
+ * Says that nobody can bring what must be loaded first; "" if somebody can, or nothing is loaded.
+ *
+ * @param {object[]} vans as of `progressOf`, with their `routes`
+ * @param {{ vehicles: object[], stops: object[] }} asked the request
+ * @param {Set<string>} out vehicles that are out of service, by name
+ */
+export function loadingSaid(vans, routes, { vehicles, stops }, out) {
+  if (!stops.some(({ demand }) => demand?.some((amount) => amount > 0))) return "";
+  const loads = (id) => vehicles.some((each) => each.id === id && each.reload?.length);
+  const isSpare = ({ id, count = 1 }) => routes.filter(({ vehicle }) => vehicle === id).length < count;
+  const canLoad = vans.some(({ name, isOut }, at) => !out.has(name) && (!isOut || loads(routes[at].vehicle))) || vehicles.some(isSpare);
+  return canLoad ? "" : NO_LOADING;
+}
+
 /** How many stops are done by now, and how to change that; `isPlanned` says whether all of that is by the plan. */
 export function doneSaid(vans, now, isPlanned) {
   const [done, left] = [doneOf, leftOf].map((of) => vans.flatMap(of).length);

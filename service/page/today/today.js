@@ -15,9 +15,11 @@ import { changesOf } from "./changes.js";
 import { Orders } from "./orders.js";
 import { progressOf, travelled } from "./progress.js";
 import { FleetRest, bodyOf } from "./rest.js";
-import { doneSaid, vanSaid } from "./said.js";
+import { doneSaid, loadingSaid, vanSaid } from "./said.js";
 import { showChanges } from "./show_changes.js";
 import { VanList } from "./van_list.js";
+
+export { restIn } from "./linked_rest.js";
 
 const element = (id) => document.getElementById(id);
 const { movers: VEHICLES } = kindNamed({ kind: "fleet" });
@@ -158,6 +160,7 @@ export class Today {
       return { ...van, style: styles[at], said, tip: line?.at(-1).map(rounded) };
     });
     element("today-done").textContent = doneSaid(vans, this.#now, !this.#turned.size);
+    element("today-loading").textContent = loadingSaid(this.#vans, routes, asked, this.#out);
     this.#list.show(this.#vans, { clock, out: this.#out, removed: this.#cancelled });
   }
 
