@@ -102,7 +102,7 @@ DRAFT = json.dumps(
 )
 
 # Have a page keep nothing of what it shows in its window.
-FORGET_DRAFT = "sessionStorage.clear(); Storage.prototype.setItem = () => {}"
+FORGET_DRAFT = "sessionStorage.clear(); localStorage.clear(); Storage.prototype.setItem = () => {}"
 
 expect.set_options(timeout=60 * SECOND)  # five seconds are too few on a busy machine
 

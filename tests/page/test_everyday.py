@@ -58,7 +58,7 @@ def test_what_is_missing_is_said_in_one_line(node: Node) -> None:
         *({**order, "service": 480} for order in ORDERS),
         {"id": "depot", "location": YARD},
     ]
-    assert asked["details"] == [{"column": "Customer", "texts": ["Bo", "Cy"]}]
+    assert asked["details"] == [{"column": "Customer", "texts": ["Bo", "Cy", ""]}]
     assert asked["vehicles"] == [
         {"id": name, **HOME, "shift": EIGHT_TO_FOUR} for name in ("Pekka", "Anna")
     ]

@@ -205,6 +205,7 @@ def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, rel
         ]
         expect(page.locator("#choice")).to_have_text(
             "The least driving. Every other plan makes the longest route shorter, for more driving."
+            " The last vehicle is back at day 2, 9:35."
         )
         expect(page.get_by_role("button", name="longest route kept short")).to_be_visible()
         expect(page.locator("#less-2")).to_have_text("longest route shorter")
@@ -229,13 +230,14 @@ def test_the_column_of_an_imbalance_is_named_after_what_its_rows_have(
         last = page.locator("#fleet-legend tfoot td").last
         expect(last).to_have_text("13 min, longest minus shortest")
         head, *_ = saved(page, "CSV").decode().splitlines()
-        assert head.endswith(",route distance (m),whole route (s),stops,selected")
+        assert head.endswith(",route distance (m),whole route (s),leaves,back,stops,selected")
 
 
 def test_lateness_is_said_as_a_time(late: Page) -> None:
     select(late, "End")
     expect(late.locator("#choice")).to_have_text(
         "25 % more distance (1,000 m) than the least, for 13 min less lateness: none is left."
+        " The last vehicle is back at day 2, 9:35."
     )
     chart = late.get_by_label(re.compile("A choice of 2 plans"))
     expect(chart).to_have_attribute("aria-label", re.compile("lateness from 0 min to 13 min$"))
@@ -267,7 +269,7 @@ def test_a_stop_says_why_it_is_late_by_a_click_and_by_keys(late: Page) -> None:
     box.press("Enter")
     expect(said).to_have_text(why)
     expect(late.locator("#fleet-lanes [aria-pressed=true]")).to_have_attribute(
-        "aria-label", "van, day 1, order-17, 9:25, 13 min late"
+        "aria-label", "van, day 1, order-17, 9:25, 13 min late, open 8:00 to 10:00, due 9:12"
     )
     box.press("Enter")
     box.press("Enter")

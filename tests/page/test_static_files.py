@@ -29,8 +29,10 @@ def test_the_map_of_the_world_has_at_most_300_kilobytes() -> None:
 
 
 @pytest.mark.parametrize("path", ["page/main.js", "page/style.css"])
-def test_comments_are_not_sent_and_lines_keep_their_numbers(released: str, path: str) -> None:
-    source = (SERVICE / path).read_text().splitlines()
+def test_neither_comments_nor_indentation_are_sent_and_lines_keep_their_numbers(
+    released: str, path: str
+) -> None:
+    source = [line.lstrip() for line in (SERVICE / path).read_text().splitlines()]
     sent = httpx.get(f"{released}/{path}").text.splitlines()
     assert sum(line.lstrip().startswith("/*") for line in source) > 5
     assert len(sent) == len(source)
@@ -40,6 +42,11 @@ def test_comments_are_not_sent_and_lines_keep_their_numbers(released: str, path:
     after_code = [full.removeprefix(line) for line, full in pairs if line not in ("", full)]
     assert all(each.lstrip().startswith(("// ", "/* ")) for each in after_code)
     assert len(after_code) > 1
+
+
+def test_a_script_with_a_string_over_several_lines_keeps_its_indentation(released: str) -> None:
+    sent = httpx.get(f"{released}/page/result/python.js").text
+    assert any(line.startswith("  ") for line in sent.splitlines())
 
 
 def test_a_first_view_sends_less_than_120_kilobytes(released: str) -> None:

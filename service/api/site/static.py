@@ -40,6 +40,7 @@ _COMMENT = re.compile(
     r"^[ \t]*(?:/\*(?:(?!\*/).)*\*/|//[^\n]*)$|[ \t]+(?:/\*[^\n]*\*/|// [^\n\"'`]*)$",
     re.DOTALL | re.MULTILINE,
 )
+_INDENTATION = re.compile(r"^[ \t]+", re.MULTILINE)
 _COMMENTED = {".js": "text/javascript", ".css": "text/css"}
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
@@ -104,7 +105,7 @@ class _Page:
 
 
 class _PageFiles(StaticFiles):
-    """The files of the page; its scripts and style sheets have empty lines for comments."""
+    """The files of the page; its scripts and style sheets without comments and indentation."""
 
     def file_response(
         self,
@@ -118,11 +119,19 @@ class _PageFiles(StaticFiles):
         media_type = _COMMENTED.get(path.suffix)
         if found.status_code != 200 or media_type is None or path.is_relative_to(_VENDORED):
             return found
-        lines = _COMMENT.sub(
-            lambda comment: "\n" * comment[0].count("\n"), path.read_text(encoding="utf-8")
-        )
         kept = {name: found.headers[name] for name in ("etag", "last-modified")}
-        return Response(lines, headers=kept, media_type=media_type)
+        text = _shortened(path.read_text(encoding="utf-8"))
+        return Response(text, headers=kept, media_type=media_type)
+
+
+def _shortened(text: str) -> str:
+    """Return a script or a style sheet without comments and indentation, line by line.
+
+    A script with a string over several lines, whose indentation counts, keeps all of it.
+    """
+    code = _COMMENT.sub(lambda comment: "\n" * comment[0].count("\n"), text)
+    has_long_strings = any(line.count("`") % 2 for line in code.splitlines())
+    return code if has_long_strings else _INDENTATION.sub("", code)
 
 
 def _version() -> str:

@@ -1,7 +1,7 @@
 /** What every dispatcher has, as members of a request: a depot, minutes at the stops, shifts, and a speed. */
 
 import { duration, timeText } from "../common/durations.js";
-import { isMeasured, without } from "../inputs/stops.js";
+import { isMeasured, withAnother, without } from "../inputs/stops.js";
 import { secondsIn } from "./cells.js";
 import { byIds } from "./references.js";
 import { timedBy } from "./trade.js";
@@ -134,8 +134,7 @@ export function withDepot(asked, { id = "depot", location }) {
   const kept = named.stops.findIndex((stop) => stop.id === depot && !isOrder(stop, named));
   if (kept >= 0) return homed({ ...named, stops: named.stops.with(kept, { ...named.stops[kept], location }) }, depot);
   const name = freeName(named.stops, id);
-  const details = named.details && { details: named.details.map((each) => ({ ...each, texts: named.stops.map((_, row) => each.texts[row] ?? "") })) };
-  return homed({ ...named, stops: [...named.stops, { id: name, location }], ...details }, name);
+  return homed(withAnother(named, name, location), name);
 }
 
 /** The depot of all vehicles; undefined if some have none, or they differ. */
@@ -172,11 +171,11 @@ function homed(asked, id) {
   return row < 0 ? placed : without(placed, row);
 }
 
-/** What is to be remembered of a request: `depot` is `{ id, location }`; what differs from row to row is not there. */
+/** What is given, to be remembered: `depot` is `{ id, location }`. */
 export function rememberedOf(asked) {
-  const { depot, service, shift, speed, reload } = everydayIn(asked);
-  const place = byIds(asked).stops.find(({ id }) => id === depot);
-  return { depot: place && { id: place.id, location: place.location }, service: service ?? undefined, shift: shift ?? undefined, speed: speed ?? undefined, reload };
+  const given = everydayIn(asked);
+  const place = byIds(asked).stops.find(({ id }) => id === given.depot);
+  return { ...given, depot: place && { id: place.id, location: place.location } };
 }
 
 /**

@@ -23,8 +23,8 @@ export class EverydayForm {
   /** @param {(asked: object) => void} onChange called with the changed request */
   constructor(onChange) {
     this.#onChange = onChange;
-    this.#placing = new Placing(element("place-depot"), element("everyday-help"), (location) => this.#take(withDepot(this.#asked, { location })), () => {}, { once: true });
-    element("everyday-reload").addEventListener("change", ({ target }) => this.#take(withReload(this.#asked, target.checked)));
+    this.#placing = new Placing(element("place-depot"), element("everyday-help"), (location) => this.#take("depot", withDepot(this.#asked, { location })), () => {}, { once: true });
+    element("everyday-reload").addEventListener("change", ({ target }) => this.#take("reload", withReload(this.#asked, target.checked)));
     for (const name of INPUTS) element(`everyday-${name}`).addEventListener("change", ({ target }) => this.#typed(name, target));
   }
 
@@ -74,7 +74,7 @@ export class EverydayForm {
   #typed(name, input) {
     const text = input.value.trim();
     const changed = this.#changed(name, text);
-    if (changed) return this.#take(changed);
+    if (changed) return this.#take(name, changed);
     input.setAttribute("aria-invalid", "true");
     const hint = name === "depot" ? "the name of a stop, or click where it is" : name === "shift" ? "when shifts begin, as 8:00, or when they begin and end, as 8:00-16:00" : hintOf(COLUMNS[name], 1);
     element("everyday-fault").textContent = `That cannot be “${text}”: write ${hint}.`;
@@ -88,10 +88,11 @@ export class EverydayForm {
     return { service: withService, shift: withShift, speed: withSpeed }[name](this.#asked, value);
   }
 
-  #take(asked) {
+  /** Takes a request with something else in it, and remembers that. */
+  #take(name, asked) {
     this.#recalled = "";
     this.#onChange(asked);
-    if (this.#asked) remember({ ...remembered(), ...rememberedOf(this.#asked) });
+    if (this.#asked) remember({ ...remembered(), [name]: rememberedOf(this.#asked)[name] });
   }
 }
 
