@@ -107,7 +107,8 @@ export class ExportButtons {
     const chosen = chosenOf(this.#shown, this.#item(shown), Boolean(asked));
     const isWhole = button.id === "link-details";
     const request = example || !linked ? undefined : isWhole ? linked : withoutDetails(linked);
-    const { hash, whole } = await fragment(this.#shown.id, balance, { request, objectives, limits, chosen, rest }, example);
+    const known = { request, objectives, limits, chosen, rest: rest && (isWhole ? rest : withoutDetails(rest)) };
+    const { hash, whole } = await fragment(this.#shown.id, balance, known, example);
     history.replaceState(null, "", hash);
     const left = request && whole && !isWhole ? columnsIn(linked) : "";
     say(request && !whole ? ALONE : left && `The link leaves out ${left}, which you and the drivers see.`);

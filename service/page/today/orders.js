@@ -2,6 +2,7 @@
 
 import { cellText, headed, hintOf, isUnread, rowOf, secondsIn, withText } from "../fleet/cells.js";
 import { columnsOf, isShown } from "../fleet/columns.js";
+import { detailColumns } from "../inputs/details.js";
 import { Placing } from "../inputs/placing.js";
 import { isMeasured } from "../inputs/stops.js";
 import { EditableTable } from "../inputs/table.js";
@@ -57,6 +58,11 @@ export class Orders {
     return isMeasured(this.#asked);
   }
 
+  /** What is told of the orders, by their ids: a text for each of the details of the request. */
+  get told() {
+    return new Map(this.#added.map(({ id, told = [] }) => [id, told]));
+  }
+
   /** The orders, as stops of a request. Throws a Problem at the first one that cannot be planned with. */
   get added() {
     for (const [row, order] of this.#added.entries()) {
@@ -65,7 +71,7 @@ export class Orders {
       if (this.#isKnown(order.id)) throw refusal(row, "id", `${order.id} is a stop of the plan already: give the new order another name`);
       if (order.location?.length !== 2 || !order.location.every(Number.isFinite)) throw refusal(row, "location", `${order.id} needs a place: write its longitude and latitude, or click where it is`);
     }
-    return this.#added;
+    return this.#added.map(({ told: _, ...order }) => order);
   }
 
   /** Adds the rows of a pasted table; says what is wrong with it where it cannot be read. */
@@ -73,11 +79,12 @@ export class Orders {
     const help = element("orders-help");
     help.textContent = "What was pasted is being read.";
     try {
-      const { request } = await this.#service.read([file]);
-      const rows = (request.stops ?? []).filter(({ location }) => location);
+      const { request, details = [] } = await this.#service.read([file]);
+      const textsOf = (row) => this.#asked.details?.map(({ column }) => details.find((each) => each.column === column)?.texts[row] ?? "");
+      const rows = (request.stops ?? []).map((stop, row) => ({ ...stop, told: textsOf(row) })).filter(({ location }) => location);
       const fresh = rows.filter(({ id }) => !this.#isKnown(id) && !this.#added.some((each) => each.id === id));
       help.textContent = saidOf(rows.length, fresh.length);
-      this.#take([...this.#added, ...fresh.map(({ id, location, demand, window, windows, service }) => JSON.parse(JSON.stringify({ id, location, demand, window, windows, service })))]);
+      this.#take([...this.#added, ...fresh.map(({ id, location, demand, window, windows, service, told }) => JSON.parse(JSON.stringify({ id, location, demand, window, windows, service, told })))]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       help.textContent = `Not read: ${error.message}.`;
@@ -90,7 +97,11 @@ export class Orders {
 
   #withCells(cells) {
     const columns = this.#columns;
-    return cells.reduce((added, { row, column, text }) => added.with(row, withText(added[row], columns[column], text, secondsIn(this.#asked))), this.#added);
+    const changed = (order, column, text) => {
+      if (column.detail === undefined) return withText(order, column, text, secondsIn(this.#asked));
+      return { ...order, told: this.#asked.details.map((_, at) => (at === column.detail ? text : (order.told?.[at] ?? ""))) };
+    };
+    return cells.reduce((added, { row, column, text }) => added.with(row, changed(added[row], columns[column], text)), this.#added);
   }
 
   /** Whether a text that is pasted there fills cells of the table. */
@@ -109,14 +120,14 @@ export class Orders {
 
   get #columns() {
     const shown = this.#asked.clock ? TIMED : new Set();
-    return columnsOf("stops", this.#asked).filter((each) => each.member === "location" || isShown(each, each.member === "demand" ? this.#asked.stops : this.#added, shown));
+    return [...detailColumns(this.#asked), ...columnsOf("stops", this.#asked)].filter((each) => ["location", "details"].includes(each.member) || isShown(each, each.member === "demand" ? this.#asked.stops : this.#added, shown));
   }
 
   #show() {
     const second = secondsIn(this.#asked);
     const columns = this.#columns;
     element("orders").hidden = !this.#added.length;
-    this.#table.show(headed(columns), this.#added.map((order) => rowOf(order, columns, second)));
+    this.#table.show(headed(columns), this.#added.map((order) => rowOf(order, columns, second, order.told)));
     element("orders-fault").textContent = "";
     this.#table.mark();
   }

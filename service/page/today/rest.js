@@ -53,7 +53,8 @@ export class FleetRest {
     const { asked } = driven;
     const positions = routes.map(({ position }) => position).filter((position) => position?.id);
     const stops = [...asked.stops, ...add, ...positions];
-    this.asked = this.instance = { ...asked, stops };
+    const details = asked.details?.map(({ column, texts }, at) => ({ column, texts: stops.map(({ id }, row) => texts[row] ?? day?.told?.get(id)?.[at] ?? "") }));
+    this.asked = this.instance = { ...asked, stops, details };
     this.names = stops.map(({ id }) => id);
   }
 
@@ -61,13 +62,16 @@ export class FleetRest {
   linked({ stops }) {
     const { routes, names } = this.driven;
     const vans = routes.map(({ vehicle, shift, place }, at) => ({ vehicle, shift, place: place ?? at, name: names[at] }));
-    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under] };
+    const details = this.asked.details?.map(({ texts }) => texts.slice(stops.length));
+    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under], details };
   }
 
   /** The rest of a link; null if it says none of this request, as links come from anywhere. */
-  static of(asked, { stops, vans, under }) {
+  static of(request, { stops, vans, under, details }) {
     const isNamed = (each) => typeof each?.name === "string" && typeof each.vehicle === "string" && Number.isInteger(each.place);
     if (!areStops(stops) || !Array.isArray(vans) || !vans.every(isNamed) || !Array.isArray(under) || !under.every((at) => vans[at])) return null;
+    const told = (at) => (Array.isArray(details?.[at]) ? details[at].map(String) : []);
+    const asked = { ...request, details: request.details?.map(({ column, texts }, at) => ({ column, texts: [...texts, ...told(at)] })) };
     return new FleetRest({ routes: vans, names: vans.map(({ name }) => name), asked }, { routes: under.map((route) => ({ route })), add: stops }, null);
   }
 

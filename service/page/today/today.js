@@ -100,7 +100,7 @@ export class Today {
   /** What is asked of the service: the `id` of the front, the `body`, and the `way` by which the rest is shown. Throws a Problem where something cannot be read. */
   get asked() {
     const added = this.#orders.added;
-    const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added };
+    const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added, told: this.#orders.told };
     const body = bodyOf(this.#driven, day);
     return { id: this.#found.state.answer.id, body, way: new FleetRest(this.#driven, body, day) };
   }
