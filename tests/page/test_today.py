@@ -86,7 +86,7 @@ def test_the_page_says_when_nobody_can_load_new_orders(
 ) -> None:
     asked = {**ASKED, "vehicles": [{**ASKED["vehicles"][0], **van}]}  # type: ignore[dict-item]
     said = node.evaluate(LOADING, [{**DRIVEN, "asked": asked}, now, out])
-    assert said == "" if can else said.startswith("New orders have to be loaded first")
+    assert said == "" if can else said.startswith("All vehicles have left, and none loads again")
 
 
 BODY = """async ([driven, now, tips, out, cancelled, added]) => {

@@ -117,7 +117,8 @@ class _PageFiles(StaticFiles):
         found = super().file_response(full_path, stat_result, scope, status_code)
         path = Path(full_path)
         media_type = _COMMENTED.get(path.suffix)
-        if found.status_code != 200 or media_type is None or path.is_relative_to(_VENDORED):
+        is_minified = path.suffix == ".js" and path.is_relative_to(_VENDORED)
+        if found.status_code != 200 or media_type is None or is_minified:
             return found
         kept = {name: found.headers[name] for name in ("etag", "last-modified")}
         text = _shortened(path.read_text(encoding="utf-8"))

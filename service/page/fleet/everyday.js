@@ -50,11 +50,11 @@ const isFree = (vehicle) => vehicle.start === undefined && vehicle.end === undef
 /** Says what is missing, in one line; "" if nothing is. */
 export function missingSaid({ depot, service, shift, missing }) {
   const said = [
-    [depot, missing.depot, "No depot is given: vehicles start and end at any stop.", "of the vehicles start and end at any stop."],
-    [service, missing.service, "No time at the stops is given: 0 min.", "of the stops have no time given: 0 min."],
-    [shift, missing.shift, "No shifts are given: vehicles leave at any time of the day.", "of the vehicles leave at any time of the day."],
+    [depot, missing.depot, "No depot is given: vehicles", "start and end at any stop."],
+    [service, missing.service, "No time at the stops is given:", "0 min.", "stops"],
+    [shift, missing.shift, "No shifts are given: vehicles", "leave at any time of the day."],
   ];
-  return said.flatMap(([value, count, none, some]) => (count ? [value === null ? none : `${count} ${some}`] : [])).join(" ");
+  return said.flatMap(([value, count, none, what, rows = "vehicles"]) => (count ? [`${value === null ? none : `${count} of the ${rows}:`} ${what}`] : [])).join(" ");
 }
 
 /** The stops at which no vehicle starts, ends or loads again. */
@@ -187,13 +187,13 @@ export function recalled(asked, { depot, service, shift, speed, reload }) {
   const given = everydayIn(asked);
   const isHome = given.depot === null && depot && isNear(asked, depot.location);
   const steps = [
-    [isHome, (each) => withDepotOf(each, depot), () => (depot.id === "depot" ? "the depot" : `depot ${depot.id}`)],
-    [isHome && reload, (each) => withReload(each, true), () => "vehicles load again there"],
-    [given.service === null && service, (each) => withService(each, service), () => `${duration(service)} at each stop`],
-    [given.shift === null && shift, (each) => withShift(each, shift), () => `shifts from ${shift.map(timeText).join(" to ")}`],
-    [given.speed && speed && given.speed !== speed, (each) => withSpeed(each, speed), () => `${speed} km/h`],
+    [isHome, withDepotOf, depot, depot?.id === "depot" ? "the depot" : `depot ${depot?.id}`],
+    [isHome && reload, withReload, true, "vehicles load again there"],
+    [given.service === null && service > 0, withService, service, `${duration(service)} at each stop`],
+    [given.shift === null && shift, withShift, shift, `shifts from ${shift?.map(timeText).join(" to ")}`],
+    [given.speed && speed > 0 && given.speed !== speed, withSpeed, speed, `${speed} km/h`],
   ].filter(([isMeant]) => isMeant);
-  return { asked: steps.reduce((changed, [, change]) => change(changed), asked), said: steps.map(([, , said]) => said()) };
+  return { asked: steps.reduce((changed, [, change, value]) => change(changed, value), asked), said: steps.map((step) => step.at(-1)) };
 }
 
 /** A stop of the name of the depot is it, if it is at its place. */

@@ -1,7 +1,7 @@
 /** Remember in this browser what every dispatcher has, for the next file. */
 
 const NAME = "paretour-everyday";
-const isNumbers = (value, count) => Array.isArray(value) && value.length === count && value.every(Number.isFinite);
+const isPair = (value) => value?.length === 2 && value.every(Number.isFinite);
 
 export function remember(everyday) {
   try {
@@ -11,20 +11,12 @@ export function remember(everyday) {
   }
 }
 
-/** What is remembered, of which all or some may be missing. */
+/** What is remembered, of which all or some may be missing. Another version of the page may have written it. */
 export function remembered() {
   try {
-    return sound(JSON.parse(localStorage.getItem(NAME)) ?? {});
+    const { depot, shift, ...others } = JSON.parse(localStorage.getItem(NAME));
+    return { ...others, ...(depot?.id && isPair(depot.location) && { depot }), ...(isPair(shift) && { shift }) };
   } catch {
     return {};
   }
 }
-
-/** Other versions of the page may have written it. */
-const sound = ({ depot, service, shift, speed, reload }) => ({
-  ...(typeof depot?.id === "string" && isNumbers(depot.location, 2) && { depot }),
-  ...(service >= 0 && { service }),
-  ...(isNumbers(shift, 2) && { shift }),
-  ...(speed > 0 && { speed }),
-  reload: reload === true,
-});

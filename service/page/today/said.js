@@ -40,7 +40,7 @@ export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
 }
 
 const NO_LOADING =
-  "New orders have to be loaded first, and so has what a vehicle out of service has on board: all vehicles have left, and none loads again today. So only orders without a load can be added. Plan the day with “Vehicles load again at the depot”, above the stops, to have them come back for more.";
+  "All vehicles have left, and none loads again today: nobody can bring new orders with a load, or what a vehicle out of service has on board. Before you plan the next day, tick “Vehicles load again at the depot” above the stops.";
 
 /**
  * Says that nobody can bring what must be loaded first; "" if somebody can, or nothing is loaded.
