@@ -1,4 +1,4 @@
-/** What every dispatcher has, as members of a request: a depot, minutes at the stops, shifts, and a speed. */
+/** Read and write a depot, minutes at the stops, shifts and a speed as members of a request: what every dispatcher has. */
 
 import { duration, timeText } from "../common/durations.js";
 import { isMeasured, withAnother, without } from "../inputs/stops.js";
