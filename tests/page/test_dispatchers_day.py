@@ -1,5 +1,6 @@
 """A dispatcher's day on the page, from two tables in the morning to new sheets at noon."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -100,14 +101,14 @@ def test_a_dispatchers_day_takes_25_clicks_and_fields(
     )
     assert found_by_axe(page, ".numbers") == []
     assert desk.count <= MOST
-    shown = page.locator("#fleet-legend").inner_text()
+    shown = page.locator("#fleet-legend").text_content() or ""
     with open_page(browser, link) as other:
         wait_until_planned(other)
-        assert other.locator("#fleet-legend").inner_text() == shown
+        expect(other.locator("#fleet-legend")).to_have_text(shown)
         expect(other.locator("#fleet-stops")).not_to_contain_text("Bakery")
         other.reload()
         wait_until_planned(other)
-        assert other.locator("#fleet-legend").inner_text() == shown
+        expect(other.locator("#fleet-legend")).to_have_text(shown)
     page.locator("#link-details").click()
     with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
         wait_until_planned(other)
@@ -130,6 +131,9 @@ def plan_in_the_morning(desk: Desk, folder: Path) -> None:
     expect(page.get_by_label("customer of A1", exact=True)).to_have_value("Shop 1")
     desk.press(page.get_by_role("button", name="Plan", exact=True))
     wait_until_planned(page)
+    page.locator("#fleet-lanes .visit").nth(1).click()
+    for said in ("#plane-1 .leaflet-tooltip", "#fleet-stop"):
+        expect(page.locator(said)).to_contain_text(re.compile(r"A\d+ \(Shop \d+\): "))
     assert sorted(on_sheets(desk)) == sorted(f"A{k}" for k in range(1, 16))
     expect(page.locator("#sheet p").first).to_contain_text("back at")
 
