@@ -216,7 +216,7 @@ def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, rel
             " The last vehicle is back at day 2, 9:35."
         )
         titles = page.locator("#fleet-legend thead th").all_inner_texts()
-        assert titles[2:] == ["Driving", "Whole route"]
+        assert titles[2:] == ["Leaves", "Back", "Driving", "Whole route"]
         assert page.locator("#fleet-legend tfoot td").all_inner_texts()[-1] == "30 min, the longest"
 
 
