@@ -135,7 +135,7 @@ def plan_in_the_morning(desk: Desk, folder: Path) -> None:
     for said in ("#plane-1 .leaflet-tooltip", "#fleet-stop"):
         expect(page.locator(said)).to_contain_text(re.compile(r"A\d+ \(Shop \d+\): "))
     assert sorted(on_sheets(desk)) == sorted(f"A{k}" for k in range(1, 16))
-    expect(page.locator("#sheet p").first).to_contain_text("back at")
+    expect(page.locator("#sheet section > p").last).to_contain_text("back at")
 
 
 def at_eleven(desk: Desk) -> list[str]:
