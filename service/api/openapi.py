@@ -12,8 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from service.api.problem import Problem
 from service.api.response_headers import HEADERS, add_headers
-from service.api.responses import PROBLEM_JSON, Problem
+from service.api.responses import PROBLEM_JSON
 from service.errors import PROBLEMS, Fault, Refusal
 
 _EXAMPLES = Path(__file__).parents[1] / "reference" / "examples.json"
@@ -66,7 +67,7 @@ def _examples() -> dict[str, Any]:
 
 
 def _problem_schema() -> dict[str, Any]:
-    schema = Problem.model_json_schema()
+    schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
     schema["properties"]["errors"] = {"type": "array", "items": schema.pop("$defs")["FaultItem"]}
     return schema
 

@@ -17,6 +17,7 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
+from service.api.problem import Problem
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
 from service.front import Termination
@@ -36,37 +37,6 @@ OF_MORE = (
 Balance = Annotated[
     float, Field(description="0 at the front's least first length, 1 at its least second")
 ]
-
-
-class FaultItem(BaseModel):
-    """One thing wrong with a request."""
-
-    detail: str
-    pointer: str | None = Field(default=None, description="JSON pointer into the body (RFC 6901)")
-    parameter: str | None = Field(default=None, description="name of the query parameter")
-    code: str | None = Field(default=None, description="what is wrong with it; stable")
-    demand: str | None = Field(
-        default=None, description="`detail` without the name of the field at its beginning"
-    )
-    values: dict[str, float | str] | None = Field(
-        default=None,
-        description="the values in the sentence by name; `came` is what came, `near` what was"
-        " probably meant, and `other` the pointer to another field",
-    )
-
-
-class Problem(BaseModel):
-    """Why a request was refused (RFC 9457)."""
-
-    type: str = Field(description="where the guide explains the code: `/guide/errors#CODE`")
-    title: str
-    status: int
-    code: str = Field(description="stable; the one member to branch on")
-    detail: str
-    request_id: str
-    errors: list[FaultItem] | None = None
-    limit: float | None = Field(default=None, description="the most that is allowed")
-    actual: float | None = Field(default=None, description="what came, where it is known")
 
 
 class TourItem(BaseModel):

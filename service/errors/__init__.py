@@ -27,6 +27,7 @@ from service.errors.exceptions import invalid as invalid
 from service.errors.exceptions import invalid_header as invalid_header
 from service.errors.exceptions import uncoverable as uncoverable
 from service.errors.faults import Fault as Fault
+from service.errors.faults import Remedy as Remedy
 from service.errors.problems import PROBLEMS as PROBLEMS
 from service.errors.tours import CityNames as CityNames
 from service.errors.tours import NoTour as NoTour

@@ -28,10 +28,11 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Self
 
-from service.errors.faults import Fault, quoted, said
+from service.errors.faults import Fault, Remedy, quoted, said
 from service.errors.problems import PROBLEMS
 
 MOST_FAULTS = 20  # the most that one problem document lists
@@ -53,6 +54,7 @@ class Refusal(Exception):
     """
 
     code: str
+    remedies: tuple[Remedy, ...] = ()
 
     def __init__(
         self,
@@ -83,6 +85,12 @@ class Refusal(Exception):
         """Pickle all members: subclasses take other arguments than the base class."""
         return Exception.__new__, (type(self), self.detail), self.__dict__
 
+    def with_remedies(self, remedies: Sequence[Remedy]) -> Self:
+        """Return this refusal with changes to the request, after each of which it is planned."""
+        refusal = copy(self)
+        refusal.remedies = tuple(remedies)
+        return refusal
+
     def document(self, request_id: str) -> dict[str, Any]:
         """Return the problem document (RFC 9457) without the members that are None."""
         members = {
@@ -91,12 +99,21 @@ class Refusal(Exception):
             "status": self.status,
             "code": self.code,
             "detail": self.detail,
-            "errors": [fault.document for fault in self.errors] or None,
+            "errors": self._documents_of_faults or None,
             "limit": self.limit,
             "actual": self.actual,
             "request_id": request_id,
         }
         return _without_none(members)
+
+    @property
+    def _documents_of_faults(self) -> list[dict[str, Any]]:
+        """The faults as members of a problem document, of which the first has the remedies."""
+        faults = [fault.document for fault in self.errors]
+        if not self.remedies:
+            return faults
+        first, *others = faults or [{"detail": self.detail, "code": self.code}]
+        return [{**first, "remedies": [each.document for each in self.remedies]}, *others]
 
 
 def invalid(part: str, code: str, **values: object) -> Refusal:

@@ -1,6 +1,7 @@
-"""The faults of the parts of a request: a code each, and the values of its sentence.
+"""The faults of the parts of a request, and what would help: a code each, and values.
 
-The sentences are in `sentences.toml`. A part is named as the caller wrote it, as stops/3/window.
+Their sentences are in `sentences.toml` and `remedies.toml`. A part is named as the caller wrote it,
+as stops/3/window.
 """
 
 import math
@@ -16,9 +17,12 @@ from pydantic_core import to_json
 _LONGEST_NAME = 100  # characters of a caller's name, where it is quoted
 _LONGEST_SHOWN = 80  # characters of what came
 Value = float | str
-SENTENCES: Mapping[str, str] = tomllib.loads(
-    Path(__file__).with_name("sentences.toml").read_text(encoding="utf-8")
+_SENTENCES, _REMEDIES = (
+    Path(__file__).with_name(name).read_text(encoding="utf-8")
+    for name in ("sentences.toml", "remedies.toml")
 )
+SENTENCES: Mapping[str, str] = tomllib.loads(_SENTENCES)
+REMEDIES: Mapping[str, str] = tomllib.loads(_REMEDIES)
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,31 @@ class Fault:
             "values": {k: _plain(k, v) for k, v in self.values.items() if v is not None} or None,
         }
         return {name: value for name, value in members.items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """A change to a refused request after which it is planned, as was tried.
+
+    Args:
+        code: One of REMEDIES.
+        patch: The change, as the operations of a JSON patch (RFC 6902).
+        values: The values of its sentence.
+    """
+
+    code: str
+    patch: tuple[Mapping[str, Any], ...]
+    values: Mapping[str, Value]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The remedy as a member of a problem document."""
+        return {
+            "code": self.code,
+            "detail": said(REMEDIES[self.code], self.values),
+            "values": dict(self.values),
+            "patch": list(self.patch),
+        }
 
 
 def said(sentence: str, values: Mapping[str, object]) -> str:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from paretour.choice import balances, losses
 from pydantic_core import to_json
 
-from service.errors import NoTour
+from service.errors import NoTour, Refusal
 from service.fleet.evaluation import measures, most_carried, route_lengths, unassigned
 from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
@@ -18,6 +18,8 @@ from service.fleet.schedule import schedule
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
+from service.remedies.asked import AskedFleet
+from service.remedies.look import remedies_of
 from service.requests.limits import check_reference_point
 from service.requests.task import Task, UnmeasuredFleet, VehicleName
 from service.watch import Watch
@@ -65,9 +67,40 @@ def run_fleet(
     timings = {**task.timings, "costs": 1000 * watch.spent}
     try:
         front = plan_front(task, fleet, actor, watch.converting(encoded), driven)
-    except NoTour as refusal:
-        raise refusal.named(task.city_names) from None
+    except Refusal as refusal:
+        named = refusal.named(task.city_names) if isinstance(refusal, NoTour) else refusal
+        raise _with_remedies(named, fleet, subject, task, tools, watch) from None
     return encoded(replace(front, timings={**timings, **front.timings}))
+
+
+def _with_remedies(
+    refusal: Refusal,
+    fleet: Fleet,
+    subject: UnmeasuredFleet,
+    task: Task,
+    tools: Tools,
+    watch: Watch[FrontDocument],
+) -> Refusal:
+    """Return the refusal of a fleet with changes that help, if it has no plan and some are found.
+
+    A request to replan has no members for them.
+    """
+    if refusal.code != "no-plan" or subject.is_rest:
+        return refusal
+    assert task.labels is not None
+    unit = None if subject.clock is None else subject.clock.unit
+    vehicles = [name.id for name in subject.vehicles]
+    asked = AskedFleet(
+        fleet=fleet, stops=[each.id for each in task.labels.stops], vehicles=vehicles, unit=unit
+    )
+    actor = tools.actors.get(task.actor)
+
+    def plan(fleet: Fleet, seconds: float, watch: Watch[FleetFront]) -> FleetFront:
+        options = replace(task.options, time_limit=seconds)
+        return plan_front(replace(task, options=options), fleet, actor, watch)
+
+    limit, most = task.options.time_limit, tools.limits.seconds
+    return refusal.with_remedies(remedies_of(asked, limit, most, plan, watch))
 
 
 def plan_front(

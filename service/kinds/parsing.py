@@ -1,6 +1,7 @@
 """Parse the body of a request of any kind into a Task."""
 
 from service.errors import Refusal
+from service.kinds.great_circles import with_great_circles
 from service.kinds.kind import Actors
 from service.kinds.table import KINDS, kind_of
 from service.requests.limits import Limits, check_structure
@@ -25,7 +26,11 @@ def parse_task(source: TaskSource, limits: Limits, actors: Actors) -> Task:
     check_structure(source.body, limits)
     if source.kind not in _READERS:
         raise ValueError(f"no request is of kind {source.kind}")
-    task = _READERS[source.kind](source, limits, actors)
+    read = _READERS[source.kind]
+    try:
+        task = read(source, limits, actors)
+    except Refusal as refusal:
+        raise with_great_circles(refusal, source, lambda it: read(it, limits, actors)) from None
     return with_notes(task, has_parts=source.upload is None)
 
 

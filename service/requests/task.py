@@ -72,6 +72,11 @@ class UnmeasuredFleet:
         """The names of its stops in refusals, if they have no others."""
         return self.stops.city_names
 
+    @property
+    def is_rest(self) -> bool:
+        """Whether it is what is left of a plan that is driven."""
+        return bool(self.driven) or any(each.route is not None for each in self.vehicles)
+
     def members(self, labels: Labels) -> dict[str, Any]:
         """Return the members of an answer that name stops, objectives and clock, ready for JSON."""
         members = labels.members

@@ -11,7 +11,8 @@ import httpx
 import pytest
 
 from service.api.openapi import example_refusal
-from service.api.responses import PROBLEM_JSON, Problem
+from service.api.problem import Problem
+from service.api.responses import PROBLEM_JSON
 from service.errors import PROBLEMS
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.actors import Shuffler, info_of

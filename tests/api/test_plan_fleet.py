@@ -8,6 +8,7 @@ from typing import Any
 
 import httpx
 import pytest
+from paretour import Refused
 
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.plans import Plan, Route
@@ -124,6 +125,9 @@ def test_a_fleet_without_a_plan_is_refused_with_the_reason(client: httpx.Client)
     while (front := client.get(path).json())["status"] in ("queued", "running"):
         time.sleep(0.01)
     assert (front["status"], front["problem"]["code"]) == ("failed", "no-plan")
+    for document in (refused, front["problem"]):
+        remedy = Refused(document).remedies[0]
+        assert client.post("/fleet", json=remedy.applied_to(request)).status_code == 200
 
 
 def test_a_reference_point_that_plainly_no_plan_comes_below_is_refused(

@@ -5,7 +5,7 @@ the kinds of plans for the page.
 """
 
 from tests.guide.codes import PAGE as CODES_PAGE
-from tests.guide.codes import codes, faults
+from tests.guide.codes import codes, faults, remedies
 from tests.guide.figures import figures
 from tests.guide.kinds import TABLE, kinds_file
 from tests.guide.members import JSON, TYPES, json_file, type_file
@@ -16,6 +16,7 @@ from tests.guide.tree import tree
 TREE_PAGE.write_text(with_part(TREE_PAGE, "tree", tree()))
 CODES_PAGE.write_text(with_part(CODES_PAGE, "codes", codes()))
 CODES_PAGE.write_text(with_part(CODES_PAGE, "faults", faults()))
+CODES_PAGE.write_text(with_part(CODES_PAGE, "remedies", remedies()))
 JSON.write_text(json_file())
 TYPES.write_text(type_file())
 TABLE.write_text(kinds_file())

@@ -1,12 +1,15 @@
-"""The tables of refusals and of faults in `errors.md`, made of those of `service.errors`."""
+"""The tables of refusals, faults and remedies in `errors.md`, made of those of `service.errors`."""
 
 import re
+from collections.abc import Iterable
 
-from service.errors.faults import SENTENCES
+from service.errors.faults import REMEDIES, SENTENCES
 from service.errors.problems import PROBLEMS, Problem
 from tests.guide.pages import GUIDE
 
 PAGE = GUIDE / "errors.md"
+_FIELD = re.compile(r"\{(\w+)(?:![a-z])?(?::[^}]*)?\}")  # of a sentence, with how it is shown
+_FIELD_ALONE = r"{\1}"
 
 
 def codes() -> str:
@@ -22,10 +25,16 @@ def codes() -> str:
 
 def faults() -> str:
     """Return the table of what can be wrong with a field as Markdown, by code."""
-    rows = [
-        f"| `{code}` | {re.sub(r'(?:![a-z])?(?::[^}]*)?}', '}', sentence)} |"
-        for code, sentence in sorted(SENTENCES.items())
-    ]
+    return _table_of(sorted(SENTENCES.items()))
+
+
+def remedies() -> str:
+    """Return the table of remedies as Markdown, in the order in which they are looked for."""
+    return _table_of(REMEDIES.items())
+
+
+def _table_of(sentences: Iterable[tuple[str, str]]) -> str:
+    rows = [f"| `{code}` | {_FIELD.sub(_FIELD_ALONE, text)} |" for code, text in sentences]
     return "\n".join(["| code | sentence |", "|---|---|", *rows]) + "\n"
 
 

@@ -14,7 +14,7 @@ from export import __main__ as export
 from models import drl_moa, expert, train
 from service.errors import PROBLEMS
 from service.settings import Settings
-from tests.guide.codes import codes, faults
+from tests.guide.codes import codes, faults, remedies
 from tests.guide.figures import figures
 from tests.guide.kinds import TABLE, kinds_file
 from tests.guide.members import JSON, TYPES, json_file, type_file
@@ -271,6 +271,7 @@ def test_the_table_of_codes_is_that_of_the_service() -> None:
     )
     assert table == codes(), "run python -m tests.guide"
     assert made_part(GUIDE / "errors.md", "faults") == faults(), "run python -m tests.guide"
+    assert made_part(GUIDE / "errors.md", "remedies") == remedies(), "run python -m tests.guide"
 
 
 def test_the_client_and_the_page_have_what_the_service_has() -> None:

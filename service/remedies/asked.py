@@ -1,0 +1,121 @@
+"""A fleet that has no plan, as its request names it, and the trial of other rules."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any, TypeVar
+
+from service.errors import Remedy
+from service.fleet.fleet import Fleet
+from service.fleet.plans import FleetFront
+from service.fleet.rules import Rules
+from service.fleet.vehicles import VehicleType, Visit
+from service.remedies.patch import Operation, put, remove
+
+Amount = TypeVar("Amount")
+# Returns the changed members of the vehicles of an id.
+Members = Mapping[str, Any]
+ChangeOfVehicles = Callable[[str, VehicleType], Members]
+Patch = tuple[Operation, ...]
+# Returns the front of the fleet under other rules; None if no plan was found soon.
+Try = Callable[[Rules], FleetFront | None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskedFleet:
+    """A fleet and the names that its request has for it.
+
+    Args:
+        fleet: The fleet.
+        stops: The ids of the stops.
+        vehicles: The id of each type of vehicles; those of several shifts have the same.
+        unit: The unit of the clock, if there is one.
+    """
+
+    fleet: Fleet
+    stops: Sequence[str]
+    vehicles: Sequence[str]
+    unit: str | None
+
+    @property
+    def rules(self) -> Rules:
+        """The rules of the fleet."""
+        return self.fleet.rules
+
+    @cached_property
+    def items(self) -> list[str]:
+        """The ids of the types of vehicles in the order of the request."""
+        return list(dict.fromkeys(self.vehicles))
+
+    @cached_property
+    def required(self) -> list[int]:
+        """The stops that must be visited; a shipment counts as its pick-up alone."""
+        deliveries = {each.delivery for each in self.rules.shipments}
+        return [
+            stop
+            for stop in self.rules.clients
+            if stop not in deliveries and self.rules.visits[stop].prize is None
+        ]
+
+    def first_of(self, item: str) -> VehicleType:
+        """Return the first type of vehicles of an id."""
+        return self.rules.vehicles[self.vehicles.index(item)]
+
+    def changed(self, change: ChangeOfVehicles) -> tuple[Rules, Patch]:
+        """Return the rules with changed members of vehicles, and the operations that change them.
+
+        `change` returns the changed members of the vehicles of an id, given the first of their
+        types; a member that becomes None is removed.
+        """
+        changes = {item: change(item, self.first_of(item)) for item in self.items}
+        pairs = zip(self.vehicles, self.rules.vehicles, strict=True)
+        vehicles = tuple(replace(each, **changes[item]) for item, each in pairs)
+        operations = (
+            _operation(f"/vehicles/{index}/{name}", value)
+            for index, members in enumerate(changes.values())
+            for name, value in members.items()
+        )
+        return replace(self.rules, vehicles=vehicles), tuple(operations)
+
+    def first_change(
+        self,
+        amounts: Sequence[Amount],
+        change: Callable[[Amount, str, VehicleType], Members],
+        tried: "Try",
+    ) -> tuple[Amount, Patch] | None:
+        """Return the first of ascending amounts by which a change of vehicles works, and its patch.
+
+        `change` gets an amount before the other arguments.
+        """
+        found = first_that_works(
+            amounts, lambda amount: self.changed(partial(change, amount))[0], tried
+        )
+        return found and (found[0], self.changed(partial(change, found[0]))[1])
+
+    def with_visits(self, visits: dict[int, Visit]) -> Rules:
+        """Return the rules with other demands of some stops."""
+        changed = tuple(visits.get(stop, each) for stop, each in enumerate(self.rules.visits))
+        return replace(self.rules, visits=changed)
+
+
+# Returns a remedy of one kind for a fleet that has no plan, if it finds one that works.
+Look = Callable[[AskedFleet, Try], Remedy | None]
+
+
+def first_that_works(
+    amounts: Sequence[Amount], rules_with: Callable[[Amount], Rules], tried: Try
+) -> tuple[Amount, FleetFront] | None:
+    """Return the first of ascending amounts that works, and its front; None if none does in time.
+
+    Most that are too little break a necessary condition, which is found out at once.
+    """
+    for amount in amounts:
+        if front := tried(rules_with(amount)):
+            return amount, front
+    return None
+
+
+def _operation(path: str, value: object) -> Operation:
+    if value is None:
+        return remove(path)
+    return put(path, list(value) if isinstance(value, tuple) else value)

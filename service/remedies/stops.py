@@ -1,0 +1,47 @@
+"""Remedies that ask less of the visits: stops are left out, or any vehicle may visit them."""
+
+from dataclasses import replace
+
+from service.errors import Remedy
+from service.remedies.amounts import rounded_up
+from service.remedies.asked import AskedFleet, Try
+from service.remedies.patch import put, remove
+
+_DETOURS = 3.0  # prizes, in largest legs: more than a visit costs
+
+
+def leave_out(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let all stops be left out, for a prize that is more than a visit costs."""
+    rules = asked.rules
+    if rules.over[0] == "max" or not asked.required:
+        return None
+    prize = _more_than_a_visit(asked)
+    visits = {stop: replace(rules.visits[stop], prize=prize) for stop in asked.required}
+    front = tried(asked.with_visits(visits))
+    if front is None:
+        return None
+    visited = max(len(set(plan.visited()) & {*rules.clients}) for plan in front.plans)
+    patch = tuple(put(f"/stops/{stop}/prize", prize) for stop in asked.required)
+    values = {"prize": prize, "visited": visited, "stops": len(rules.clients)}
+    return Remedy("leave-out", patch, values) if visited else None
+
+
+def _more_than_a_visit(asked: AskedFleet) -> float:
+    """Return more than any visit adds to the first length, with its way there and back."""
+    rules = asked.rules
+    prize = _DETOURS * float(asked.fleet.largest_legs[0])
+    prize += max(vehicle.fixed for vehicle in rules.vehicles)
+    if rules.clock == rules.layers[0]:
+        ends = [end for span in rules.spans for end in span if end < float("inf")]
+        prize += max(visit.service for visit in rules.visits) + max(ends, default=0.0)
+    return rounded_up(prize)
+
+
+def any_vehicle(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let any vehicle visit the stops that name one."""
+    pinned = [stop for stop, visit in enumerate(asked.rules.visits) if visit.vehicles]
+    visits = {stop: replace(asked.rules.visits[stop], vehicles=()) for stop in pinned}
+    if not pinned or tried(asked.with_visits(visits)) is None:
+        return None
+    patch = tuple(remove(f"/stops/{stop}/vehicle") for stop in pinned)
+    return Remedy("any-vehicle", patch, {"stops": len(pinned)})

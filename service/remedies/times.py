@@ -1,0 +1,113 @@
+"""Remedies by the clock: later ends of shifts, later windows, and longer routes."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from math import inf
+
+from service.errors import Remedy
+from service.fleet.fleet import Fleet
+from service.fleet.plans import FleetFront, Plan, path_of
+from service.fleet.rules import Rules
+from service.fleet.schedule import schedule
+from service.fleet.vehicles import VehicleType
+from service.remedies.amounts import time_in_words, time_rounded_up
+from service.remedies.asked import AskedFleet, Members, Try, first_that_works
+from service.remedies.patch import Operation, put
+
+_LATER = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2)  # shares of the longest shift, or of all windows
+_LONGER = (25, 50, 100, 200, 400)  # per cent
+
+
+def longer_shifts(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let all vehicles be back later than the end of their shift."""
+    found = asked.first_change(_amounts(asked, _longest_shift(asked)), _with_overtime, tried)
+    return None if found is None else Remedy("longer-shifts", found[1], _values(asked, found[0]))
+
+
+def _with_overtime(more: float, _: str, vehicle: VehicleType) -> Members:
+    return {"max_overtime": vehicle.max_overtime + more} if vehicle.shift[1] < inf else {}
+
+
+def later_windows(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let the last windows of some stops close later: of those that need it."""
+    windows = {stop: asked.rules.visits[stop].windows for stop in asked.rules.clients}
+    closing = [stop for stop, each in windows.items() if each[-1][1] < inf]
+    times = [time for stop in closing for span in windows[stop] for time in span]
+    longest = max(max(times) - min(times), _longest_shift(asked)) if times else 0.0
+    amounts = _amounts(asked, longest)
+    found = first_that_works(amounts, partial(_later, asked, closing), tried)
+    if found is None:
+        return None
+    more, front = found
+    late = _fewest_late(asked, front, closing)
+    if not late or tried(_later(asked, late, more)) is None:
+        late = closing  # with which it was tried
+    rules = _later(asked, late, more)
+    patch = tuple(each for stop in late for each in _windows(rules, stop))
+    return Remedy("later-windows", patch, {"stops": len(late), **_values(asked, more)})
+
+
+def _later(asked: AskedFleet, stops: Sequence[int], more: float) -> Rules:
+    visits = asked.rules.visits
+    later = {}
+    for stop in stops:
+        *others, (opens, closes) = visits[stop].windows
+        later[stop] = replace(visits[stop], windows=(*others, (opens, closes + more)))
+    return asked.with_visits(later)
+
+
+def _windows(rules: Rules, stop: int) -> tuple[Operation, Operation]:
+    """Return the operations that give a stop its windows, whether it had one or several."""
+    windows = [list(span) for span in rules.visits[stop].windows]
+    return put(f"/stops/{stop}/windows", windows), put(f"/stops/{stop}/window", None)
+
+
+def _fewest_late(asked: AskedFleet, front: FleetFront, closing: Sequence[int]) -> list[int]:
+    """Return the stops that a plan visits after the windows close that were asked for.
+
+    The plan is the one with the fewest.
+    """
+    return min(
+        (_late_of(asked, front.fleet, plan, closing) for plan in front.plans),
+        key=len,
+    )
+
+
+def _late_of(asked: AskedFleet, fleet: Fleet, plan: Plan, closing: Sequence[int]) -> list[int]:
+    arrivals = {
+        stop: arrival
+        for route in plan.routes
+        for stop, arrival in zip(
+            path_of(fleet.rules, route), schedule(fleet, route).arrivals, strict=True
+        )
+    }
+    closes = {stop: asked.rules.visits[stop].windows[-1][1] for stop in closing}
+    return [stop for stop in closing if arrivals.get(stop, 0.0) > closes[stop]]
+
+
+def longer_routes(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let all routes be longer that have a limit of their own."""
+    found = asked.first_change(_LONGER if asked.rules.has_longest else (), _with_longer, tried)
+    return None if found is None else Remedy("longer-routes", found[1], {"share": found[0]})
+
+
+def _with_longer(share: int, _: str, vehicle: VehicleType) -> Members:
+    limit = vehicle.longest
+    return {} if limit == inf else {"longest": limit * (100 + share) / 100}
+
+
+def _longest_shift(asked: AskedFleet) -> float:
+    """Return the length of the longest shift that ends; 0 without one."""
+    shifts = [vehicle.shift for vehicle in asked.rules.vehicles]
+    return max((end - begin for begin, end in shifts if end < inf), default=0.0)
+
+
+def _amounts(asked: AskedFleet, longest: float) -> list[float]:
+    """Return the times to try, ascending, as shares of the longest; none if that is 0."""
+    shares = _LATER if longest > 0 else ()
+    return sorted({time_rounded_up(share * longest, asked.unit) for share in shares})
+
+
+def _values(asked: AskedFleet, more: float) -> dict[str, float | str]:
+    return {"more": more, "text": time_in_words(more, asked.unit)}

@@ -1,0 +1,83 @@
+"""Remedies by what vehicles can do: more of them, larger ones, more trips, stops and skills."""
+
+from functools import partial
+
+from service.errors import Remedy
+from service.fleet.vehicles import VehicleType
+from service.remedies.asked import AskedFleet, Members, Try
+
+_MOST_ITEMS = 3  # ids of vehicles that are tried, the first in the request
+_MORE = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+_LARGER = (25, 50, 100, 200, 400)  # per cent
+
+
+def load_again(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let vehicles load again where they start, as often as needed."""
+    if asked.rules.shipments or not asked.rules.dimensions:
+        return None
+    rules, patch = asked.changed(_with_trips)
+    return Remedy("load-again", patch, {}) if patch and tried(rules) else None
+
+
+def _with_trips(_: str, vehicle: VehicleType) -> Members:
+    if vehicle.reload:
+        return {} if vehicle.max_trips is None else {"max_trips": None}
+    may = any(vehicle.capacity) and vehicle.start is not None and vehicle.max_stops is None
+    return {"reload": (vehicle.start,)} if may else {}
+
+
+def more_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Have more vehicles of one id: as few as are needed, of the first id that helps."""
+    amounts = [more for more in _MORE if more <= len(asked.rules.clients)]
+    for item in asked.items[:_MOST_ITEMS]:
+        if found := asked.first_change(amounts, partial(_with_more, item), tried):
+            more, patch = found
+            before = asked.first_of(item).count
+            counts = {"count": before + more, "before": before}
+            return Remedy("more-vehicles", patch, {"vehicle": item, **counts})
+    return None
+
+
+def _with_more(item: str, more: int, name: str, vehicle: VehicleType) -> Members:
+    return {"count": vehicle.count + more} if name == item else {}
+
+
+def larger_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Have larger vehicles of one id: as little larger as is needed."""
+    for item in asked.items[:_MOST_ITEMS] if asked.rules.dimensions else ():
+        if found := asked.first_change(_LARGER, partial(_with_larger, item), tried):
+            share, patch = found
+            return Remedy("larger-vehicles", patch, {"vehicle": item, "share": share})
+    return None
+
+
+def _with_larger(item: str, share: int, name: str, vehicle: VehicleType) -> Members:
+    larger = tuple(-(-each * (100 + share) // 100) for each in vehicle.capacity)
+    return {"capacity": larger} if name == item else {}
+
+
+def more_stops(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let routes have more stops."""
+    limited = any(vehicle.max_stops is not None for vehicle in asked.rules.vehicles)
+    found = asked.first_change(_MORE if limited else (), _with_stops, tried)
+    return None if found is None else Remedy("more-stops", found[1], {"more": found[0]})
+
+
+def _with_stops(more: int, _: str, vehicle: VehicleType) -> Members:
+    return {} if vehicle.max_stops is None else {"max_stops": vehicle.max_stops + more}
+
+
+def more_skills(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Give all vehicles the skills that stops ask for which none may visit, or any stops."""
+    rules = asked.rules
+    unserved = [stop for stop in asked.required if not rules.servers(stop)]
+    needed = {skill for stop in unserved or asked.required for skill in rules.visits[stop].skills}
+    changed, patch = asked.changed(partial(_with_skills, needed))
+    if not patch or tried(changed) is None:
+        return None
+    return Remedy("more-skills", patch, {"skills": ", ".join(map(repr, sorted(needed)))})
+
+
+def _with_skills(needed: set[str], _: str, vehicle: VehicleType) -> Members:
+    lacking = sorted(needed.difference(vehicle.skills))
+    return {"skills": (*vehicle.skills, *lacking)} if lacking else {}

@@ -1,0 +1,164 @@
+"""Remedies of fleets without a plan: which are found, and that each of them works."""
+
+import json
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+from paretour import Refused
+
+from service.errors import Refusal
+from service.kinds.fleet import run_fleet
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import Tools
+from service.kinds.parsing import parse_task
+from service.requests.limits import Limits
+from service.requests.task import TaskSource, UnmeasuredFleet
+from service.watch import Watch
+from tests.helpers.actors import info_of
+from tests.helpers.sampled import third
+
+LIMITS = Limits(body_bytes=10**6, cities=100, cells=900, preferences=20, size=30, seconds=2)
+MEMBERS = {"code", "detail", "values", "patch"}
+STOPS = 8
+SLOW = 5.0  # a clock of trials that are not in a hurry
+
+
+def request(**members: Any) -> dict[str, Any]:
+    """Return a request about a van and stops on a line, at 1 to 8, whose orders are one each."""
+    line = np.abs(np.subtract.outer(range(STOPS + 1), range(STOPS + 1))).tolist()
+    stops: list[dict[str, Any]] = [{"id": f"stop-{i}", "demand": [1]} for i in range(STOPS + 1)]
+    del stops[0]["demand"]
+    return {
+        "stops": stops,
+        "vehicles": [{"id": "van", "start": 0, "end": "stop-0", "capacity": [STOPS], **members}],
+        "objectives": [
+            {"name": "time", "unit": "min", "matrix": line},
+            {"name": "longest", "unit": "min", "matrix": line, "over": "max"},
+        ],
+        "clock": "time",
+        "time_limit": 0.1,
+    }
+
+
+def planned(request: dict[str, Any], clock: float = 1.0) -> FrontDocument:
+    """Return the front of a request, planned by a clock that is so many times slower."""
+    source = TaskSource("fleet", json.dumps(request).encode())
+    task = parse_task(source, LIMITS, {})
+    assert isinstance(task.subject, UnmeasuredFleet)
+    watch = Watch[FrontDocument](clock=lambda: time.monotonic() / clock)
+    return run_fleet(task.subject, task, Tools({}, LIMITS), watch)
+
+
+def refused(request: dict[str, Any]) -> Refused:
+    """Return the refusal of a request."""
+    with pytest.raises(Refusal) as raised:
+        planned(request, SLOW)
+    assert raised.value.code == "no-plan"
+    return Refused(raised.value.document(""))
+
+
+def of_stops(request: dict[str, Any], *stops: int, **members: Any) -> dict[str, Any]:
+    """Return the request with more members of some stops."""
+    for stop in stops:
+        request["stops"][stop] |= members
+    return request
+
+
+@pytest.fixture(scope="module", autouse=True)
+def loaded() -> None:
+    """Load the compiled search, which must not be in the time of a trial."""
+    planned(request())
+
+
+TABLE: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {
+    "too little capacity": (
+        request(capacity=[5]),
+        {
+            "leave-out": {"prize": 30, "visited": 5, "stops": STOPS},
+            "load-again": {},
+            "more-vehicles": {"vehicle": "van", "count": 2, "before": 1},
+            "larger-vehicles": {"vehicle": "van", "share": 50},
+        },
+    ),
+    "too few trips": (request(capacity=[2], reload=[0], max_trips=2), {"load-again": {}}),
+    "a short shift": (
+        request(shift=[480, 492]),
+        {"longer-shifts": {"more": 15, "text": "15 min"}, "leave-out": {"visited": 6}},
+    ),
+    "an early window": (
+        of_stops(request(shift=[480, 600]), 8, window=[480, 485]),
+        {"later-windows": {"stops": 1, "more": 15, "text": "15 min"}},
+    ),
+    "early windows, each in a list": (
+        of_stops(request(shift=[480, 600]), 7, 8, windows=[[480, 482], [483, 484]]),
+        {"later-windows": {"stops": 2}},
+    ),
+    "short routes": (request(longest=12), {"longer-routes": {"share": 50}}),
+    "few stops of a route": (request(max_stops=5), {"more-stops": {"more": 3}}),
+    "a skill that nobody has": (
+        of_stops(request(), 2, 3, skills=["lift"]),
+        {"more-skills": {"skills": "'lift'"}},
+    ),
+}
+
+
+@pytest.mark.parametrize("case", TABLE)
+def test_what_helps_is_told_with_its_values(case: str) -> None:
+    asked, expected = TABLE[case]
+    found = {remedy.code: remedy for remedy in refused(asked).remedies}
+    assert expected.keys() <= found.keys()
+    for code, values in expected.items():
+        assert values.items() <= found[code].values.items(), code
+
+
+def test_all_are_told_with_the_first_error_alone() -> None:
+    asked = of_stops(request(), 1, 2, demand=[9])
+    first, *others = refused(asked).errors
+    assert {remedy["code"] for remedy in first["remedies"]} >= {"leave-out", "larger-vehicles"}
+    assert all(remedy.keys() == MEMBERS for remedy in first["remedies"])
+    assert others
+    assert not any("remedies" in each for each in others)
+
+
+def varied(asked: dict[str, Any], seed: int) -> dict[str, Any]:
+    """Return a request like another one, with random distances and a second vehicle."""
+    random = np.random.default_rng(seed)
+    places = random.uniform(0, STOPS, (STOPS + 1, 2))
+    costs = np.abs(places[:, np.newaxis] - places).sum(axis=2).tolist()
+    objectives = [{**each, "matrix": costs} for each in asked["objectives"]]
+    bike = {"id": "bike", "start": "stop-0", "capacity": [1]}
+    return {**asked, "objectives": objectives, "vehicles": [*asked["vehicles"], bike]}
+
+
+@pytest.mark.parametrize("case", TABLE)
+def test_every_remedy_applied_to_its_request_gives_a_plan(case: str) -> None:
+    asked, _ = TABLE[case]
+    for request in (asked, *(varied(asked, seed) for seed in range(third(3)))):
+        try:
+            planned(request, SLOW)
+        except Refusal as refusal:
+            for remedy in Refused(refusal.document("")).remedies:
+                assert planned(remedy.applied_to(request)).tours, remedy
+
+
+def test_without_a_routing_engine_great_circles_are_a_remedy() -> None:
+    places = [{"id": str(i), "location": [24.9 + i / 100, 60.2]} for i in range(5)]
+    measured = {"name": "time", "unit": "s", "from": "road_time", "over_the_day": [[0, 1], [9, 2]]}
+    risk = {"name": "risk", "matrix": [[1] * 5] * 5}
+    asked = {"stops": places, "objectives": [risk, measured], "departure": 5}
+
+    actors = {"pa-one-matrix": info_of("pa-one-matrix", "matrices")}
+
+    def read(asked: dict[str, Any]) -> None:
+        parse_task(TaskSource("front", json.dumps(asked).encode()), LIMITS, actors)
+
+    with pytest.raises(Refusal) as raised:
+        read(asked)
+    (remedy,) = Refused(raised.value.document("")).remedies
+    assert remedy.code == "great-circles"
+    read(remedy.applied_to(asked))
+    with pytest.raises(Refusal) as raised:
+        read({**asked, "departure": -1})  # after which there is still a fault
+    assert raised.value.remedies == ()
