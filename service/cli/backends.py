@@ -100,7 +100,7 @@ class LocalBackend:
         except Refused as error:
             if error.status >= HTTPStatus.INTERNAL_SERVER_ERROR:
                 raise
-            raise UsageError(error.detail) from None
+            raise UsageError(error.detail, error.remedies) from None
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors and the constructors that the settings name."""

@@ -1,11 +1,11 @@
 """End the command with a sentence and an exit code when an expected error is raised."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import httpx
 import typer
-from paretour import Refused, UnexpectedAnswer
+from paretour import Refused, Remedy, UnexpectedAnswer
 
 from service.errors.printable import printable
 from service.files.reading import UnreadableFile
@@ -17,7 +17,11 @@ _NOT_THE_REQUEST = (401, 403, 408, 429)  # errors that any other request would g
 
 
 class UsageError(Exception):
-    """A mistake of the caller: an option, a request, or a setting."""
+    """A mistake of the caller, in an option, a request or a setting, and what helps."""
+
+    def __init__(self, sentence: str, remedies: Sequence[Remedy] = ()) -> None:
+        super().__init__(sentence)
+        self.remedies = remedies
 
 
 @contextmanager
@@ -29,7 +33,9 @@ def exit_on_error() -> Iterator[None]:
     """
     try:
         yield
-    except (UsageError, UnreadableFile) as error:
+    except UsageError as error:
+        raise exit_with(str(error), EXIT_USAGE, error.remedies) from None
+    except UnreadableFile as error:
         raise exit_with(str(error), EXIT_USAGE) from None
     except OSError as error:
         if error.filename is None:  # not about a file
@@ -37,14 +43,19 @@ def exit_on_error() -> Iterator[None]:
         raise exit_with(f"{error.filename}: {error.strerror}", EXIT_USAGE) from None
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
-        raise exit_with(str(error), EXIT_USAGE if faulty else EXIT_UNAVAILABLE) from None
+        code = EXIT_USAGE if faulty else EXIT_UNAVAILABLE
+        raise exit_with(str(error), code, error.remedies) from None
     except UnexpectedAnswer as error:
         raise exit_with(f"the service's answer is wrong: {error}", EXIT_UNAVAILABLE) from None
     except httpx.TransportError as error:
         raise exit_with(f"the service does not answer: {error}", EXIT_UNAVAILABLE) from None
 
 
-def exit_with(sentence: str, code: int) -> typer.Exit:
-    """Print a sentence on stderr; return the exception that ends the command with a code."""
+def exit_with(sentence: str, code: int, remedies: Sequence[Remedy] = ()) -> typer.Exit:
+    """Print a sentence on stderr, and what helps; return the exception that ends the command."""
     typer.echo(f"paretour: {printable(sentence)}", err=True)
+    if remedies:
+        typer.echo("Each of these changes to the request alone helps, as was tried:", err=True)
+    for remedy in remedies:
+        typer.echo(f"- {printable(remedy.detail)}", err=True)
     return typer.Exit(code)

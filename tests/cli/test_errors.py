@@ -17,7 +17,12 @@ def refused(status: int) -> Refused:
     return Refused({"status": status, "code": "a-code", "detail": "a sentence"})
 
 
+REMEDY = {"code": "more-time", "detail": "search for 1 s", "patch": [], "values": {}}
+HELPED = {"errors": [{"detail": "a sentence", "remedies": [REMEDY]}], **refused(422).document}
+HELP = "Each of these changes to the request alone helps, as was tried:\n- search for 1 s\n"
 EXITS = [
+    (Refused(HELPED), 2, f"paretour: a sentence (a-code)\n{HELP}"),
+    (UsageError("a sentence", Refused(HELPED).remedies), 2, f"paretour: a sentence\n{HELP}"),
     (UsageError("a sentence"), 2, "paretour: a sentence\n"),
     (UnreadableFile(Fault("a-code", said="a.csv: a sentence")), 2, "paretour: a.csv: a sentence\n"),
     (FileNotFoundError(2, "No such file", "a.csv"), 2, "paretour: a.csv: No such file\n"),

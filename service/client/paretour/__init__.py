@@ -47,6 +47,7 @@ from paretour.members import (
 )
 from paretour.offers import Offer, OfferChoice, Offers
 from paretour.plans import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
+from paretour.remedies import Remedy
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.ros.maps import read_ros_map
 from paretour.ros.paths import Path
@@ -90,6 +91,7 @@ __all__ = [
     "Plan",
     "Progress",
     "Refused",
+    "Remedy",
     "ReplanRequest",
     "RequestNote",
     "RobotFront",

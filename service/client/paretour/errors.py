@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from paretour.expect import UnexpectedAnswer, count, each, members, number, parse_json, text
+from paretour.remedies import Remedy, parse_remedy
 
 if TYPE_CHECKING:
     import httpx
@@ -27,6 +28,7 @@ class Refused(Exception):
         request_id: The id of the request in the service's log.
         errors: The wrong fields, each with its `detail` and a JSON `pointer` or `parameter`; with
             the `code` of what is wrong, and by name the `values` of the sentence, if it has any.
+        remedies: Changes to the request after each of which there is a plan.
         limit: The most that is allowed, if a limit was exceeded.
         actual: The number that was over the limit.
         document: The problem document.
@@ -42,6 +44,11 @@ class Refused(Exception):
         self.request_id: str | None = problem.maybe("request_id", text)
         faults = problem.maybe("errors", each(members)) or ()
         self.errors: tuple[Mapping[str, Any], ...] = tuple(fault.document for fault in faults)
+        self.remedies: tuple[Remedy, ...] = tuple(
+            remedy
+            for fault in faults
+            for remedy in fault.maybe("remedies", each(parse_remedy)) or ()
+        )
         self.limit: float | None = problem.maybe("limit", number)
         self.actual: float | None = problem.maybe("actual", number)
 
