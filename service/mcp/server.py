@@ -20,6 +20,7 @@ from mcp.types import Tool as ListedTool
 from paretour import Refused, UnexpectedAnswer
 
 from service.errors import Refusal
+from service.mcp.summaries import refusal_text
 from service.mcp.tools import TOOLS, Planner
 
 # Returns the service for a call of a tool, given the HTTP request of the call; None over stdio.
@@ -56,7 +57,9 @@ def make_server(connect: Connect, version: str) -> Server[Any]:
         try:
             async with connect(context.request) as planner, _progress(context, planner):
                 return _answer(await tool.call(planner, params.arguments or {}))
-        except (Refusal, Refused, ValueError) as error:
+        except Refused as error:
+            return _answer(refusal_text(error), is_error=True)
+        except (Refusal, ValueError) as error:
             return _answer(str(error), is_error=True)
         except UnexpectedAnswer as error:
             return _answer(f"the service's answer is wrong: {error}", is_error=True)

@@ -19,6 +19,7 @@ from service.objectives import OBJECTIVES
 MOST_BYTES = 8000  # of a text
 _SLACKS = (0.01, 0.05, 0.1)  # what a trade-off may cost, as shares of the least length
 _MOST_NOTES, _LONGEST_NOTE = 12, 300  # notes about a file, and characters of one
+_LONGEST_PATCH = 200  # characters
 _MOST_COLUMNS = 20  # of a file that cannot be read
 _NEAR = 0.5  # share of the way from the knee to an end of a front, where another tour is shown
 
@@ -43,6 +44,19 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
     middle = knee(front.lengths)
     hint = "choose_tour gives the stops of another one; explain_front says what is traded"
     return _with_stops({**document, "hint": hint, "stops_of": middle}, front, middle, 0)
+
+
+def refusal_text(error: Refused) -> str:
+    """Return the text of a refusal, with each change that helps and its JSON patch, if short."""
+    lines = [str(error)]
+    if error.remedies:
+        lines.append("Each of these changes to the request alone helps, as was tried:")
+    for remedy in error.remedies:
+        patch = json.dumps(remedy.patch)
+        if len(patch) > _LONGEST_PATCH:
+            patch = f"{json.dumps(remedy.patch[0])} and {len(remedy.patch) - 1} more like it"
+        lines.append(f"- {remedy.detail}: {patch}")
+    return "\n".join(lines)
 
 
 def unreadable_text(error: Refused) -> str:
