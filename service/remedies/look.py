@@ -116,6 +116,7 @@ class _Looking:
         ended = self.watch.until(ends).ended
         try:
             check_necessary(fleet, ended)  # planning has a share of its time alone for this
-            return self.plan(fleet, min(self.trial, left), Watch(stop=ended))
+            within = Watch[Any](stop=ended, clock=lambda: self.watch.spent)
+            return self.plan(fleet, min(self.trial, left), within)
         except Refusal:  # also if it was stopped
             return None

@@ -22,7 +22,7 @@ from tests.helpers.sampled import third
 LIMITS = Limits(body_bytes=10**6, cities=100, cells=900, preferences=20, size=30, seconds=2)
 MEMBERS = {"code", "detail", "values", "patch"}
 STOPS = 8
-SLOW = 5.0  # a clock of trials that are not in a hurry
+SLOW = 3.0  # a clock of trials that are not in a hurry
 
 
 def request(**members: Any) -> dict[str, Any]:
@@ -43,11 +43,11 @@ def request(**members: Any) -> dict[str, Any]:
 
 
 def planned(request: dict[str, Any], clock: float = 1.0) -> FrontDocument:
-    """Return the front of a request, planned by a clock that is so many times slower."""
+    """Return the front of a request, by a clock of so many processor seconds a second."""
     source = TaskSource("fleet", json.dumps(request).encode())
     task = parse_task(source, LIMITS, {})
     assert isinstance(task.subject, UnmeasuredFleet)
-    watch = Watch[FrontDocument](clock=lambda: time.monotonic() / clock)
+    watch = Watch[FrontDocument](clock=lambda: time.process_time() / clock)
     return run_fleet(task.subject, task, Tools({}, LIMITS), watch)
 
 
