@@ -74,6 +74,11 @@ export class Orders {
     return this.#added.map(({ told: _, ...order }) => order);
   }
 
+  /** Gives an order the window that was promised. */
+  promise(row, window) {
+    this.#write(row, { ...this.#added[row], window });
+  }
+
   /** Adds the rows of a pasted table; says what is wrong with it where it cannot be read. */
   async paste(file) {
     const help = element("orders-help");

@@ -12,6 +12,7 @@ import { rounded } from "../inputs/places.js";
 import { pastedFile } from "../opening/reading.js";
 import { showFaults } from "../planning/faults.js";
 import { changesOf } from "./changes.js";
+import { Offers } from "./offers.js";
 import { Orders } from "./orders.js";
 import { progressOf, travelled } from "./progress.js";
 import { FleetRest, bodyOf } from "./rest.js";
@@ -31,6 +32,7 @@ export class Today {
   #result;
   #list;
   #orders;
+  #offers;
   #found = null; // the front whose plans may be driven, `{ state, way, asked }`
   #driven = null; // the plan that is driven
   #proposed = null; // what is proposed instead, `{ state, way, plan, at }`
@@ -55,6 +57,7 @@ export class Today {
     };
     this.#list = new VanList(element("vans"), { onTurn: turn(this.#turned), onCancel: turn(this.#cancelled), onOut: turn(this.#out) });
     this.#orders = new Orders(service, result.wait);
+    this.#offers = new Offers(service, () => ({ ...this.asked, asked: this.#driven.asked, clock: this.#clock }), (row, window) => this.#orders.promise(row, window));
     element("today").addEventListener("toggle", () => this.#open());
     element("today-now").addEventListener("change", ({ target }) => this.#readNow(target.value.trim()));
     element("replan-fleet").addEventListener("click", onReplan);
@@ -81,6 +84,8 @@ export class Today {
     element("changes").hidden = true;
     if (!found) return (element("today").open = false);
     this.#orders.open(found.asked);
+    this.#offers.clear();
+    element("offer").hidden = !found.asked.clock || !this.#orders.canAdd;
     element("today-clock").hidden = !found.asked.clock;
     if (!found.asked.clock) this.#now = null;
   }

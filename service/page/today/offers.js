@@ -1,0 +1,79 @@
+/** Offer a time for a new order: which slots are possible beside the plan that is driven, and what each costs. */
+
+import { amount } from "../common/amounts.js";
+import { SECONDS } from "../common/durations.js";
+import { made } from "../common/elements.js";
+import { counted } from "../common/numbers.js";
+import { clockUnit, withUnits } from "../fleet/units.js";
+import { Problem } from "../planning/service.js";
+
+const element = (id) => document.getElementById(id);
+const [HOUR, DAY] = [3600, 86400]; // seconds
+
+/** The row of the last order that has no time yet; -1 if all have one. */
+export const openRow = (orders) => orders.findLastIndex(({ window, windows = [] }) => !window && !windows.length);
+
+/**
+ * What is asked of the service: the last order without a time, every hour until the last vehicle is back.
+ *
+ * @param {object} body the request to replan, with all new orders
+ * @param {object} asked the request that the plan is of
+ */
+export function offersBody({ add, seed, time_limit, ...body }, asked) {
+  const row = openRow(add);
+  const second = SECONDS.get(clockUnit(asked)) ?? 1;
+  const shifts = asked.vehicles.flatMap(({ shift, shifts = [] }) => (shift ? [shift] : shifts));
+  const from = Math.max(body.now ?? 0, shifts.length ? Math.min(...shifts.map(([begin]) => begin)) : 0);
+  const to = shifts.length === 0 ? DAY / second : Math.max(...shifts.map(([, end]) => end));
+  const begin = Math.floor((from * second) / HOUR) * (HOUR / second);
+  return { ...body, add: add.toSpliced(row, 1), order: add[row], every: { from: begin, to, length: HOUR / second } };
+}
+
+/** An offer in words, such as "9:00–10:00: +1.2 km, +3 min"; what does not rise is left out. */
+export function offerSaid({ slot, choices }, objectives, clock) {
+  const rises = choices[0].rise.map((rise, m) => (Math.abs(rise) < 1e-9 ? "" : `${rise < 0 ? "−" : "+"}${amount(Math.abs(rise), objectives[m])}`));
+  return `${slot.map(clock.said).join("–")}: ${rises.filter(Boolean).join(", ") || "costs nothing"}`;
+}
+
+export class Offers {
+  #service;
+
+  /**
+   * @param {() => { id: string, body: object, asked: object, clock: object }} day throws a Problem where something cannot be read
+   * @param {(row: number, window: number[]) => void} onTake
+   */
+  constructor(service, day, onTake) {
+    this.#service = service;
+    element("offer").addEventListener("click", () => this.#ask(day, onTake));
+  }
+
+  clear() {
+    element("offers").replaceChildren();
+    element("offers-said").textContent = "";
+  }
+
+  async #ask(day, onTake) {
+    this.clear();
+    try {
+      const { id, body, asked, clock } = day();
+      const row = openRow(body.add);
+      if (row < 0) return this.#say("Add an order without a window, and its place.");
+      const { offers, objectives } = await this.#service.post({ path: `front/${id}/offers`, body: offersBody(body, asked) });
+      const possible = offers.filter((each) => each.possible);
+      const units = withUnits(objectives, asked);
+      this.#say(`${body.add[row].id}: ${counted(possible.length, "hour is", "hours are")} possible. Press one to promise it, and replan.`);
+      const take = ({ slot }) => {
+        this.clear();
+        onTake(row, slot);
+      };
+      element("offers").replaceChildren(...possible.map((each) => made("li", {}, made("button", { type: "button", textContent: offerSaid(each, units, clock), onclick: () => take(each) }))));
+    } catch (error) {
+      if (!(error instanceof Problem)) throw error;
+      this.#say(`No times: ${error.message}.`);
+    }
+  }
+
+  #say(text) {
+    element("offers-said").textContent = text;
+  }
+}
