@@ -50,7 +50,9 @@ class TrainingConfig:
     objective: str = setting(
         "weighted-sum", "lagrangian (the paper's), weighted-sum, imitation or repairs"
     )
-    objectives: int = setting(2, "objectives of an instance, two to four; more than two of PA-One")
+    objectives: int = setting(
+        2, "objectives of an instance, two to four; more than two of PA-One; of repairs the most"
+    )
     baseline: str = setting("shared", "critic (the paper's) or shared: the mean over starts")
     steps: int = setting(10_000, "steps in all, at whose end the learning rate ends")
     instances: int = setting(8, "instances a step")

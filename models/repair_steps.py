@@ -1,8 +1,10 @@
 """Training steps on repairs: policy gradient on the gain of joining a cut tour again.
 
-The states are those of real repairs: tours as the actor builds them, then after one of its own
-repairs, after two, and so on. Now and then the actor also learns from building tours, so that it
-does not forget how.
+The states are those of real repairs: a front of tours as the actor builds them, then after one of
+its own repairs, after two, and so on, in which the rows share their tours. The actor learns from
+some of the rows at a time. What it gains is what a new tour is worth to all rows of the front, not
+only to the row whose tour it repaired. Now and then the actor also learns from building tours, so
+that it does not forget how.
 """
 
 from collections.abc import Sequence
@@ -13,6 +15,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from models.checkpoint import Run
+from models.data.preferences import random_preferences
 from models.networks.joining.costs import Problem
 from models.networks.joining.fragments import Fragments
 from models.networks.joining.repairs import (
@@ -24,7 +27,7 @@ from models.networks.joining.repairs import (
     repair_problem,
 )
 from models.networks.pa_one import OneActor, rows_of
-from models.networks.rows import repeated, split, stacked
+from models.networks.rows import Rows, changed, repeated, split, stacked
 from models.rollout_pa_one import joined_by_chance
 from models.rollout_repairs import (
     RepairState,
@@ -35,11 +38,13 @@ from models.rollout_repairs import (
     state_after_repair,
     unrepaired,
 )
-from models.steps import StepMeans, drawn_instances, drawn_preferences, learn_to_build, update
+from models.shared_tours import gains_for_rows
+from models.steps import StepMeans, drawn_instances, learn_to_build, update
 
 _REPAIRS = 60  # of each tour, one after another
 _BUILT_EVERY = 8  # repairs
-_LEAK = 0.25  # how much a longer tour counts, if one that is as much shorter counts 1
+_ROWS_A_DRAW = 4  # of which one is learned from
+_LENGTH = 0.25  # how much a shorter tour counts, if as great a gain of a row counts 1
 
 
 class _Chain(NamedTuple):
@@ -51,20 +56,31 @@ class _Chain(NamedTuple):
 
 
 def repair_step(run: Run) -> StepMeans:
-    """Draw instances, build their tours, and descend after each of many repairs."""
-    actor = cast(OneActor, run.actor)
-    preferences = rows_of(drawn_preferences(run))
-    chains = [_begun(actor, instance, preferences) for instance in drawn_instances(run)]
+    """Draw instances, build their tours, and descend after each of many repairs.
+
+    The numbers of objectives, from two to the configuration's, take turns.
+    """
+    actor, config = cast(OneActor, run.actor), run.config
+    objectives = 2 + run.step % (config.objectives - 1)
+    rows = rows_of(_preferences(run, config.preferences, objectives))
+    few = -(-config.preferences // _ROWS_A_DRAW)
+    chains = [_begun(actor, instance, rows) for instance in drawn_instances(run, objectives)]
     losses = []
     for number in torch.arange(_REPAIRS):
         if number % _BUILT_EVERY == 0:
-            learn_to_build(run)
-        chains, loss = _learned(run, chains, number)
+            instances = drawn_instances(run, objectives)
+            learn_to_build(run, instances, _preferences(run, few, objectives))
+        drawn = torch.randperm(config.preferences, generator=run.instance_generator)[:few]
+        chains, loss = _learned(run, chains, number, drawn.to(run.device))
         losses.append(loss)
     run.step += 1
     lengths = torch.cat([_weighted(chain, chain.state.points) for chain in chains])
     mean_loss = sum(losses) / len(losses)
     return StepMeans(mean_loss, objective=lengths.mean().item(), violation=0.0, multiplier=0.0)
+
+
+def _preferences(run: Run, count: int, objectives: int) -> Tensor:
+    return random_preferences(count, objectives, run.instance_generator, run.device)
 
 
 @torch.no_grad()
@@ -75,9 +91,9 @@ def _begun(actor: OneActor, instance: Tensor, rows: Float[Tensor, "r m"]) -> _Ch
 
 
 def _learned(
-    run: Run, chains: Sequence[_Chain], number: Int[Tensor, ""]
+    run: Run, chains: Sequence[_Chain], number: Int[Tensor, ""], rows: Int[Tensor, " d"]
 ) -> tuple[list[_Chain], float]:
-    """Descend by repairs drawn for each tour; return the chains after the greedy repair."""
+    """Descend by repairs drawn for these rows; return the chains after the greedy repair."""
     actor, times = cast(OneActor, run.actor), run.config.starts
     sizes = sizes_of_cut(chains[0].least.shape[1], int(number))
     with torch.no_grad():
@@ -91,18 +107,20 @@ def _learned(
         ]
         costs = stacked([between for between, _ in problems])
         fragments = stacked([left for _, left in problems])
-    costs_of_drawn = repeated(costs, times)
+        few_costs = stacked([_of(rows, between) for between, _ in problems])
+        few_fragments = stacked([_of(rows, left) for _, left in problems])
+    costs_of_drawn = repeated(few_costs, times)
     drawn, likelihoods = joined_by_chance(
         actor.judgement(actor.repair_joinings),
         costs_of_drawn,
-        repeated(fragments, times),
+        repeated(few_fragments, times),
         run.sampling_generator,
         enough=ENOUGH,
     )
     with torch.no_grad():
         drawn_by_chain = split(last_two_joined(costs_of_drawn, drawn), len(chains))
         advantages = [
-            _advantages(chain, repeated(each, times), whole)
+            _advantages(chain, rows, repeated(_of(rows, each), times), whole)
             for chain, each, whole in zip(chains, cuts, drawn_by_chain, strict=True)
         ]
     loss = (torch.cat(advantages) * likelihoods).mean()
@@ -114,16 +132,22 @@ def _learned(
     return after, loss.item()
 
 
-def _advantages(chain: _Chain, cuts: Cuts, whole: Fragments) -> Float[Tensor, " rt"]:
-    """Return how much worse each tour is than the mean of those that were drawn with it."""
-    r, n = chain.state.tours.shape
-    before = _weighted(chain, chain.state.points)[:, None]
+def _of(rows: Int[Tensor, " d"], every: Rows) -> Rows:
+    return changed(every, lambda member: member.index_select(0, rows))
+
+
+def _advantages(
+    chain: _Chain, rows: Int[Tensor, " d"], cuts: Cuts, whole: Fragments
+) -> Float[Tensor, " dt"]:
+    """Return how much worse each tour is than the mean of those drawn for the same row."""
+    kept, weights = chain.state.points, chain.problem.weights
     tours = laid_out(cuts, whole)
-    rows = chain.problem.weights.repeat_interleave(len(tours) // r, dim=0)
-    points = cheaper_way(chain.problem.costs, rows, tours)[1]
-    lengths = (points * rows).sum(dim=1).view(r, -1)
-    longer = n * (lengths / before - 1)  # in edges of the mean length
-    objectives = torch.where(longer < 0, longer, _LEAK * longer)
+    by_tour = weights[rows].repeat_interleave(len(tours) // len(rows), dim=0)
+    points = cheaper_way(chain.problem.costs, by_tour, tours)[1]
+    before = _weighted(chain, kept)[rows, None]
+    longer = (points * by_tour).sum(dim=1).view(len(rows), -1) / before - 1
+    gains = gains_for_rows(weights, kept, points).view_as(longer)
+    objectives = chain.state.tours.shape[1] * (_LENGTH * longer - gains)  # in edges of mean length
     return (objectives - objectives.mean(dim=1, keepdim=True)).flatten()
 
 

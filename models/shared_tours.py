@@ -29,11 +29,7 @@ def best_for_rows(weights: Float[Tensor, "r o"], points: Float[Tensor, "p o"]) -
     """
     r = weights.shape[0]
     own = (points[:r] * weights).sum(dim=1, keepdim=True)
-    parts = (weights / own)[..., None] * points.T
-    squares = parts * parts
-    fourths = squares * squares
-    has_two = torch.ones_like(weights[0]).sum() < _FLAT  # exported as it is written
-    norms = torch.where(has_two, fourths * fourths, squares).sum(dim=1)
+    norms = _norms(weights / own, points)
     least = norms.amin(dim=1, keepdim=True)
     own_norms = norms.gather(1, _numbers(own))
     others = (norms <= (1 + _ROUNDING_OF_NORMS) * least).long().argmax(dim=1, keepdim=True)
@@ -56,6 +52,26 @@ def worth_remembering(
     is_later = index >= index[r:, None]
     closest = (factors.amax(dim=1) + _FAR * is_later.to(factors)).amin(dim=1)
     return closest.topk(r).indices
+
+
+def gains_for_rows(
+    weights: Float[Tensor, "r o"], kept: Float[Tensor, "r o"], points: Float[Tensor, "p o"]
+) -> Float[Tensor, " p"]:
+    """Return by what share each point is better for a row than what it keeps, over all rows."""
+    scaled = weights / (kept * weights).sum(dim=1, keepdim=True)
+    own = _norms(scaled, kept).diagonal()[:, None]
+    exponent = 8 if weights.shape[1] < _FLAT else 2
+    shorter = 1 - (_norms(scaled, points) / own) ** (1 / exponent)
+    return shorter.clamp(min=0).sum(dim=0)
+
+
+def _norms(scaled: Float[Tensor, "r o"], points: Float[Tensor, "p o"]) -> Float[Tensor, "r p"]:
+    """Return the norm of each point's lengths, times the weights of each row, to its exponent."""
+    parts = scaled[..., None] * points.T
+    squares = parts * parts
+    fourths = squares * squares
+    has_two = torch.ones_like(scaled[0]).sum() < _FLAT  # exported as it is written
+    return torch.where(has_two, fourths * fourths, squares).sum(dim=1)
 
 
 def _numbers(rows: Float[Tensor, "r 1"]) -> Int[Tensor, "r 1"]:

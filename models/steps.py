@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
+from jaxtyping import Float
 from torch import Generator, Tensor, nn
 from torch.optim import Optimizer
 
@@ -34,16 +35,15 @@ class StepMeans:
 
 def policy_gradient_step(run: Run) -> StepMeans:
     """Take one step of Algorithm 1, for all instances and preferences at once."""
-    means = learn_to_build(run)
+    means = learn_to_build(run, drawn_instances(run), drawn_preferences(run))
     run.step += 1
     return means
 
 
-def learn_to_build(run: Run) -> StepMeans:
-    """Descend once by the policy gradient of tours that the actor builds."""
+def learn_to_build(run: Run, instances: Tensor, preferences: Float[Tensor, "k m"]) -> StepMeans:
+    """Descend once by the policy gradient of tours that the actor builds of these instances."""
     config = run.config
     run.actor.train()
-    instances, preferences = drawn_instances(run), drawn_preferences(run)
     with _precision(run):
         tours, likelihoods = run.actor.sampled_tours_with_log_likelihoods(
             instances, preferences, config.starts, run.instance_generator, run.sampling_generator
@@ -61,12 +61,14 @@ def learn_to_build(run: Run) -> StepMeans:
     update(run, loss)
 
     violations = violation(points, by_tour)
-    run.multipliers = ascended(
-        run.multipliers,
-        violations.unflatten(1, (config.preferences, config.starts)).transpose(1, 2).flatten(0, 1),
-        config.ascent_rate,
-        (config.least_multiplier, config.most_multiplier),
-    )
+    if config.objective == "lagrangian":
+        by_start = violations.unflatten(1, (config.preferences, config.starts)).transpose(1, 2)
+        run.multipliers = ascended(
+            run.multipliers,
+            by_start.flatten(0, 1),
+            config.ascent_rate,
+            (config.least_multiplier, config.most_multiplier),
+        )
     return StepMeans(
         loss=loss.item(),
         objective=objectives.mean().item(),
@@ -104,12 +106,16 @@ def descend(optimizer: Optimizer, network: nn.Module, loss: Tensor, clip_gradien
     optimizer.step()
 
 
-def drawn_instances(run: Run) -> Tensor:
-    """Draw instances of the kind that the actor reads, all with the same number of cities."""
+def drawn_instances(run: Run, objectives: int | None = None) -> Tensor:
+    """Draw instances of the kind that the actor reads, all with the same number of cities.
+
+    They have as many objectives as the configuration says, unless others are given.
+    """
     config, generator = run.config, run.instance_generator
     n = city_count(config.least_cities, config.most_cities, generator)
     if run.actor.reads == "coordinates":
-        return uniform_cities(config.instances, n, generator, run.device, config.objectives)
+        objectives = objectives or config.objectives
+        return uniform_cities(config.instances, n, generator, run.device, objectives)
     drawn = np.stack(
         [any_matrices(n, _numpy_generator(generator)) for _ in range(config.instances)]
     )
@@ -134,7 +140,7 @@ def drawn_preferences(run: Run) -> Tensor:
 def _baseline(run: Run, instances: Tensor, preferences: Tensor, objectives: Tensor) -> Tensor:
     """Return the expected objective of each tour: the critic's, or the mean over the starts."""
     if run.config.baseline == "shared":
-        by_start = objectives.unflatten(1, (run.config.preferences, run.config.starts))
+        by_start = objectives.unflatten(1, (len(preferences), run.config.starts))
         return by_start.mean(dim=-1, keepdim=True).expand_as(by_start).flatten(1)
     predicted: Tensor = run.critic(instances, preferences)
     error = ((predicted - objectives) ** 2).mean()

@@ -78,7 +78,7 @@ def test_learning_from_repairs_makes_repaired_tours_shorter(
         instances=1,
         least_cities=9,
         most_cities=9,
-        preferences=4,
+        preferences=12,
         learning_rate=3e-3,
         warmup=1,
     )
