@@ -128,7 +128,7 @@ actor ($instance $given, float[k, m] preferences, int64 repairs)
             near = ConstantOfShape (to_look_at)
             count = ConstantOfShape (to_cut)
             cut_cities, turned, places, gaps, $between, $given_to_rejoin, is_given = paretour.Cut
-                ($problem, least, tours_in, freshness_in, number, near, count)
+                ($problem, least, tours_in, points_in, freshness_in, number, near, count)
             $slices_of_given
             $after_cut, is_cut = paretour.RejoinFirst ($between, $sliced_given)
             $rejoining

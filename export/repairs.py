@@ -19,6 +19,7 @@ from models.networks.joining.shortlists import RowLists, Shortlists
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import (
     RepairState,
+    as_repaired,
     cities_to_cut,
     state_after_repair,
     unrepaired,
@@ -43,20 +44,21 @@ class Cut(nn.Module):
         self,
         given: tuple[Tensor, ...],
         least: Tensor,
-        tours: Tensor,
-        freshness: Tensor,
+        places: tuple[Tensor, Tensor, Tensor],
         number: Tensor,
         sizes: tuple[Tensor, Tensor],
     ) -> tuple[Tensor, ...]:
         """Return the cities, the cuts, the costs, the fragments, and whether to join them.
 
-        There are as many cities near, and of them to cut, as the sizes have entries.
+        Places are tours, their lengths and the freshness of their cities. There are as many cities
+        near, and of them to cut, as the sizes have entries.
         """
         problem = as_problem(given)
+        tours, points, freshness = places
         near, count = (size.shape[0] for size in sizes)
         cities = cities_to_cut(problem, least, (tours, freshness), number, (near, count))
         cuts = cut(tours, cities)
-        between, fragments = repair_problem(problem, cuts)
+        between, fragments = repair_problem(as_repaired(problem, points), cuts)
         return cities, *cuts, *present(between), *left_of(fragments)
 
 
@@ -149,8 +151,8 @@ def repair_parts(
         ),
         "Cut": (
             Cut(),
-            (as_tensors(problem), least, tours, freshness, torch.tensor(0), sizes),
-            [*names.problem, "least", "tours", "freshness", "number", "near", "count"],
+            (as_tensors(problem), least, (tours, points, freshness), torch.tensor(0), sizes),
+            [*names.problem, "least", "tours", "points", "freshness", "number", "near", "count"],
             ["cities", *CUTS, *names.costs, *names.after_round],
         ),
         "Rejoin": (

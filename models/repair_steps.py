@@ -31,6 +31,7 @@ from models.networks.rows import Rows, changed, repeated, split, stacked
 from models.rollout_pa_one import joined_by_chance
 from models.rollout_repairs import (
     RepairState,
+    as_repaired,
     cheaper_way,
     cities_to_cut,
     least_costs,
@@ -38,7 +39,7 @@ from models.rollout_repairs import (
     state_after_repair,
     unrepaired,
 )
-from models.shared_tours import gains_for_rows
+from models.shared_tours import gains_for_rows, slopes_for_rows
 from models.steps import StepMeans, drawn_instances, learn_to_build, update
 
 _REPAIRS = 60  # of each tour, one after another
@@ -103,7 +104,8 @@ def _learned(
         ]
         cuts = [cut(chain.state.tours, each) for chain, each in zip(chains, cities, strict=True)]
         problems = [
-            repair_problem(chain.problem, each) for chain, each in zip(chains, cuts, strict=True)
+            repair_problem(as_repaired(chain.problem, chain.state.points), each)
+            for chain, each in zip(chains, cuts, strict=True)
         ]
         costs = stacked([between for between, _ in problems])
         fragments = stacked([left for _, left in problems])
@@ -142,10 +144,12 @@ def _advantages(
     """Return how much worse each tour is than the mean of those drawn for the same row."""
     kept, weights = chain.state.points, chain.problem.weights
     tours = laid_out(cuts, whole)
-    by_tour = weights[rows].repeat_interleave(len(tours) // len(rows), dim=0)
+    times = len(tours) // len(rows)
+    by_tour = weights[rows].repeat_interleave(times, dim=0)
     points = cheaper_way(chain.problem.costs, by_tour, tours)[1]
-    before = _weighted(chain, kept)[rows, None]
-    longer = (points * by_tour).sum(dim=1).view(len(rows), -1) / before - 1
+    slopes = slopes_for_rows(weights, kept)[rows]
+    before = (kept[rows] * slopes).sum(dim=1, keepdim=True)
+    longer = (points.unflatten(0, (-1, times)) * slopes[:, None]).sum(dim=2) / before - 1
     gains = gains_for_rows(weights, kept, points).view_as(longer)
     objectives = chain.state.tours.shape[1] * (_LENGTH * longer - gains)  # in edges of mean length
     return (objectives - objectives.mean(dim=1, keepdim=True)).flatten()

@@ -20,7 +20,7 @@ from torch import Generator, Tensor, nn
 from models.networks.joining.candidates import Candidates
 from models.networks.joining.costs import Matrices, Planes, Problem, along, weighted_sums
 from models.networks.joining.fragments import NEVER
-from models.shared_tours import best_for_rows, worth_remembering
+from models.shared_tours import best_for_rows, slopes_for_rows, worth_remembering
 
 
 class Cut(NamedTuple):
@@ -80,6 +80,11 @@ def unrepaired(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> RepairSta
     """Return the state before the first repair, of tours as they were built."""
     points = edge_lengths(costs, tours).sum(dim=2).T
     return RepairState(tours, points, tours, points, torch.ones_like(tours, dtype=points.dtype))
+
+
+def as_repaired(problem: Problem, points: Float[Tensor, "r o"]) -> Problem:
+    """Return the problem under the weights by which repairs make tours of these lengths better."""
+    return problem._replace(weights=slopes_for_rows(problem.weights, points))
 
 
 def edge_lengths(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Float[Tensor, "o r n"]:

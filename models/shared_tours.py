@@ -5,18 +5,23 @@ best of all tours for its own preference. Taken by their weighted sums alone, mo
 share a few tours. So the lengths, times the weights, are compared by a norm with a high exponent:
 it prefers tours that lie along the preference of the row.
 
+A repair makes a row's tour better by its weighted sum, not by the norm. So it has weights of its
+own, the slopes of the norm at this tour: an objective in which the tour is long for its row weighs
+more.
+
 The tours that no row keeps are candidates for a memory of as many tours as there are rows. It
 keeps those that the other tours come least close to dominating.
 """
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
 ROUNDING = 2e-6  # of a length: the error of sums of float32
 _ROUNDING_OF_NORMS = 2e-5  # of sums of eighth powers
 _FLAT = 2.5  # objectives: fewer are two
 _LEAST_LENGTH = 1e-9
+_LEAST_PART = 1e-3  # of the mean part of a weighted sum
 _FAR = 1e3  # times as long
 
 
@@ -54,6 +59,23 @@ def worth_remembering(
     return closest.topk(r).indices
 
 
+def slopes_for_rows(
+    weights: Float[Tensor, "r o"], points: Float[Tensor, "r o"]
+) -> Float[Tensor, "r o"]:
+    """Return the slopes of the norm of each row at its own point, as weights that add to one.
+
+    Under two objectives they are less steep than those of the norm, by a power: it gains as much,
+    and close comparisons are rarer.
+    """
+    parts = points * weights
+    least = _LEAST_PART * parts.mean(dim=1, keepdim=True).clamp(min=_LEAST_LENGTH)
+    parts = torch.maximum(parts, least)
+    shares = parts / parts.sum(dim=1, keepdim=True)
+    squares = shares * shares
+    slopes = weights * torch.where(_has_two(weights), squares * squares, shares)
+    return slopes / slopes.sum(dim=1, keepdim=True)
+
+
 def gains_for_rows(
     weights: Float[Tensor, "r o"], kept: Float[Tensor, "r o"], points: Float[Tensor, "p o"]
 ) -> Float[Tensor, " p"]:
@@ -70,8 +92,12 @@ def _norms(scaled: Float[Tensor, "r o"], points: Float[Tensor, "p o"]) -> Float[
     parts = scaled[..., None] * points.T
     squares = parts * parts
     fourths = squares * squares
-    has_two = torch.ones_like(scaled[0]).sum() < _FLAT  # exported as it is written
-    return torch.where(has_two, fourths * fourths, squares).sum(dim=1)
+    return torch.where(_has_two(scaled), fourths * fourths, squares).sum(dim=1)
+
+
+def _has_two(weights: Float[Tensor, "r o"]) -> Bool[Tensor, ""]:
+    """Return whether there are two objectives, written so that their number stays free."""
+    return torch.ones_like(weights[0]).sum() < _FLAT
 
 
 def _numbers(rows: Float[Tensor, "r 1"]) -> Int[Tensor, "r 1"]:

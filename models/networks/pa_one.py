@@ -56,6 +56,7 @@ from models.networks.rows import stacked
 from models.rollout_pa_one import Judgement
 from models.rollout_repairs import (
     RepairState,
+    as_repaired,
     cities_to_cut,
     from_the_first_city,
     least_costs,
@@ -162,7 +163,7 @@ class OneActor(Actor):
             sizes = sizes_of_cut(tours.shape[1], int(number))
             cities = cities_to_cut(problem, least, places, number, sizes)
             cuts = cut(state.tours, cities)
-            between, fragments = repair_problem(problem, cuts)
+            between, fragments = repair_problem(as_repaired(problem, state.points), cuts)
             joined = self.rejoined(between, fragments)
             new = laid_out(cuts, joined)
             state = state_after_repair(problem.costs, problem.weights, state, cities, new)
