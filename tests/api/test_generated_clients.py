@@ -184,6 +184,7 @@ def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) ->
         "get_tour",
         "list_actors",
         "list_fronts",
+        "offer_slots",
         "plan_coverage",
         "plan_fleet",
         "plan_front",

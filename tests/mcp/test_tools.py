@@ -83,7 +83,7 @@ def test_an_agent_plans_explains_chooses_and_replans(url: str) -> None:
     async def talk() -> None:
         async with agent(url) as client:
             listed = {tool.name: tool for tool in (await client.list_tools()).tools}
-            assert len(listed) == 7
+            assert len(listed) == 8
             assert "at_most" in listed["choose_tour"].input_schema["properties"]
             planned = await call(client, "plan_front", **FRONT)
             front = planned["front"]
