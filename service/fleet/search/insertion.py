@@ -21,7 +21,7 @@ from service.jit import compiled, inlined
 from service.search.local_search import random_below
 
 _NEIGHBOURS = 30  # beside which a stop is tried
-_MORE_TRIPS = 3  # one time in so many, one trip more is tried where the stop fits without
+_SELDOM = 3  # one time in so many, one trip more is tried where the stop fits without
 _FEW = 8  # of them that are in routes: then all routes are tried
 
 
@@ -168,7 +168,7 @@ def _with_reloads(state: State, stop: int, slot: int, before: int, best: Place) 
         best = better_at(state, stop, Spot(slot, before, known, -1), best)
     # A trip more helps where it must, or where what is carried counts; else seldom.
     fits &= direction.load_distance == 0
-    if plan.counts[MORE_TRIPS] == 0 or (fits and random_below(plan.random, _MORE_TRIPS) > 0):
+    if plan.counts[MORE_TRIPS] == 0 or (fits and random_below(plan.random, _SELDOM) > 0):
         return best
     for number in range(problem.reload.shape[1]):
         if problem.reload[kind, number] >= 0 and plan.trips[slot] < problem.trips[kind]:

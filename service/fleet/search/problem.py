@@ -1,14 +1,14 @@
 """A fleet as the arrays that the search reads, and what a direction of the search asks for."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
-from service.fleet.rules import Rules
+from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import VehicleType, Visit
 
 Array = NDArray[np.float64]
@@ -16,16 +16,7 @@ Indices = NDArray[np.int64]
 Nodes = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 
-MEASURES = (
-    "sum",
-    "max",
-    "vehicles",
-    "unassigned",
-    "overtime",
-    "lateness",
-    "imbalance",
-    "load_distance",
-)
+MEASURES: tuple[str, ...] = (*get_args(Over), *get_args(Measure))
 MAX, VEHICLES, UNASSIGNED, IMBALANCE = map(
     MEASURES.index, ("max", "vehicles", "unassigned", "imbalance")
 )

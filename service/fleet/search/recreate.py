@@ -6,7 +6,7 @@ from service.fleet.search.changes import begin_iteration, save_slot
 from service.fleet.search.insertion import best_place
 from service.fleet.search.pairs import best_pair
 from service.fleet.search.problem import Problem
-from service.fleet.search.reloads import load_anew
+from service.fleet.search.reloads import SELDOM, load_anew
 from service.fleet.search.route import measure, measure_with
 from service.fleet.search.ruin import uniform
 from service.fleet.search.spots import Place, Spot, put, take_back
@@ -34,7 +34,6 @@ _MOST_OUTSIDE = 10  # stops outside that an iteration tries to put in
 RANDOM, LARGE, FAR, NEAR, NARROW, SOON, OPENING = 0, 4, 6, 7, 8, 9, 10
 ORDERS = 11
 _FEW_BLINKS, _MANY_BLINKS = 100, 4  # one place in so many for a stop is passed by
-_LOADED_ANEW = 2  # one time in so many, it is chosen anew where vehicles load on changed routes
 _CHANCES = 20  # see _most()
 _OFTEN = 10  # one iteration in so many passes by many places
 
@@ -60,7 +59,7 @@ def recreate(state: State, order: int) -> None:
         if place.slot >= 0:
             save_slot(problem, plan, place.slot)
             _insert(state, stop, place)
-    if problem.reloads and random_below(plan.random, _LOADED_ANEW) == 0:
+    if problem.reloads and random_below(plan.random, SELDOM) == 0:
         for number in range(plan.counts[SAVED]):
             load_anew(state, plan.saved[number])
 

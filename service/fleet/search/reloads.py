@@ -7,6 +7,8 @@ from service.fleet.search.route import measure
 from service.fleet.search.working_plan import State, WorkingPlan, way
 from service.jit import inlined, standalone
 
+SELDOM = 2  # load_anew() is called one time in so many: so plans that load elsewhere are met too
+
 
 @standalone
 def load_anew(state: State, slot: int) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from service.fleet.search.changes import begin_iteration, save_slot
 from service.fleet.search.problem import Indices, Problem
-from service.fleet.search.reloads import load_anew
+from service.fleet.search.reloads import SELDOM, load_anew
 from service.fleet.search.route import measure
 from service.fleet.search.working_plan import (
     OUTSIDE,
@@ -27,7 +27,6 @@ _REMOVED = 10  # stops that an iteration takes out, on the mean
 _LONGEST_STRING = 10
 _SPLIT = 2  # one string in so many leaves stops in its middle
 _STAYING = 100  # one time in so many, more of them
-_LOADED_ANEW = 2  # one time in so many, it is chosen anew where the vehicle loads
 _LONGEST_FIRST = 4  # one ruin in so many begins in the longest route, where that counts
 
 
@@ -117,7 +116,7 @@ def _take_string(state: State, stop: int, longest: float) -> None:
             remove(problem, plan, plan.buffer[place])
     if not measure(state, slot):
         dissolve(state, slot)
-    elif problem.reloads and random_below(plan.random, _LOADED_ANEW) == 0:
+    elif problem.reloads and random_below(plan.random, SELDOM) == 0:
         load_anew(state, slot)
 
 
