@@ -304,13 +304,27 @@ def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
         plan_fleet(fleet, options, shuffler(), watch=Watch(stop=lambda: True))
 
 
+def loading_again(fleet: Fleet) -> Fleet:
+    """Return a fleet whose vehicles hold a fifth of all stops, and may load again."""
+    rules = fleet.rules
+    visits = tuple(
+        replace(each, demand=(int(place > 0),)) for place, each in enumerate(rules.visits)
+    )
+    (van,) = rules.vehicles
+    van = replace(van, count=3, capacity=(5,), reload=(0,), shift=ALWAYS)
+    return Fleet(rules=replace(rules, visits=visits, vehicles=(van,)), costs=fleet.costs)
+
+
 @pytest.mark.parametrize("size", [1, 100])
+@pytest.mark.parametrize("loads", [False, True])
 @pytest.mark.parametrize("over", [("sum", "max"), ("sum", "vehicles")])
 def test_a_plan_that_keeps_most_of_the_driven_one_is_in_its_front(
-    over: tuple[Over, Over], size: int
+    over: tuple[Over, Over], loads: bool, size: int
 ) -> None:
     """The driven plan is hardly longer than the best: such plans are many, and few keep it."""
     fleet = deliveries(24, over, seed=3)
+    if loads:
+        fleet = loading_again(fleet)
     long = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=1500))
     driven = long.plans[len(long.plans) // 2]
     options = FleetOptions(time_limit=inf, iterations=800, driven=driven, size=size)

@@ -13,7 +13,8 @@ from service.search.archive.layout import Archive
 class Driven(NamedTuple):
     """A plan that is driven, by stop: its vehicle's type, and the stop before it, -1 for none.
 
-    A plan keeps most of it where it keeps at least `most` of these steps; -1 for no plan.
+    Where the vehicle loads again before a stop, that is at the place where it loads. A plan that
+    keeps most of it keeps at least `most` of these steps; -1 for no plan.
     """
 
     kind: Nodes  # (n,); -1 if it is not visited
@@ -54,6 +55,6 @@ def _kept_steps(problem: Problem, plan: WorkingPlan, driven: Driven) -> int:
         stop = problem.clients[number]
         slot = plan.route[stop]
         if slot >= 0 and driven.kind[stop] == problem.kind[slot]:
-            before = plan.previous[stop]
+            before = plan.previous[stop] if plan.via[stop] < 0 else plan.via[stop]
             kept += (before if before < n else -1) == driven.before[stop]
     return kept

@@ -13,7 +13,7 @@ from service.fleet.conflicts import no_plan
 from service.fleet.evaluation import violations
 from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.fronts import FleetOptions, front_of, reference_point_of
-from service.fleet.plans import FleetFront, Plan, Route, steps_of
+from service.fleet.plans import FleetFront, Plan, Route, kept_share, steps_of
 from service.fleet.rules import Rules
 from service.fleet.search.annealing import anneal
 from service.fleet.search.directions import Directions, Step
@@ -114,9 +114,11 @@ class RuinSearch:
         return _plan_of(self._archives.plans.tours[self._rows[index]])
 
     def _kept(self) -> tuple[Array, list[Plan]]:
-        kept = self._archives.kept
-        rows = rows_of(kept)
-        return kept.points[rows], [_plan_of(kept.tours[row]) for row in rows]
+        kept, driven = self._archives.kept, self._options.driven
+        assert driven is not None
+        plans = {row: _plan_of(kept.tours[row]) for row in rows_of(kept).tolist()}
+        rows = [row for row, plan in plans.items() if kept_share(driven, plan) >= KEPT]
+        return kept.points[rows], [plans[row] for row in rows]
 
     def _fewest_left_out(self) -> int:
         if not len(self) or not np.isfinite(self._problem.prize).any():
@@ -315,7 +317,10 @@ def _driven(problem: Problem, plan: Plan | None) -> Driven:
     for vehicle, previous, stop in steps:
         kind[stop] = vehicle
         before[stop] = -1 if previous is None else previous
-    return Driven(kind, before, -1 if plan is None else math.ceil(KEPT * len(steps)))
+    # The steps to where a vehicle loads are not counted on the way: a plan may keep them all.
+    loads = sum(not problem.visited[stop] for _, _, stop in steps)
+    most = max(0, math.ceil(KEPT * len(steps)) - loads)
+    return Driven(kind, before, -1 if plan is None else most)
 
 
 def warm_up() -> None:
