@@ -109,8 +109,7 @@ def test_a_dispatchers_day_takes_25_clicks_and_fields(
         other.reload()
         wait_until_planned(other)
         expect(other.locator("#fleet-legend")).to_have_text(shown)
-    page.locator("#link-details").click()
-    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+    with open_page(browser, copied(page, "a link with them")) as other:
         wait_until_planned(other)
         expect(other.locator("#fleet-stops")).to_contain_text("B1 (Bakery)")
 

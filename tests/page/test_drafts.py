@@ -93,8 +93,8 @@ def test_a_tab_left_before_anything_is_shown_opens_an_example(
     browser: Browser, released: str
 ) -> None:
     with open_page(browser, released) as page:
-        page.reload(wait_until="commit")
-        page.reload()
+        page.goto(released, wait_until="commit")
+        page.goto(released)
         wait_until_planned(page)
         expect(page.locator("#example")).not_to_have_value("")
 

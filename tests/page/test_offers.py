@@ -45,6 +45,7 @@ def test_a_time_that_is_promised_is_the_window_of_the_order(window: Page) -> Non
     page, offers = window, window.locator("#offers button")
     left_of_a_planned_day(page)
     page.evaluate(PASTE, "id,lon,lat\nB1,24.95,60.18\n")
+    expect(page.locator("#orders-help")).to_have_text("1 row was read.")
     page.get_by_role("button", name="Offer a time").click()
     expect(offers.first).to_be_visible()
     begin = str(offers.first.text_content()).partition("\u2013")[0]

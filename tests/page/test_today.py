@@ -301,7 +301,7 @@ def order_three(page: Page, known: str) -> None:
     page.locator("#plane-1").click(position={"x": 200, "y": 150})
     page.evaluate(PASTE, f"id,lon,lat\nB1,24.95,60.18\n{known},24.95,60.18\n")
     said = page.locator("#orders-help")
-    expect(said).to_have_text("2 rows were read; 1 of them are stops already.")
+    expect(said).to_have_text("2 rows were read; 1 is a stop of the plan already.")
     page.locator("#add-order").click()
     page.get_by_label("Name of order 3").fill(known)
     page.get_by_label("Name of order 3").press("Tab")

@@ -1,5 +1,6 @@
 /** The orders that have come since a fleet was planned: rows of a table that are typed, clicked on the map, or pasted. */
 
+import { counted } from "../common/numbers.js";
 import { cellText, headed, hintOf, isUnread, rowOf, secondsIn, withText } from "../fleet/cells.js";
 import { columnsOf, isShown } from "../fleet/columns.js";
 import { detailColumns } from "../inputs/details.js";
@@ -147,8 +148,9 @@ export class Orders {
 
 function saidOf(found, fresh) {
   if (!found) return "No rows with a place were found: a table needs the headings id, lon and lat.";
-  const known = found - fresh ? `; ${found - fresh} of them are stops already` : "";
-  return `${found} rows were read${known}.`;
+  const known = found - fresh;
+  const left = known ? `; ${counted(known, "is a stop", "are stops")} of the plan already` : "";
+  return `${counted(found, "row was", "rows were")} read${left}.`;
 }
 
 const refusal = (row, member, detail) => new Problem({ code: "invalid-request", detail, errors: [{ pointer: `/add/${row}/${member}`, detail }] });
