@@ -1,6 +1,7 @@
 """Instances: cities and the costs between them; the lengths of their tours."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -107,7 +108,13 @@ class Instance:
             ordinary = np.stack([np.ptp(box, axis=0).max() for box in self._ordinary_boxes])
         else:
             assert self.matrices is not None
-            ordinary = ordinary_costs(self.matrices, self.extents)
+            step = -(-self.n // SAMPLED)
+            triples = zip(
+                self.matrices, self.matrices[:, ::step, ::step], self.extents, strict=True
+            )
+            ordinary = np.array(
+                [ordinary_cost([costs], some, most) for costs, some, most in triples]
+            )
         return np.where(ordinary > 0, ordinary, 1.0)
 
     @cached_property
@@ -314,22 +321,18 @@ def largest_costs(matrices: Array) -> Array:
     return matrices.max(axis=(1, 2), where=np.isfinite(matrices), initial=0.0)
 
 
-def ordinary_costs(matrices: Array, largest: Array) -> Array:
-    """Return the largest cost of each matrix that is not an outlier, shape (m,).
-
-    An outlier is a cost of more than 100 times the median positive one, among a hundred cities.
+def ordinary_cost(blocks: Iterable[Array], sample: Array, largest: float) -> float:
+    """Return the largest of some costs that is not an outlier: over 100 times the median positive.
 
     Args:
-        matrices: The costs, shape (m, n, n).
-        largest: What largest_costs() returns of them.
+        blocks: All costs.
+        sample: Those among a hundred cities, whose median is taken.
+        largest: The largest of all that are finite.
     """
-    step = -(-matrices.shape[1] // SAMPLED)
-    ordinary = largest.copy()
-    for m, matrix in enumerate(matrices):
-        limit = OUTLYING * _median_positive(matrix[::step, ::step])
-        if largest[m] > limit:
-            ordinary[m] = matrix.max(where=matrix <= limit, initial=0.0)
-    return ordinary
+    limit = OUTLYING * _median_positive(sample)
+    if largest <= limit:
+        return largest
+    return max(float(block.max(where=block <= limit, initial=0.0)) for block in blocks)
 
 
 def _median_positive(costs: Array) -> float:

@@ -60,4 +60,4 @@ def _with_optional_stops(fleet: Fleet) -> Fleet:
         for stop, visit in enumerate(rules.visits)
     )
     relaxed = replace(rules, visits=visits, over=("sum", "unassigned"), layers=(0, 1))
-    return Fleet(rules=relaxed, costs=fleet.costs)
+    return fleet.under(relaxed)

@@ -63,7 +63,7 @@ def network_sequences(fleet: Fleet, constructor: Constructor) -> list[Indices]:
     places = clients if depot is None else np.concatenate(([depot], clients))
     if len(places) < MIN_CONSTRUCTED:
         return [clients]
-    costs = fleet.costs[:, places[:, np.newaxis], places]
+    costs = fleet.among(places)
     if depot is not None and np.array_equal(costs[0], costs[1]):
         # If both costs are equal, every preference leads to the same tour.
         costs = np.stack((costs[0], _angular_costs(costs[0])))
@@ -277,17 +277,21 @@ def _one_route(fleet: Fleet) -> Plan:
     """
     rules = fleet.rules
     vehicle = max(range(len(rules.vehicles)), key=lambda index: rules.vehicles[index].capacity)
-    units = np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
-    with np.errstate(over="ignore"):
-        costs = (fleet.costs / units[:, np.newaxis, np.newaxis]).sum(axis=0)
     deliveries = {each.pickup: each.delivery for each in rules.shipments}
     left = [stop for stop in rules.clients if stop not in deliveries.values()]
     position, stops = rules.vehicles[vehicle].start, list[int]()
     while left:
-        stop = left.pop(0 if position is None else int(costs[position, left].argmin()))
+        stop = left.pop(0 if position is None else int(_away(fleet, position)[left].argmin()))
         stops += [stop, deliveries[stop]] if stop in deliveries else [stop]
         position = stops[-1]
     return Plan((Route(vehicle, tuple(stops)),) if stops else ())
+
+
+def _away(fleet: Fleet, stop: int) -> Array:
+    """Return what the legs from a stop cost in both costs together, in largest legs, shape (n,)."""
+    first, second = np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
+    with np.errstate(over="ignore"):
+        return fleet.legs_from(0, stop) / first + fleet.legs_from(1, stop) / second
 
 
 def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:

@@ -1,42 +1,132 @@
 """A fleet: its rules, the costs between its stops, and the units of its objectives."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.fleet.rules import Measure, Over, Rules
-from service.instance import largest_costs, ordinary_costs
+from service.fleet.straight import Line
+from service.instance import SAMPLED, largest_costs, ordinary_cost
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Rows = Callable[[int], Array]  # returns what the legs from a stop cost, shape (n,)
 LAYERS = 2  # costs of a leg
+_BLOCK = 2**18  # costs that are worked out at once
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fleet:
-    """Rules, and two costs of the legs between the stops, shape (2, n, n).
+    """Rules, and two costs of the legs between n stops: as matrices, or as lines.
 
     `rules.layers` has the number of each objective's costs, 0 or 1. If only one objective has
-    costs, the second costs are those of the clock, or a copy of the first. Costs get a diagonal of
-    0, and are read-only. A leg with an infinite cost is forbidden: both its costs become infinite.
+    costs, the second costs are those of the clock, or a copy of the first. Matrices get a diagonal
+    of 0, and are read-only. A leg with an infinite cost is forbidden: both its costs become
+    infinite.
+
+    Args:
+        rules: The rules.
+        costs: The matrices, shape (2, n, n); without stops, shape (2, 0, 0), if there are lines.
+        lines: The two lines instead of them; none if there are matrices.
     """
 
     rules: Rules
     costs: Array
+    lines: tuple[Line, ...] = ()
+
+    @classmethod
+    def of_lines(cls, rules: Rules, lines: Sequence[Line]) -> "Fleet":
+        """Return a fleet whose legs are lines, which are worked out where they are read."""
+        return cls(rules=rules, costs=np.empty((LAYERS, 0, 0)), lines=tuple(lines))
 
     def __post_init__(self) -> None:
-        shape = (LAYERS, self.rules.n, self.rules.n)
-        if self.costs.shape != shape:
-            raise ValueError(f"costs must have shape {shape}, got {self.costs.shape}")
-        costs = np.where(np.eye(self.rules.n, dtype=np.bool_), 0.0, self.costs)
+        n = 0 if self.lines else self.rules.n
+        if self.costs.shape != (LAYERS, n, n):
+            raise ValueError(f"costs must have shape {(LAYERS, n, n)}, got {self.costs.shape}")
+        costs = np.where(np.eye(n, dtype=np.bool_), 0.0, self.costs)
         if not (costs >= 0).all():
             raise ValueError("costs must be numbers and not negative")
         costs[:, np.isinf(costs).any(axis=0)] = inf
         costs.flags.writeable = False
         object.__setattr__(self, "costs", costs)
+
+    def under(self, rules: Rules) -> "Fleet":
+        """Return the fleet under other rules."""
+        return replace(self, rules=rules)
+
+    def chosen(self, rules: Rules, stops: Indices) -> "Fleet":
+        """Return a fleet of some of the stops, which may repeat."""
+        if self.lines:
+            return Fleet.of_lines(rules, [line.chosen(stops) for line in self.lines])
+        return Fleet(rules=rules, costs=self.among(stops))
+
+    def scaled(self, rules: Rules, shifts: Indices) -> "Fleet":
+        """Return a fleet whose costs are multiplied by powers of two, shape (2,)."""
+        if self.lines:
+            pairs = zip(self.lines, shifts.tolist(), strict=True)
+            return Fleet.of_lines(rules, [line.scaled(shift) for line, shift in pairs])
+        return Fleet(rules=rules, costs=np.ldexp(self.costs, shifts[:, np.newaxis, np.newaxis]))
+
+    def leg(self, layer: int, a: int, b: int) -> float:
+        """Return a cost of a leg."""
+        return float(self.lines[layer].legs(a, b) if self.lines else self.costs[layer, a, b])
+
+    def legs_from(self, layer: int, stop: int) -> Array:
+        """Return a cost of the legs from a stop to all stops, shape (n,)."""
+        return self.lines[layer].legs_from(stop) if self.lines else self.costs[layer, stop]
+
+    def legs_to(self, layer: int, stop: int) -> Array:
+        """Return a cost of the legs from all stops to one, shape (n,)."""
+        return self.lines[layer].legs_from(stop) if self.lines else self.costs[layer, :, stop]
+
+    def among(self, stops: Indices) -> Array:
+        """Return both costs between some stops, shape (2, k, k)."""
+        if self.lines:
+            return np.array([line.legs(stops[:, np.newaxis], stops) for line in self.lines])
+        among: Array = self.costs[:, stops[:, np.newaxis], stops]
+        return among
+
+    def matrices(self) -> Array:
+        """Return all costs, shape (2, n, n)."""
+        return self.among(np.arange(self.rules.n)) if self.lines else self.costs
+
+    def least_paths(self, layer: int, starts: Sequence[int], *, back: bool = False) -> Array:
+        """Return the least cost of a path from any of the starts to each stop, shape (n,). O(n^2).
+
+        Args:
+            layer: The number of the costs.
+            starts: The stops where paths may start.
+            back: Whether paths lead from the stops to the starts instead.
+        """
+        legs = self.legs_to if back else self.legs_from
+        if self.lines:  # no detour is shorter
+            return np.min([legs(layer, start) for start in starts], axis=0, initial=inf)
+        return least_paths(partial(legs, layer), self.rules.n, starts)
+
+    def nearest(self, layer: int) -> tuple[Array, Array]:
+        """Return the least cost of a leg to and from each stop, shape (n,) both. O(n^2)."""
+        to, away = np.full((2, self.rules.n), inf)
+        begin = 0
+        for block in self._blocks(layer):
+            rows = np.arange(begin, begin + len(block))
+            others = np.where(rows[:, np.newaxis] == np.arange(self.rules.n), inf, block)
+            to = np.minimum(to, others.min(axis=0))
+            away[rows] = others.min(axis=1)
+            begin += len(block)
+        return to, away
+
+    def _blocks(self, layer: int) -> Iterator[Array]:
+        """Yield a cost of all legs, some stops after the other, shape (k, n)."""
+        if not self.lines:
+            yield self.costs[layer]
+            return
+        stops = np.arange(self.rules.n)
+        for some in np.array_split(stops, -(-(len(stops) ** 2) // _BLOCK)):
+            yield self.lines[layer].legs(some[:, np.newaxis], stops)
 
     @cached_property
     def forbids(self) -> bool:
@@ -44,25 +134,44 @@ class Fleet:
         return bool(np.isinf(self.costs[0]).any())
 
     @cached_property
-    def needed_legs(self) -> Array:
-        """The least cost, shape (2,), such that legs up to it lead to all stops and back.
-
-        Unreachable stops do not count.
-        """
-        starts = _places([vehicle.start for vehicle in self.rules.vehicles], self.rules)
-        ends = _places([vehicle.end for vehicle in self.rules.vehicles], self.rules)
-        return np.array([max(_least_bound(c, starts), _least_bound(c.T, ends)) for c in self.costs])
-
-    @cached_property
     def largest_legs(self) -> Array:
         """The largest of each cost of a leg in ordinary plans, shape (2,).
 
         Outliers count only if a stop cannot be reached or left without them.
         """
-        largest, needed = largest_costs(self.costs), self.needed_legs
-        ordinary = ordinary_costs(self.costs, largest)
-        legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
-        return np.minimum(legs, largest)
+        return np.array([self._largest_leg(layer) for layer in range(LAYERS)])
+
+    def _largest_leg(self, layer: int) -> float:
+        largest = max(float(largest_costs(block[np.newaxis])[0]) for block in self._blocks(layer))
+        sampled = np.arange(0, self.rules.n, -(-self.rules.n // SAMPLED))
+        ordinary = ordinary_cost(self._blocks(layer), self.among(sampled)[layer], largest)
+        if ordinary == largest:
+            return largest
+        needed = self._needed_leg(layer)
+        return min(needed + ordinary if needed > ordinary else ordinary, largest)
+
+    def _needed_leg(self, layer: int) -> float:
+        """Return the least cost such that legs up to it lead to all stops and back.
+
+        Unreachable stops do not count.
+        """
+        starts = _places([vehicle.start for vehicle in self.rules.vehicles], self.rules)
+        ends = _places([vehicle.end for vehicle in self.rules.vehicles], self.rules)
+        return max(
+            self._least_bound(layer, starts, back=False), self._least_bound(layer, ends, back=True)
+        )
+
+    def _least_bound(self, layer: int, places: Sequence[int], *, back: bool) -> float:
+        """Return the least cost such that legs up to it lead from places to all stops, or back.
+
+        Without places, one such leg must lead to each stop. O(n^2).
+        """
+        if places:
+            legs = partial(self.legs_to if back else self.legs_from, layer)
+            bounds = least_paths(legs, self.rules.n, places, np.maximum)
+        else:
+            bounds = self.nearest(layer)[back]
+        return float(bounds.max(where=np.isfinite(bounds), initial=0.0))
 
     @cached_property
     def scale(self) -> Array:
@@ -92,25 +201,26 @@ class Fleet:
         return float(legs[layer])
 
 
-def least_paths(costs: Array, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:
+def least_paths(legs: Rows, n: int, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:
     """Return the least cost of a path from any of the starts to each stop, shape (n,). O(n^2).
 
     This is Dijkstra's algorithm over arrays.
 
     Args:
-        costs: The costs of legs, shape (n, n); infinite for forbidden legs.
+        legs: Returns the costs of the legs from a stop; infinite for forbidden legs.
+        n: The number of stops.
         starts: The stops where paths may start.
         combine: How the costs of legs make the cost of a path: np.add, or np.maximum.
     """
-    least = np.full(len(costs), inf)
+    least = np.full(n, inf)
     least[list(starts)] = 0.0
-    left = np.ones(len(costs), np.bool_)
-    for _ in range(len(costs)):
+    left = np.ones(n, np.bool_)
+    for _ in range(n):
         nearest = int(np.where(left, least, inf).argmin())
         if not left[nearest] or least[nearest] == inf:
             break
         left[nearest] = False
-        least = np.minimum(least, combine(least[nearest], costs[nearest]))
+        least = np.minimum(least, combine(least[nearest], legs(nearest)))
     return least
 
 
@@ -124,18 +234,6 @@ def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:
     if sum(vehicle.count for vehicle in rules.vehicles) > 1:
         return []
     return [0]
-
-
-def _least_bound(costs: Array, starts: Sequence[int]) -> float:
-    """Return the least cost such that legs up to it lead from the starts to all stops. O(n^2).
-
-    Without starts, one such leg must lead to each stop.
-    """
-    if not starts:
-        steps = np.where(np.eye(len(costs), dtype=np.bool_), inf, costs).min(axis=0)
-        return float(steps.max(where=np.isfinite(steps), initial=0.0))
-    bounds = least_paths(costs, starts, np.maximum)
-    return float(bounds.max(where=np.isfinite(bounds), initial=0.0))
 
 
 def default_reference_point(fleet: Fleet) -> Array:

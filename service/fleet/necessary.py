@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import first_broken
-from service.fleet.fleet import Array, Fleet, least_paths
+from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.plans import Route
 from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
@@ -53,12 +53,12 @@ def least_lengths(fleet: Fleet) -> Array:
     """
     rules = fleet.rules
     required = _required(rules)
-    steps = np.where(np.eye(rules.n, dtype=bool), np.inf, fleet.costs)[list(rules.layers)]
+    nearest = [fleet.nearest(layer) for layer in range(LAYERS)]
     longest = np.array([over == "max" for over in rules.over])
-    least = np.zeros(len(steps))
-    for end, legs in (("start", steps.min(axis=1)), ("end", steps.min(axis=2))):
+    least = np.zeros(len(rules.layers))
+    for number, end in enumerate(("start", "end")):
         if required and all(getattr(vehicle, end) is not None for vehicle in rules.vehicles):
-            of_stops = legs[:, required]
+            of_stops = np.array([nearest[layer][number][required] for layer in rules.layers])
             total = np.where(longest, of_stops.max(axis=1), of_stops.sum(axis=1))
             least = np.maximum(least, total)
     least[[over not in ("sum", "max") for over in rules.over]] = 0.0
@@ -130,7 +130,7 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
         return
     # With another stop on the way, there may be a place for a break.
     vehicles = tuple(replace(each, breaks=()) for each in rules.vehicles)
-    fleet = Fleet(rules=replace(rules, vehicles=vehicles), costs=fleet.costs)
+    fleet = fleet.under(replace(rules, vehicles=vehicles))
     triangle = cache(partial(_triangle_holds, fleet, ended))
     deliveries = {each.pickup: (each.delivery,) for each in rules.shipments}
     pinned = any(visit.vehicles for visit in rules.visits)
@@ -170,10 +170,10 @@ def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
     """Yield the required stops to which no vehicle has a way, and from there a way to its end."""
     if not fleet.forbids:
         return
-    rules, costs = fleet.rules, fleet.costs[0]
+    rules = fleet.rules
     ends = {(vehicle.start, vehicle.end) for vehicle in rules.vehicles}
-    to = {start: _connected(costs, start) for start in {start for start, _ in ends}}
-    back = {end: _connected(costs.T, end) for end in {end for _, end in ends}}
+    to = {start: _connected(fleet, start, back=False) for start in {start for start, _ in ends}}
+    back = {end: _connected(fleet, end, back=True) for end in {end for _, end in ends}}
     deliveries = {each.pickup: each.delivery for each in rules.shipments}
     required = _required(rules)
     for stop in sorted([*required, *(deliveries[s] for s in required if s in deliveries)]):
@@ -186,10 +186,13 @@ def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
             yield Obstacle(sentence, (stop,))
 
 
-def _connected(costs: Array, end: int | None) -> NDArray[np.bool_]:
-    """Return which stops can be reached from one stop, shape (n,); from anywhere, all can."""
-    starts = range(len(costs)) if end is None else [end]
-    connected: NDArray[np.bool_] = np.isfinite(least_paths(costs, starts))
+def _connected(fleet: Fleet, end: int | None, *, back: bool) -> NDArray[np.bool_]:
+    """Return which stops can be reached from one stop, or from which it can, shape (n,).
+
+    From anywhere, all can.
+    """
+    starts = range(fleet.rules.n) if end is None else [end]
+    connected: NDArray[np.bool_] = np.isfinite(fleet.least_paths(0, starts, back=back))
     return connected
 
 
@@ -215,7 +218,7 @@ def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     rules = fleet.rules
     if fleet.forbids:
         return False
-    if rules.limited is None:
+    if rules.limited is None or fleet.lines:
         return True
     costs = fleet.costs[rules.limited]
     slack = 1e-9 * fleet.largest_legs[rules.limited]

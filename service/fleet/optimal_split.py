@@ -48,7 +48,7 @@ def arrays_of(fleet: Fleet) -> FleetArrays:
     loads = loads_of(rules)
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in rules.vehicles]
     return FleetArrays(
-        costs=np.array(fleet.costs, order="C"),
+        costs=np.array(fleet.matrices(), order="C"),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
         demand=loads.demand,

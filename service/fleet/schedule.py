@@ -217,5 +217,4 @@ def trips_of(rules: Rules, route: Route) -> list[list[int]]:
 
 def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
     """Return the costs of the legs of a route in one objective."""
-    costs = fleet.costs[objective]
-    return [float(costs[a, b]) for a, b in pairwise(path_of(fleet.rules, route))]
+    return [fleet.leg(objective, a, b) for a, b in pairwise(path_of(fleet.rules, route))]

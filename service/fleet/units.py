@@ -64,9 +64,8 @@ class Units:
             )
             for vehicle in rules.vehicles
         )
-        costs = np.ldexp(fleet.costs, shifts[:, np.newaxis, np.newaxis])
         scaled = replace(rules, visits=visits, vehicles=vehicles)
-        return cls(Fleet(rules=scaled, costs=costs), shifts)
+        return cls(fleet.scaled(scaled, shifts), shifts)
 
     def points(self, points: Array) -> Array:
         """Return points, shape (..., m), in these units; infinite where these are too small."""

@@ -83,7 +83,6 @@ class _Screen:
         assert rules.clock is not None
         self._fleet, self._rules = slotted.fleet, rules
         self._order, self._visit = slotted.order, rules.visits[slotted.order]
-        self._costs = slotted.fleet.costs[rules.clock]
         self._vehicle = rules.vehicles[places.vehicle]
         self._lenient = slotted.lenient
         self._opens, self._closes = np.array(slotted.slots, np.float64).T
@@ -164,7 +163,8 @@ class _Screen:
         return found
 
     def _leg(self, a: int, b: int) -> float:
-        leg = float(self._costs[a, b])
+        assert self._rules.clock is not None
+        leg = self._fleet.leg(self._rules.clock, a, b)
         return leg if isfinite(leg) else 0.0
 
     def _legs_to(self, before: NDArray[np.int64]) -> Array:

@@ -51,6 +51,4 @@ def with_slots(fleet: Fleet, order: int, slots: Sequence[Span]) -> SlottedFleet:
     copies = [replace(visits[order], windows=(slot,), prize=None) for slot in slots]
     rules = replace(fleet.rules, visits=(*visits, *copies))
     chosen = np.array([*range(fleet.rules.n), *(order for _ in slots)])
-    costs = fleet.costs[:, chosen[:, np.newaxis], chosen]
-    slotted = Fleet(rules=rules, costs=costs)
-    return SlottedFleet(slotted, order, tuple(slots), fleet.scale)
+    return SlottedFleet(fleet.chosen(rules, chosen), order, tuple(slots), fleet.scale)

@@ -111,7 +111,7 @@ class _Looking:
         left = self.until - self.watch.spent
         if left <= 0:
             return None
-        fleet = Fleet(rules=rules, costs=self.fleet.costs)
+        fleet = self.fleet.under(rules)
         ends = min(self.until, self.watch.spent + (_LONGER * self.trial or left))
         ended = self.watch.until(ends).ended
         try:

@@ -13,7 +13,7 @@ from math import inf
 
 import numpy as np
 
-from service.fleet.fleet import Array, Fleet, least_paths
+from service.fleet.fleet import Array, Fleet
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -299,14 +299,13 @@ def _least_longest(fleet: Fleet) -> float:
     rules = fleet.rules
     if rules.swept is None:
         return 0.0
-    costs = fleet.costs[rules.swept]
     there: dict[int | None, Array] = {None: np.zeros(rules.n)}
     back = there.copy()
     for vehicle in rules.vehicles:
         if vehicle.start is not None and vehicle.start not in there:
-            there[vehicle.start] = least_paths(costs, [vehicle.start])
+            there[vehicle.start] = fleet.least_paths(rules.swept, [vehicle.start])
         if vehicle.end is not None and vehicle.end not in back:
-            back[vehicle.end] = least_paths(costs.T, [vehicle.end])
+            back[vehicle.end] = fleet.least_paths(rules.swept, [vehicle.end], back=True)
     ways = [there[vehicle.start] + back[vehicle.end] for vehicle in rules.vehicles]
     required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
     served = np.array([rules.visits[stop].service for stop in required])

@@ -207,10 +207,11 @@ def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
     k = min(_NEAR, len(clients) - 1)
     near = np.zeros((fleet.rules.n, k), np.int32)
     units = np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
-    for stop in clients:
-        there = fleet.costs[:, stop, clients] / units[:, np.newaxis]
-        back = fleet.costs[:, clients, stop] / units[:, np.newaxis]
-        away = np.minimum(there, back).sum(axis=0)
+    for stop in clients.tolist():
+        away = np.zeros(len(clients))
+        for layer, unit in enumerate(units.tolist()):
+            there, back = fleet.legs_from(layer, stop), fleet.legs_to(layer, stop)
+            away += np.minimum(there, back)[clients] / unit
         away[clients == stop] = np.inf
         first = np.argpartition(away, k - 1)[:k] if k else np.empty(0, int)
         near[stop] = clients[first[np.argsort(away[first], kind="stable")]]
