@@ -36,6 +36,7 @@ from service.fleet.search.working_plan import (
     leg,
     link,
     unlink,
+    way,
 )
 from service.jit import compiled, inlined, standalone
 
@@ -126,27 +127,27 @@ def _holds(problem: Problem, plan: WorkingPlan, pickup: int, slot: int, node: in
 def _picked_up(state: State, pickup: int, slot: int, before: int, best: Place) -> Place:
     """Return the better of two places: the best so far, and the best with the pick-up here."""
     problem, plan, _ = state
-    end = len(problem.demand) + 2 * slot + 1
+    end, profile = len(problem.demand) + 2 * slot + 1, problem.profile[slot]
     a, following = problem.place[before], plan.next[before]
     span, kept = Span(0.0, 0.0, 0.0), True
     if problem.clock >= 0:
-        there = leg(problem, a, pickup, problem.clock)
-        span, kept = joined(head_at(plan, before), there, stay(problem, pickup))
+        there = leg(problem, profile, a, pickup, problem.clock)
+        span, kept = joined(head_at(plan, before), there, stay(problem, profile, pickup))
     if not kept:
         return best
     b = problem.place[following]
-    first = leg(problem, a, pickup, 0) + leg(problem, pickup, b, 0) - plan.step[following, 0]
-    second = leg(problem, a, pickup, 1) + leg(problem, pickup, b, 1) - plan.step[following, 1]
+    first = way(problem, profile, a, pickup, b, 0) - plan.step[following, 0]
+    second = way(problem, profile, a, pickup, b, 1) - plan.step[following, 1]
     at, carried = pickup, 0.0
     for _ in range(plan.size[slot] + 1):
         begun = _Begun(before, at, span, first, second, carried)
         best = _delivered(state, pickup, slot, begun, best)
         if following == end or not _holds(problem, plan, pickup, slot, following):
             break
-        carried += leg(problem, at, following, 0)
+        carried += leg(problem, profile, at, following, 0)
         if problem.clock >= 0:
-            time = leg(problem, at, following, problem.clock)
-            span, kept = joined(span, time, stay(problem, following))
+            time = leg(problem, profile, at, following, problem.clock)
+            span, kept = joined(span, time, stay(problem, profile, following))
             if not kept:
                 break
         at = following
@@ -160,29 +161,29 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
     problem, plan, direction = state
     if blinks(plan):
         return best
-    delivery, at, kind = problem.delivery[pickup], begun.at, problem.kind[slot]
+    delivery, at, profile = problem.delivery[pickup], begun.at, problem.profile[slot]
     after = plan.next[begun.before if at == pickup else at]
     b = problem.place[after]
-    to, away = leg(problem, at, delivery, 0), leg(problem, delivery, b, 0)
-    detour = to + away - leg(problem, at, b, 0)
+    to, away = leg(problem, profile, at, delivery, 0), leg(problem, profile, delivery, b, 0)
+    detour = to + away - leg(problem, profile, at, b, 0)
     first = begun.first + detour
     if first >= 0.5 * problem.forbidden:
         return best
-    second = leg(problem, at, delivery, 1) + leg(problem, delivery, b, 1) - leg(problem, at, b, 1)
+    second = way(problem, profile, at, delivery, b, 1) - leg(problem, profile, at, b, 1)
     second += begun.second + plan.value[slot, SECOND]
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0:
         onto = plan.ahead[plan.next[begun.before]]
         loaded += problem.demand[pickup, 0] * (begun.carried + to)
         loaded += onto * begun.first + plan.ahead[after] * detour
-    first += plan.value[slot, FIRST]
-    end = 0.0
+    first, end = first + plan.value[slot, FIRST], 0.0
     if problem.clock >= 0:
         time, end = _timed(problem, plan, slot, begun, delivery)
         if time == np.inf:
             return best
         first = time if problem.clock == 0 else first
         second = time if problem.clock == 1 else second
+    kind = problem.kind[slot]
     if _is_over(first if problem.limited == 0 else second, problem.longest[kind], end):
         return best
     overtime = max(0.0, end - problem.shift_end[kind])
@@ -201,12 +202,13 @@ def _timed(
 
     The time is infinite where a window is missed.
     """
-    after = plan.next[begun.before] if begun.at == problem.pickup[delivery] else plan.next[begun.at]
-    there = leg(problem, begun.at, delivery, problem.clock)
-    span, kept = joined(begun.span, there, stay(problem, delivery))
+    profile, before = problem.profile[slot], begun.at
+    after = plan.next[begun.before if before == problem.pickup[delivery] else before]
+    there = leg(problem, profile, before, delivery, problem.clock)
+    span, kept = joined(begun.span, there, stay(problem, profile, delivery))
     if not kept:
         return np.inf, 0.0
-    onward = leg(problem, delivery, problem.place[after], problem.clock)
+    onward = leg(problem, profile, delivery, problem.place[after], problem.clock)
     span, kept = joined(span, onward, tail_at(plan, after))
     departs = max(span.early, plan.value[slot, RELEASED])
     end = departs + span.time

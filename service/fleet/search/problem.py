@@ -33,13 +33,13 @@ class Problem(NamedTuple):
     slot i are the nodes n + 2 i and n + 2 i + 1; all other nodes are stops.
     """
 
-    costs: Array  # (n, n, 2)
+    costs: Array  # (p, n, n, 2), by profile: how some types of vehicles drive and serve
     clock: int  # the number of the costs that are time; -1 for none
     limited: int  # the number of the costs that `longest` bounds; -1 for none
     swept: int  # the number of the costs by which the longest route counts; -1 if it does not
     forbidden: float  # legs of this cost must not be taken
     demand: Indices  # (n, d)
-    service: Array  # (n,)
+    service: Array  # (p, n), by profile
     release: Array  # (n,)
     windows: Array  # (n, w, 2), by ascending begin; the last is repeated
     choice: bool  # whether a stop has several windows
@@ -57,6 +57,7 @@ class Problem(NamedTuple):
     pickup: Nodes  # (n,), where the load of each delivery is from
     place: Nodes  # (n + 2 r,), the stop at which each node is; -1 for anywhere
     kind: Indices  # (r,), the type of the vehicle of each slot
+    profile: Indices  # (r,), and its profile
     slots: Indices  # (v + 1,), the first slot of each type
     capacity: Indices  # (v, d), without the initial load
     whole: Indices  # (v, d), with it
@@ -92,13 +93,13 @@ def problem_of(fleet: Fleet) -> Problem:
     forbidden = _FORBIDDEN * max(1.0, float(finite.max(initial=0.0))) * (rules.n + 1)
     costs = np.moveaxis(np.where(np.isinf(fleet.costs), forbidden, fleet.costs), 0, -1)
     return Problem(
-        costs=np.ascontiguousarray(costs),
+        costs=np.ascontiguousarray(costs)[np.newaxis],
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
         swept=-1 if rules.swept is None else rules.swept,
         forbidden=forbidden,
         demand=loads.demand,
-        service=_floats([visit.service for visit in visits]),
+        service=_floats([visit.service for visit in visits])[np.newaxis],
         release=_floats([visit.release for visit in visits]),
         windows=_windows(visits),
         choice=any(len(visit.windows) > 1 for visit in visits),
@@ -116,6 +117,7 @@ def problem_of(fleet: Fleet) -> Problem:
         pickup=pickup,
         place=np.concatenate((np.arange(rules.n), np.array(ends)[kind].ravel())).astype(np.int32),
         kind=kind,
+        profile=np.zeros_like(kind),
         slots=np.concatenate(([0], np.cumsum(counts))),
         capacity=loads.capacity - loads.initial,
         whole=loads.capacity,

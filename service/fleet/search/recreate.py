@@ -20,6 +20,7 @@ from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
     leave_out,
+    leg,
     link,
     take_in,
     unlink,
@@ -126,8 +127,8 @@ def _key(problem: Problem, plan: WorkingPlan, stop: int, order: int) -> float:
     if order == NARROW:
         return problem.closes[stop] - problem.opens[stop]
     if order >= FAR:
-        there = problem.place[len(problem.demand)]
-        away = problem.costs[max(there, 0), stop, 0]
+        there = max(problem.place[len(problem.demand)], 0)
+        away = leg(problem, problem.profile[0], there, stop, 0)
         return away if order == NEAR else -away
     if order >= LARGE and problem.demand.shape[1] > 0:
         return -float(problem.demand[stop, 0])

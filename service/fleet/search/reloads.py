@@ -4,7 +4,7 @@ import numpy as np
 
 from service.fleet.search.problem import Problem
 from service.fleet.search.route import measure
-from service.fleet.search.working_plan import State, WorkingPlan, way
+from service.fleet.search.working_plan import State, WorkingPlan, leg, way
 from service.jit import inlined, standalone
 
 SELDOM = 2  # load_anew() is called one time in so many: so plans that load elsewhere are met too
@@ -75,7 +75,7 @@ def _find_trips(state: State, slot: int, size: int) -> bool:
 def _loading(state: State, slot: int, place: int) -> tuple[int, float]:
     """Return where a vehicle loads best before the stop at a place of its route, and the detour."""
     problem, plan, direction = state
-    kind, stop = problem.kind[slot], plan.buffer[place]
+    kind, profile, stop = problem.kind[slot], problem.profile[slot], plan.buffer[place]
     start = problem.place[len(problem.demand) + 2 * slot]
     before = plan.buffer[place - 1] if place > 0 else start
     best, least = -1, np.inf
@@ -85,7 +85,8 @@ def _loading(state: State, slot: int, place: int) -> tuple[int, float]:
             break
         detour = 0.0
         for layer in range(plan.step.shape[1]):
-            longer = way(problem, before, via, stop, layer) - way(problem, before, -1, stop, layer)
+            longer = way(problem, profile, before, via, stop, layer)
+            longer -= leg(problem, profile, before, stop, layer)
             detour += direction.costs[layer] * longer
         if detour < least:
             best, least = via, detour

@@ -9,7 +9,7 @@ import numpy as np
 
 from service.fleet.rounding import is_over
 from service.fleet.search.problem import RELEASED, Array, Problem
-from service.fleet.search.working_plan import MOST_STATES, WorkingPlan, leg
+from service.fleet.search.working_plan import MOST_STATES, WorkingPlan, leg, service_at
 from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
@@ -41,20 +41,20 @@ class Times(NamedTuple):
 def rested(problem: Problem, plan: WorkingPlan, slot: int) -> Times:
     """Return the times of a route with the breaks of its vehicle."""
     start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]
-    end = start + 1
+    end, profile = start + 1, problem.profile[slot]
     _depart(problem, plan, slot)
     _rest(problem, plan, kind)
     node, at = plan.next[start], problem.place[start]
     while node != end:
         if plan.via[node] >= 0:
-            _drive(plan, leg(problem, at, plan.via[node], problem.clock))
+            _drive(plan, leg(problem, profile, at, plan.via[node], problem.clock))
             _rest(problem, plan, kind)
             _wait(plan, plan.released[node])
             at = plan.via[node]
             _rest(problem, plan, kind)
-        _drive(plan, leg(problem, at, node, problem.clock))
+        _drive(plan, leg(problem, profile, at, node, problem.clock))
         _rest(problem, plan, kind)
-        _serve(problem, plan, node)
+        _serve(problem, plan, profile, node)
         _rest(problem, plan, kind)
         at, node = node, plan.next[node]
     _drive(plan, plan.step[end, problem.clock])
@@ -153,9 +153,9 @@ def _rest(problem: Problem, plan: WorkingPlan, kind: int) -> None:
 
 
 @compiled
-def _serve(problem: Problem, plan: WorkingPlan, stop: int) -> None:
+def _serve(problem: Problem, plan: WorkingPlan, profile: int, stop: int) -> None:
     """Let the vehicle visit a stop, in any window that is not over."""
-    due, service = problem.due[stop], problem.service[stop]
+    due, service = problem.due[stop], service_at(problem, profile, stop)
     for taken in range(len(plan.states)):
         before = plan.states[taken]
         for number in range(before):

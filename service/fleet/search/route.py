@@ -23,6 +23,7 @@ from service.fleet.search.working_plan import (
     WorkingPlan,
     leg,
     mark_used,
+    service_at,
     way,
 )
 from service.jit import inlined, standalone
@@ -61,9 +62,9 @@ def joined(a: Span, way: float, b: Span) -> tuple[Span, bool]:
 
 
 @inlined
-def stay(problem: Problem, stop: int) -> Span:
+def stay(problem: Problem, profile: int, stop: int) -> Span:
     """Return the visit of a stop as a part of a route."""
-    return Span(problem.service[stop], problem.opens[stop], problem.closes[stop])
+    return Span(service_at(problem, profile, stop), problem.opens[stop], problem.closes[stop])
 
 
 @inlined
@@ -142,7 +143,7 @@ def measure(state: State, slot: int) -> bool:
     duration = 0.0
     if problem.clock >= 0:
         duration, in_time = _forward(problem, plan, slot, start)
-        _backward(problem, plan, start, problem.kind[slot])
+        _backward(problem, plan, slot, start)
         fits &= in_time
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     if problem.clock >= 0:
@@ -177,17 +178,16 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
     if problem.clock >= 0 or problem.ships or problem.reloads or direction.load_distance > 0:
         return measure(state, slot)
     mark_used(plan, slot)
+    kind, profile, fits = problem.kind[slot], problem.profile[slot], True
     before, after = plan.previous[stop], plan.next[stop]
-    fits = True
     for layer in range(plan.step.shape[1]):
         plan.value[slot, layer] -= plan.step[after, layer]
-        plan.step[stop, layer] = leg(problem, problem.place[before], stop, layer)
-        plan.step[after, layer] = leg(problem, stop, problem.place[after], layer)
+        plan.step[stop, layer] = leg(problem, profile, problem.place[before], stop, layer)
+        plan.step[after, layer] = leg(problem, profile, stop, problem.place[after], layer)
         plan.value[slot, layer] += plan.step[stop, layer] + plan.step[after, layer]
     for dimension in range(plan.load.shape[1]):
         plan.load[slot, dimension] += problem.demand[stop, dimension]
-        capacity = problem.capacity[problem.kind[slot], dimension]
-        fits &= plan.load[slot, dimension] <= capacity
+        fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]
     plan.size[slot] += 1
     fits &= plan.value[slot, FIRST] < problem.forbidden
     fits &= _set_cost(state, slot, len(problem.demand) + 2 * slot + 1)
@@ -229,7 +229,7 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
         plan.on[start, dimension] = plan.most[start, dimension] = 0
     for column in range(plan.value.shape[1]):
         plan.value[slot, column] = 0.0
-    kind = problem.kind[slot]
+    kind, profile = problem.kind[slot], problem.profile[slot]
     _set_span(plan.head, start, Span(0.0, problem.departs[kind], problem.leaves_by[kind]))
     _set_span(plan.tail, end, Span(0.0, 0.0, problem.returns[kind]))
     plan.ready[start] = problem.departs[kind]
@@ -237,14 +237,15 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     plan.along[start] = 0.0
     plan.ahead[end] = problem.initial[kind]
     for layer in range(plan.step.shape[1]):
-        plan.step[end, layer] = leg(problem, problem.place[start], problem.place[end], layer)
+        whole = leg(problem, profile, problem.place[start], problem.place[end], layer)
+        plan.step[end, layer] = whole
 
 
 @inlined
 def _sum_legs(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tuple[float, float]:
     """Return the sums of both costs of the legs; write what is known of the first up to each."""
     first = second = loaded = 0.0
-    first_trip = True
+    first_trip, kind, profile = True, problem.kind[slot], problem.profile[slot]
     plan.along[start] = 0.0
     at, node = problem.place[start], start
     while node != start + 1:
@@ -252,18 +253,18 @@ def _sum_legs(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tup
         there, via = problem.place[node], plan.via[node]
         if via >= 0:
             # What was on board from the start, if anything, is unloaded there.
-            away, kind = leg(problem, at, via, 0), problem.kind[slot]
+            away = leg(problem, profile, at, via, 0)
             loaded += away * (problem.initial[kind] if first_trip else 0)
-            plan.step[node, 0] = away + leg(problem, via, there, 0)
+            plan.step[node, 0] = away + leg(problem, profile, via, there, 0)
             loaded += (plan.step[node, 0] - away) * plan.ahead[node]
             first_trip = False
         else:
-            plan.step[node, 0] = leg(problem, at, there, 0)
+            plan.step[node, 0] = leg(problem, profile, at, there, 0)
             if plan.load.shape[1] > 0:
                 loaded += plan.step[node, 0] * plan.ahead[node]
         first += plan.step[node, 0]
         plan.along[node] = first
-        plan.step[node, 1] = way(problem, at, via, there, 1)
+        plan.step[node, 1] = way(problem, profile, at, via, there, 1)
         second += plan.step[node, 1]
         at = there
     plan.value[slot, LOADED] = loaded
@@ -278,7 +279,7 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
         The time from the departure to the end, where the vehicle leaves as late as makes neither
         the end later nor a visit later than due; and whether the route keeps all windows.
     """
-    kind, end = problem.kind[slot], start + 1
+    kind, profile, end = problem.kind[slot], problem.profile[slot], start + 1
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     span = Span(0.0, departs, problem.leaves_by[kind])
     in_time = not _is_over(departs, problem.leaves_by[kind])
@@ -289,15 +290,15 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     while node != end:
         leg_to = plan.step[node, problem.clock]
         if plan.via[node] >= 0:
-            away = leg(problem, at, plan.via[node], problem.clock)
+            away = leg(problem, profile, at, plan.via[node], problem.clock)
             leg_to -= away
             span, _ = joined(span, away, Span(0.0, plan.released[node], np.inf))
             ready = max(ready + away, plan.released[node])
         begin = begin_at(problem, node, ready + leg_to)
         if _is_over(begin, problem.due[node]):
             late += begin - problem.due[node]
-        ready = begin + problem.service[node]
-        span, _ = joined(span, leg_to, stay(problem, node))
+        ready = begin + service_at(problem, profile, node)
+        span, _ = joined(span, leg_to, stay(problem, profile, node))
         _set_span(plan.head, node, span)
         plan.ready[node], plan.late[node] = ready, late
         at, node = node, plan.next[node]
@@ -305,7 +306,7 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     plan.ready[end], plan.late[end] = ready, late
     if not in_time or ready == np.inf or _is_over(ready, problem.returns[kind]):
         return ready - departs, False
-    leaves = min(_latest_departure(problem, plan, start), problem.leaves_by[kind])
+    leaves = min(_latest_departure(problem, plan, start, profile), problem.leaves_by[kind])
     return ready - max(departs, leaves), True
 
 
@@ -319,13 +320,14 @@ def begin_at(problem: Problem, stop: int, arrival: float) -> float:
 
 
 @inlined
-def _latest_departure(problem: Problem, plan: WorkingPlan, start: int) -> float:
+def _latest_departure(problem: Problem, plan: WorkingPlan, start: int, profile: int) -> float:
     """Return the latest departure of a route that neither ends later nor is later than due."""
     time = plan.ready[start + 1] - plan.step[start + 1, problem.clock]
     node = plan.previous[start + 1]
     while node != start:
-        begin = plan.ready[node] - problem.service[node]
-        limit = min(time - problem.service[node], max(problem.due[node], begin))
+        service = service_at(problem, profile, node)
+        begin = plan.ready[node] - service
+        limit = min(time - service, max(problem.due[node], begin))
         latest = begin
         for number in range(problem.windows.shape[1]):
             if problem.windows[node, number, 0] <= limit:
@@ -336,19 +338,20 @@ def _latest_departure(problem: Problem, plan: WorkingPlan, start: int) -> float:
 
 
 @inlined
-def _backward(problem: Problem, plan: WorkingPlan, start: int, kind: int) -> None:
+def _backward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> None:
     """Write what is known from each node of a route on."""
-    span, end = Span(0.0, 0.0, problem.returns[kind]), start + 1
+    span, end = Span(0.0, 0.0, problem.returns[problem.kind[slot]]), start + 1
+    profile = problem.profile[slot]
     _set_span(plan.tail, end, span)
     node = plan.previous[end]
     while node != start:
         after = plan.next[node]
         leg_from = plan.step[after, problem.clock]
         if plan.via[after] >= 0:
-            away = leg(problem, node, plan.via[after], problem.clock)
+            away = leg(problem, profile, node, plan.via[after], problem.clock)
             onward = leg_from - away
             span, _ = joined(Span(0.0, plan.released[after], np.inf), onward, span)
             leg_from = away
-        span, _ = joined(stay(problem, node), leg_from, span)
+        span, _ = joined(stay(problem, profile, node), leg_from, span)
         _set_span(plan.tail, node, span)
         node = plan.previous[node]

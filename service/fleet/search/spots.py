@@ -28,6 +28,7 @@ from service.fleet.search.working_plan import (
     WorkingPlan,
     leg,
     link,
+    service_at,
     unlink,
     way,
 )
@@ -125,17 +126,18 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
     slot, before, via, onward = spot
     after = plan.next[before]
     a, b = problem.place[before], problem.place[after]
-    first = way(problem, a, via, stop, 0) + way(problem, stop, onward, b, 0) - plan.step[after, 0]
+    kind, profile, end = problem.kind[slot], problem.profile[slot], 0.0
+    first = way(problem, profile, a, via, stop, 0) + way(problem, profile, stop, onward, b, 0)
+    first -= plan.step[after, 0]
     if first >= 0.5 * problem.forbidden:
         return np.inf
-    second = way(problem, a, via, stop, 1) + way(problem, stop, onward, b, 1)
+    second = way(problem, profile, a, via, stop, 1) + way(problem, profile, stop, onward, b, 1)
     second -= plan.step[after, 1]
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0 and not problem.reloads:
-        loaded += _loaded(problem, plan, stop, before, first)
+        loaded += _loaded(problem, plan, stop, spot, first)
     first += plan.value[slot, FIRST]
     second += plan.value[slot, SECOND]
-    kind, end = problem.kind[slot], 0.0
     if problem.clock >= 0:
         time, end = _timed(problem, plan, stop, spot)
         if time == np.inf:
@@ -155,9 +157,10 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
 
 
 @inlined
-def _loaded(problem: Problem, plan: WorkingPlan, stop: int, before: int, detour: float) -> float:
-    """Return what loads times distances grow by with a stop after a node."""
-    to = plan.along[before] + leg(problem, problem.place[before], stop, 0)
+def _loaded(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot, detour: float) -> float:
+    """Return what loads times distances grow by with a stop in a spot, without reloads."""
+    profile, before = problem.profile[spot.slot], spot.before
+    to = plan.along[before] + leg(problem, profile, problem.place[before], stop, 0)
     return problem.demand[stop, 0] * to + plan.ahead[plan.next[before]] * detour
 
 
@@ -168,12 +171,12 @@ def _timed(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot) -> tuple[
     The time is infinite where a window is missed.
     """
     slot, before, via, onward = spot
-    after = plan.next[before]
-    there = way(problem, problem.place[before], via, stop, problem.clock)
-    span, kept = joined(head_at(plan, before), there, stay(problem, stop))
+    profile, after = problem.profile[slot], plan.next[before]
+    there = way(problem, profile, problem.place[before], via, stop, problem.clock)
+    span, kept = joined(head_at(plan, before), there, stay(problem, profile, stop))
     if not kept:
         return np.inf, 0.0
-    away = way(problem, stop, onward, problem.place[after], problem.clock)
+    away = way(problem, profile, stop, onward, problem.place[after], problem.clock)
     span, kept = joined(span, away, tail_at(plan, after))
     departs = max(span.early, plan.value[slot, RELEASED])
     if not problem.reloads:
@@ -187,33 +190,36 @@ def _timed(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot) -> tuple[
 @inlined
 def _lateness(problem: Problem, plan: WorkingPlan, slot: int, stop: int, before: int) -> float:
     """Return the lateness of a route with a stop after a node; infinite if a window is missed."""
+    kind, profile = problem.kind[slot], problem.profile[slot]
     end = len(problem.demand) + 2 * slot + 1
     late, ready, node = plan.late[before], plan.ready[before], before
     released = problem.release[stop]
-    if released > plan.value[slot, RELEASED] and released > problem.departs[problem.kind[slot]]:
+    if released > plan.value[slot, RELEASED] and released > problem.departs[kind]:
         # The vehicle leaves later, so all times change.
         late, ready, node = 0.0, released, end - 1
         while node != before:
-            ready, late = _visited(problem, node, plan.next[node], ready, late)
+            ready, late = _visited(problem, profile, (node, plan.next[node]), ready, late)
             node = plan.next[node]
-    ready, late = _visited(problem, before, stop, ready, late)
+    ready, late = _visited(problem, profile, (before, stop), ready, late)
     here, node = stop, plan.next[before]
     while node != end:
-        ready, late = _visited(problem, here, node, ready, late)
+        ready, late = _visited(problem, profile, (here, node), ready, late)
         if ready <= plan.ready[node]:
             return late + plan.late[end] - plan.late[node]
         here, node = node, plan.next[node]
-    ready += leg(problem, problem.place[here], problem.place[end], problem.clock)
-    missed = ready == np.inf or _is_over(ready, problem.returns[problem.kind[slot]])
+    ready += leg(problem, profile, problem.place[here], problem.place[end], problem.clock)
+    missed = ready == np.inf or _is_over(ready, problem.returns[kind])
     return np.inf if missed else late
 
 
 @inlined
 def _visited(
-    problem: Problem, node: int, stop: int, ready: float, late: float
+    problem: Problem, profile: int, between: tuple[int, int], ready: float, late: float
 ) -> tuple[float, float]:
-    """Return when the visit of a stop ends, and the lateness after it."""
-    begin = begin_at(problem, stop, ready + leg(problem, problem.place[node], stop, problem.clock))
+    """Return when the visit of the second of two nodes ends, and the lateness after it."""
+    node, stop = between
+    away = leg(problem, profile, problem.place[node], stop, problem.clock)
+    begin = begin_at(problem, stop, ready + away)
     if _is_over(begin, problem.due[stop]):
         late += begin - problem.due[stop]
-    return begin + problem.service[stop], late
+    return begin + service_at(problem, profile, stop), late

@@ -145,19 +145,25 @@ def _mixed(seed: int) -> int:
 
 
 @inlined
-def leg(problem: Problem, a: int, b: int, layer: int) -> float:
-    """Return a cost of the leg between two places; 0 from or to anywhere."""
+def leg(problem: Problem, profile: int, a: int, b: int, layer: int) -> float:
+    """Return what a leg between two places costs in a profile; 0 from or to anywhere."""
     if a < 0 or b < 0:
         return 0.0
-    return float(problem.costs[a, b, layer])
+    return float(problem.costs[profile, a, b, layer])
 
 
 @inlined
-def way(problem: Problem, a: int, via: int, b: int, layer: int) -> float:
-    """Return a cost of the way between two places, through a third unless that is -1."""
+def way(problem: Problem, profile: int, a: int, via: int, b: int, layer: int) -> float:
+    """Return what the way between two places costs, through a third unless that is -1."""
     if via < 0:
-        return leg(problem, a, b, layer)
-    return leg(problem, a, via, layer) + leg(problem, via, b, layer)
+        return leg(problem, profile, a, b, layer)
+    return leg(problem, profile, a, via, layer) + leg(problem, profile, via, b, layer)
+
+
+@inlined
+def service_at(problem: Problem, profile: int, stop: int) -> float:
+    """Return how long the visit of a stop takes in a profile."""
+    return float(problem.service[profile, stop])
 
 
 @inlined
