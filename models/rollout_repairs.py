@@ -136,9 +136,11 @@ def _cities_near(
     if prices is not None:
         leaving, entering = prices.fees + prices.tilts, prices.fees - prices.tilts
         onwards = onwards - leaving.gather(1, tours) - entering.gather(1, tours).roll(-1, dims=1)
-    both = torch.zeros_like(least).scatter(1, tours, onwards + onwards.roll(1, dims=1))
-    centres = ((both - least) * freshness).argmax(dim=1)
-    away = _costs_from(problem, centres).scatter(1, centres[:, None], -NEVER)
+    regret = (onwards + onwards.roll(1, dims=1) - least.gather(1, tours)) * freshness.gather(
+        1, tours
+    )
+    centres = tours.gather(1, regret.argmax(dim=1, keepdim=True))
+    away = _costs_from(problem, centres[:, 0]).scatter(1, centres, -NEVER)
     return away.topk(cast(int, count), largest=False).indices
 
 

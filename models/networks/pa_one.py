@@ -22,7 +22,7 @@ from models.networks.actor import Actor, Architecture
 from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
-    joined_at_cost,
+    grown_at_cost,
     no_more_possible,
     partner_costs,
     toured,
@@ -31,7 +31,13 @@ from models.networks.joining.candidates import (
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.features import features_seen
-from models.networks.joining.fragments import Fragments, all_alone, mutual_best
+from models.networks.joining.fragments import (
+    MOST_LOGIT,
+    Fragments,
+    all_alone,
+    linked,
+    mutual_best,
+)
 from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
 from models.networks.joining.prices import priced_problem
@@ -133,6 +139,7 @@ class OneActor(Actor):
         hidden = hidden + self.project_edge(seen.of_edges.flatten(0, 1))
         relative = seen.relative_costs
         logits = self.judge(hidden.relu()).view_as(relative) - _STEEPNESS * relative
+        logits = logits.clamp(-MOST_LOGIT, MOST_LOGIT)
         return without_impossible(logits, ~candidates.real)
 
     @torch.no_grad()
@@ -294,13 +301,14 @@ class OneActor(Actor):
     ) -> Fragments:
         """Return the fragments after joining them, `joinings` times, by the best of these edges."""
         logits = self.edge_logits(costs, fragments, candidates)
-        mates = mutual_best(fragments, candidates.positions, logits)
-        after = joined_at_cost(costs, fragments, mates)
+        mates = [mutual_best(fragments, candidates.positions, logits)]
+        growing = [fragments, grown_at_cost(costs, fragments, mates[0])]
         for _ in range(joinings - 1):
+            after = growing[-1]
             logits = without_impossible(logits, no_more_possible(candidates, fragments, after))
-            mates = mutual_best(after, candidates.positions, logits)
-            after = joined_at_cost(costs, after, mates)
-        return after
+            mates.append(mutual_best(after, candidates.positions, logits))
+            growing.append(grown_at_cost(costs, after, mates[-1]))
+        return linked(growing, mates)
 
     def judgement(self, joinings: int) -> Judgement:
         """Return how this actor judges edges, once for each `joinings` joinings."""

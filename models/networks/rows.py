@@ -8,6 +8,7 @@ from operator import itemgetter
 from typing import Any, TypeVar
 
 import torch
+from jaxtyping import Float
 from torch import Tensor
 
 Rows = TypeVar("Rows", bound=tuple[Any, ...])  # a NamedTuple
@@ -35,6 +36,14 @@ def split(rows: Rows, count: int) -> list[Rows]:
 def changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
     """Return the tuple with every member that there is changed."""
     return _made(type(rows), (member if member is None else change(member) for member in rows))
+
+
+def side_by_side(numbers: Float[Tensor, "*x"], count: int) -> Float[Tensor, "*x count"]:
+    """Return each number `count` times.
+
+    Exported, a product takes less time than to repeat numbers, or to let them spread.
+    """
+    return numbers[..., None] @ numbers.new_ones(1, count)
 
 
 # A NamedTuple takes its members one by one, which the bound on its type does not express.

@@ -17,10 +17,12 @@ from models.networks.joining.fragments import (
     Fragments,
     all_alone,
     first_open,
+    grown,
     impossible,
-    joined,
+    linked,
 )
 from models.networks.joining.walks import tours_from
+from models.networks.rows import side_by_side
 
 _ROUNDING = 1e-5  # of a cost, by which it may seem to have risen
 
@@ -78,8 +80,8 @@ def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDA
     index = torch.arange(ends.shape[1], device=zeros.device).expand_as(ends)
     position = zeros.long().scatter(1, place, index)
     positions = position.gather(1, cities.flatten(1)).view_as(cities)
-    own = (positions == partners[..., None]).to(cheapest)
-    cheapest = cheapest + closed[..., None] + NEVER * own
+    own = positions.to(cheapest) == side_by_side(partners.to(cheapest), count)
+    cheapest = cheapest + side_by_side(closed, count) + NEVER * own.to(cheapest)
     return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
 
 
@@ -134,10 +136,17 @@ def joined_at_cost(
     costs: Costs | Problem, fragments: Fragments, mates: Int[Tensor, "r e"]
 ) -> Fragments:
     """Return the fragments joined, each end to its mate, by edges that lean as costs do."""
+    return linked([fragments, grown_at_cost(costs, fragments, mates)], [mates])
+
+
+def grown_at_cost(
+    costs: Costs | Problem, fragments: Fragments, mates: Int[Tensor, "r e"]
+) -> Fragments:
+    """Return the fragments joined like that, with the links and the number left of before."""
     if fragments.leans is None:
-        return joined(fragments, mates)
+        return grown(fragments, mates)
     ends = fragments.ends
-    return joined(fragments, mates, costs.steps(ends, ends.gather(1, mates.clamp(min=0)))[1])
+    return grown(fragments, mates, costs.steps(ends, ends.gather(1, mates.clamp(min=0)))[1])
 
 
 def toured(costs: Costs | Problem, fragments: Fragments) -> Int[Tensor, "r n"]:

@@ -89,8 +89,9 @@ class Planes(NamedTuple):
         return Costs(_distances(self._of(cities[:, None]), self.cities.T[:, None]))
 
     def _of(self, cities: Int[Tensor, "r e"]) -> Float[Tensor, "x r e"]:
-        coordinates = self.cities.T
-        return coordinates.index_select(1, cities.flatten()).unflatten(1, cities.shape)
+        # Of single numbers ONNX Runtime gathers those of each axis by themselves faster.
+        in_each = cities.flatten()[None].expand(self.cities.shape[1], -1)
+        return self.cities.T.gather(1, in_each).unflatten(1, cities.shape)
 
 
 class Matrices(NamedTuple):

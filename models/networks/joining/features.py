@@ -13,6 +13,7 @@ from torch import Tensor
 from models.networks.joining.candidates import Candidates
 from models.networks.joining.fragments import NEVER, Fragments
 from models.networks.joining.neighbours import Neighbours
+from models.networks.rows import side_by_side
 
 _MOST = 5.0  # of a cost against the mean of the candidates of an end
 _LEAST_SCALE = 1e-3
@@ -48,7 +49,7 @@ def features_seen(
 ) -> Seen:
     """Return what the network sees, given the cost of an edge from each end to its partner."""
     unit, scale, count, in_units = _scales(candidates)
-    own = (in_units / scale[..., None]).clamp(max=_MOST)
+    own = (in_units / side_by_side(scale, in_units.shape[2])).clamp(max=_MOST)
     nearest = own[..., :1]
     on_paths = fragments.on_paths.to(unit)
     inverse = 1 / scale

@@ -7,16 +7,19 @@ direction, each end has a number: how much the path costs less if a tour leaves 
 code can be exported with any numbers of rows, ends and cities.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
+from models.networks.rows import side_by_side
+
 # The cost of an impossible edge, and minus its logit. Twice this is a finite float.
 NEVER = 1e9
 # Logits and numbers of edges make one integer, of up to 2**15 ends.
-_MOST_LOGIT, _PARTS_OF_ONE = 2.0**10, 2.0**20
+MOST_LOGIT, _PARTS_OF_ONE = 2.0**10, 2.0**20
 _LEAST = -(2**62)
 
 
@@ -93,10 +96,10 @@ def impossible(fragments: Fragments, candidates: Int[Tensor, "r e c"]) -> Bool[T
 
     Candidates are given by position.
     """
-    names = fragments.names
-    theirs = torch.where(fragments.open, names, -1).gather(1, candidates.flatten(1))
+    names = fragments.names.float()  # which are compared faster
+    theirs = torch.where(fragments.open, names, -1.0).gather(1, candidates.flatten(1))
     theirs = theirs.view_as(candidates)
-    return (theirs < 0) | (theirs == names[..., None])
+    return (theirs < 0) | (theirs == side_by_side(names, candidates.shape[2]))
 
 
 def mutual_best(
@@ -111,18 +114,16 @@ def mutual_best(
     The logit of an edge is the same for both its ends, and -NEVER where it is impossible.
     """
     best, which = edge_logits.max(dim=-1)
-    mates = candidates.gather(2, which[..., None]).squeeze(-1)
-    own, index = fragments.names, _positions(mates)
-    theirs = own.gather(1, mates)
+    index, c = _positions(best), candidates.shape[2]
+    mates = candidates.flatten(1).gather(1, which + c * index)
     e = edge_logits.shape[1]
     numbers = torch.minimum(index, mates) * e + torch.maximum(index, mates)
-    logits = (best.clamp(-_MOST_LOGIT, _MOST_LOGIT) * _PARTS_OF_ONE).long()
+    logits = (best * _PARTS_OF_ONE).long()
     is_named = fragments.open & (best > -NEVER / 2)
     ranks = torch.where(is_named, logits * (e * e) + numbers, _LEAST)
-    highest = torch.full_like(ranks, _LEAST).scatter_reduce(1, own, ranks, "amax")
-    highest = highest.scatter_reduce(1, theirs, ranks, "amax")
-    is_highest = (highest.gather(1, own) == ranks) & (highest.gather(1, theirs) == ranks)
-    agreed = is_named & is_highest
+    highest = ranks.scatter_reduce(1, mates, ranks, "amax")
+    highest = torch.maximum(highest, highest.gather(1, fragments.partners))
+    agreed = is_named & (highest == ranks) & (highest.gather(1, mates) == ranks)
     # To the mate, too, where it is not the end that it names itself.
     chosen, back = (torch.where(agreed, ends, -1) for ends in (mates, index))
     return chosen.scatter_reduce(1, mates, back, "amax")
@@ -137,19 +138,43 @@ def joined(
 
     The lean of the edge to a mate is half the difference between its cost and the cost back.
     """
+    return linked([fragments, grown(fragments, mates, edge_leans)], [mates])
+
+
+def grown(
+    fragments: Fragments,
+    mates: Int[Tensor, "r e"],
+    edge_leans: Float[Tensor, "r e"] | None = None,
+) -> Fragments:
+    """Return the fragments joined like that, with the links and the number left of before."""
     ends, partners, open_, links, left, leans = fragments
     at = mates >= 0
-    second = fragments.on_paths
-    n = (links.shape[1] - 1) // 2
-    places = torch.where(at, ends + n * second, 2 * n)
-    links = links.scatter(1, places, ends.gather(1, mates.clamp(min=0)))
-    beyond = mates.gather(1, partners)
     if leans is not None and edge_leans is not None:
         gained = torch.where(at, leans.gather(1, mates.clamp(min=0)) + edge_leans, 0.0)
         leans = leans + gained.gather(1, partners)
-    partners = torch.where(beyond >= 0, partners.gather(1, beyond.clamp(min=0)), partners)
-    open_ = open_ & ~(at & second)
-    return Fragments(ends, partners, open_, links, left - at.sum(dim=1) // 2, leans)
+    # The partner of a partner is the end itself.
+    through = torch.where(at, mates, partners)
+    beyond = partners.gather(1, through).gather(1, partners)
+    return Fragments(ends, beyond, open_ & ~(at & fragments.on_paths), links, left, leans)
+
+
+def linked(growing: Sequence[Fragments], mates: Sequence[Int[Tensor, "r e"]]) -> Fragments:
+    """Return the last of these fragments with its links and the number left.
+
+    Each has grown from the one before, its ends joined to these mates. An end of a path is joined
+    once, to its second neighbour, and a city alone to its first one before.
+    """
+    ends, links, left = growing[0].ends, growing[0].links, growing[0].left
+    both = torch.zeros_like(ends)  # positions of mates, from 1 on
+    seconds = torch.zeros_like(ends)
+    for fragments, of_ends in zip(growing, mates, strict=False):
+        both = both + (of_ends + 1)
+        seconds = seconds + (of_ends + 1) * fragments.on_paths
+    found = torch.cat((both - seconds, seconds), dim=1)
+    n = (links.shape[1] - 1) // 2
+    places = torch.where(found > 0, torch.cat((ends, ends + n), dim=1), 2 * n)
+    links = links.scatter(1, places, ends.gather(1, (found - 1).clamp(min=0)))
+    return growing[-1]._replace(links=links, left=left - (found > 0).sum(dim=1) // 2)
 
 
 def first_open(fragments: Fragments) -> Int[Tensor, "r 1"]:

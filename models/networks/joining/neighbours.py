@@ -32,10 +32,12 @@ class Neighbours:
     ) -> Float[Tensor, "x c d"]:
         """Return the features of each end's candidates, plus the features of the end itself.
 
-        ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short.
+        ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short, and
+        repeats them fastest by a product.
         """
         theirs = self._of_candidates(features).view(-1, self._count, features.shape[1])
-        return theirs + own[:, None].repeat(1, self._count, 1)
+        once = torch.eye(own.shape[1], dtype=own.dtype, device=own.device)
+        return theirs + (own @ once.repeat(1, self._count)).view_as(theirs)
 
     def _of_candidates(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x_c d"]:
         table = nn.functional.pad(features, (0, 0, 0, 1))
