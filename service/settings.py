@@ -43,7 +43,7 @@ _MOST_CONNECTIONS = 2**20  # the most descriptors that Linux lets a process open
 _MOST_REQUESTS = 1_000_000  # of one caller: the time of each is remembered
 _MOST_CITIES = 1_000_000  # the search's arrays of a row for each city take gigabytes
 _MOST_PAIRED_CITIES = 46_000  # their pairs are numbered in 32 bits
-_MOST_FLEET_STOPS = 10_000  # a matrix of their costs in 64 bits takes 800 MB
+_MOST_FLEET_STOPS = 10_000  # to read the legs between all of them takes seconds
 _MOST_CELLS = 2**28  # the paths over them number three times as many in 32 bits
 _MOST_PATH_CELLS = 2**23  # of up to 40 bytes each, which are stored as one value
 _MOST_TOURS = 10_000  # choosing these from the search's 50,000 takes 2 GB
@@ -220,8 +220,8 @@ class Settings(BaseSettings):
     """the most cities where costs are matrices"""
     max_network_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = 5000
     """the most cities for which a network builds tours"""
-    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = 1000
-    """the most stops of a fleet, and places that several robots share"""
+    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = 5000
+    """the most stops of a fleet in straight lines, and places that several robots share"""
     max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = 2**20
     """the most cells of a map"""
     max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = 2**21

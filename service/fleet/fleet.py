@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Rows = Callable[[int], Array]  # returns what the legs from a stop cost, shape (n,)
 LAYERS = 2  # costs of a leg
-_BLOCK = 2**18  # costs that are worked out at once
+_BLOCK = 2**15  # costs that are worked out at once
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -133,6 +133,38 @@ class Fleet:
         """Whether some leg is forbidden."""
         return bool(np.isinf(self.costs[0]).any())
 
+    def away(self, stop: int) -> Array:
+        """Return how far all stops are away, in largest legs of both costs, shape (n,)."""
+        units = np.where(self.largest_legs > 0, self.largest_legs, 1.0).tolist()
+        if self._are_alike:
+            return LAYERS / units[0] * self.lines[0].legs_from(stop)
+        return np.sum(
+            [
+                np.minimum(self.legs_from(layer, stop), self.legs_to(layer, stop)) / unit
+                for layer, unit in enumerate(units)
+            ],
+            axis=0,
+        )
+
+    @cached_property
+    def _are_alike(self) -> bool:
+        """Whether costs are lines between the same places, so that one is in proportion to both."""
+        if not self.lines:
+            return False
+        first, second = self.lines
+        alike = first.curved == second.curved
+        return alike and np.array_equal(first.places, second.places)
+
+    @cached_property
+    def greatest_legs(self) -> Array:
+        """The greatest finite cost of a leg, of each of both costs, shape (2,)."""
+        return np.array([self._greatest_leg(layer) for layer in range(LAYERS)])
+
+    def _greatest_leg(self, layer: int) -> float:
+        if self.lines:
+            return self.lines[layer].greatest()
+        return float(largest_costs(self.costs[[layer]])[0])
+
     @cached_property
     def largest_legs(self) -> Array:
         """The largest of each cost of a leg in ordinary plans, shape (2,).
@@ -142,7 +174,7 @@ class Fleet:
         return np.array([self._largest_leg(layer) for layer in range(LAYERS)])
 
     def _largest_leg(self, layer: int) -> float:
-        largest = max(float(largest_costs(block[np.newaxis])[0]) for block in self._blocks(layer))
+        largest = float(self.greatest_legs[layer])
         sampled = np.arange(0, self.rules.n, -(-self.rules.n // SAMPLED))
         ordinary = ordinary_cost(self._blocks(layer), self.among(sampled)[layer], largest)
         if ordinary == largest:

@@ -51,15 +51,34 @@ class Line:
 
     def legs(self, a: int | Indices, b: int | Indices) -> Array:
         """Return what legs from stops to others cost, of shapes that broadcast."""
-        square: Array = ((self.places[a] - self.places[b]) ** 2).sum(axis=-1)
+        return self._costs(sum((axis[a] - axis[b]) ** 2 for axis in self.places.T))
+
+    def legs_from(self, stop: int) -> Array:
+        """Return what the legs from a stop to all stops cost, or from all to it, shape (n,)."""
+        return self._costs(sum((axis - axis[stop]) ** 2 for axis in self.places.T))
+
+    def _costs(self, square: Array) -> Array:
+        """Return what legs cost, of whose lines these are the squares."""
         lines = np.sqrt(square)
         if self.curved:
             lines = 2.0 * np.arcsin(np.minimum(1.0, 0.5 * lines))
         return self.factor * lines
 
-    def legs_from(self, stop: int) -> Array:
-        """Return what the legs from a stop to all stops cost, or from all to it, shape (n,)."""
-        return self.legs(np.arange(len(self.places)), stop)
+    def greatest(self) -> float:
+        """Return the greatest cost of a leg.
+
+        Two stops are no farther apart than both are from the middle together, so that legs from
+        stops near the middle need not be looked at.
+        """
+        radii = np.sqrt(((self.places - self.places.mean(axis=0)) ** 2).sum(axis=1))
+        farthest = np.argsort(-radii)
+        most = 0.0
+        for stop in farthest.tolist():
+            if radii[stop] + radii[farthest[0]] < most:
+                break
+            square = sum((axis - axis[stop]) ** 2 for axis in self.places.T)
+            most = max(most, float(np.sqrt(np.max(square))))
+        return float(self._costs(np.array(most**2)))
 
     def scaled(self, shift: int) -> "Line":
         """Return the line with costs times a power of two."""

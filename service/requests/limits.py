@@ -8,7 +8,16 @@ from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Array, Kind
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
-from service.requests.stops import ROAD_MEASURES, Measured, Source, Traffic, base_of
+from service.requests.stops import (
+    ROAD_MEASURES,
+    Measured,
+    Source,
+    Stops,
+    Traffic,
+    are_straight,
+    base_of,
+)
+from service.requests.validation import too_many_cities
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
 _ID_BYTES = 40  # of ids that count as one cell of an answer: a UUID in quotation marks
@@ -26,7 +35,8 @@ class Limits:
             a map.
         network_cities: Stops for which a network builds tours.
         survey_seconds: Processor seconds to find the paths between the places of a map.
-        fleet_stops: Stops of a fleet, and places that several robots share.
+        fleet_stops: Stops of a fleet, all of whose costs are straight lines, and places that
+            several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
             count for more.
@@ -48,7 +58,7 @@ class Limits:
     network_cities: int = 5000
     path_cells: int = 2**21
     survey_seconds: float = 10.0
-    fleet_stops: int = 1000
+    fleet_stops: int = 5000
     repairs: int = 200
     roads: bool = False
     traffic: bool = False
@@ -212,6 +222,37 @@ def check_router(sources: Sequence[Source], limits: Limits) -> None:
         if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
             part = f"objectives/{m}/from"
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
+
+
+def check_fleet(
+    part: str,
+    stops: Stops,
+    limits: Limits,
+    time_limit: float,
+    code: str = "too-many-unless-straight",
+) -> None:
+    """Raise a refusal where a fleet has too many stops for its costs, or for the network.
+
+    Args:
+        part: The part of the request that is refused.
+        stops: The stops.
+        limits: The limits.
+        time_limit: The seconds of planning; with none, the network reads matrices.
+        code: The code of what is wrong with the part.
+    """
+    most = min(limits.fleet_stops, limits.matrix_cities)
+    if stops.n <= most:
+        return
+    if not are_straight(stops.sources):
+        raise too_many_cities(part, most, stops.n, code)
+    if time_limit == 0:
+        raise Refusal(
+            "too-many-for-network",
+            name="time_limit",
+            pointer="/time_limit",
+            limit=most,
+            actual=stops.n,
+        )
 
 
 def lower_defaults(request: AnyRequest, n: int, limits: Limits, id_bytes: int = 0) -> AnyRequest:

@@ -17,6 +17,7 @@ from service.requests.fleet import parse_fleet_request
 from service.requests.front import FrontRequest, parse_front_request
 from service.requests.limits import (
     Limits,
+    check_fleet,
     check_reference_point,
     check_router,
     within_network,
@@ -146,6 +147,7 @@ def read_fleet(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     """
     request = parse_fleet_request(source.body, limits)
     fleet = request.subject()
+    check_fleet("stops", fleet.stops, limits, request.time_limit)
     check_router(fleet.stops.sources, limits)
     return Task(
         subject=fleet,

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.errors import CityNames
+from service.fleet.straight import Line
 from service.instance import CLOSED, Instance, Kind, RouteEnds
 from service.objectives import Objective
 from service.over_the_day.day import CostsOfDay, Day
-from service.roads.great_circle import great_circle_matrix
+from service.roads.great_circle import EARTH_RADIUS, great_circle_matrix
 
 Array = NDArray[np.float64]
 Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
@@ -332,6 +333,29 @@ def locations_of(stops: Sequence[Stop]) -> Array:
 def cost_matrices(stops: Stops) -> Array:
     """Return the costs between stops, all of them measured, shape (m, n, n)."""
     return np.stack([_costs(source, stops.locations) for source in stops.sources])
+
+
+def are_straight(sources: Sequence[Source]) -> bool:
+    """Return whether all costs are straight lines, in planes or by great circle."""
+    return all(
+        isinstance(each, Plane) or (isinstance(each, Measured) and each.measure == "great_circle")
+        for each in sources
+    )
+
+
+def lines_of(stops: Stops) -> list[Line]:
+    """Return the lines that the costs between stops are; see are_straight()."""
+    return [_line(source, stops.locations) for source in stops.sources]
+
+
+def _line(source: Source, locations: Array) -> Line:
+    match source:
+        case Plane(points):
+            return Line.in_plane(points)
+        case Measured("great_circle", speed):
+            metres = Line.on_earth(locations, EARTH_RADIUS)
+            return metres if speed is None else replace(metres, factor=_KMH * metres.factor / speed)
+    raise ValueError("costs must be straight lines")
 
 
 def _over_the_day(source: Source, locations: Array) -> CostsOfDay:

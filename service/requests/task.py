@@ -14,9 +14,19 @@ from service.objectives import Objective
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fields import Geometry
 from service.requests.notes.note import Note
-from service.requests.stops import Array, Labels, RoadMeasure, Stops, Traffic, cost_matrices
+from service.requests.stops import (
+    Array,
+    Labels,
+    RoadMeasure,
+    Stops,
+    Traffic,
+    are_straight,
+    cost_matrices,
+    lines_of,
+)
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
+_MOST_STORED = 500  # stops; costs of more are worked out faster than read, where they are lines
 _METRES = {"sum": "total distance", "max": "longest route"}
 _COSTS = {"sum": "total cost", "max": "greatest cost"}
 
@@ -90,7 +100,9 @@ class UnmeasuredFleet:
         return replace(self, stops=self.stops.measured_by_road(costs))
 
     def fleet(self) -> Fleet:
-        """Return the fleet with its costs. O(n^2)."""
+        """Return the fleet with its costs. O(n^2), unless it is large and they are lines."""
+        if self.n > _MOST_STORED and are_straight(self.stops.sources):
+            return Fleet.of_lines(self.rules, lines_of(self.stops))
         return Fleet(rules=self.rules, costs=cost_matrices(self.stops))
 
 

@@ -141,7 +141,8 @@ def test_as_many_cities_are_taken_as_the_limits_say(objectives: int, most: int) 
 
 def test_the_readme_says_the_limits_of_cities() -> None:
     said = re.search(
-        r"Up to ([\d,]+) cities for each request, (\d+) if costs are matrices, (\d+) for a fleet",
+        r"Up to ([\d,]+) cities for each request, (\d+) if costs are matrices, (\d+) for a fleet in"
+        " straight lines",
         prose(README),
     )
     assert said is not None

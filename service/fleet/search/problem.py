@@ -33,7 +33,11 @@ class Problem(NamedTuple):
     slot i are the nodes n + 2 i and n + 2 i + 1; all other nodes are stops.
     """
 
-    costs: Array  # (p, n, n, 2), by profile: how some types of vehicles drive and serve
+    # By profile: how some types of vehicles drive and serve.
+    costs: Array  # (p, n, n, 2); (p, 0, 0, 2) where legs are lines
+    places: Array  # (n, 2, 3), where stops are in each line; (0, 2, 3) where costs are stored
+    curved: Flags  # (2,), whether each line is along a sphere
+    factors: Array  # (p, 2), what a line of length 1 costs
     clock: int  # the number of the costs that are time; -1 for none
     limited: int  # the number of the costs that `longest` bounds; -1 for none
     swept: int  # the number of the costs by which the longest route counts; -1 if it does not
@@ -89,11 +93,14 @@ def problem_of(fleet: Fleet) -> Problem:
     counts = [min(vehicle.count, len(clients)) for vehicle in vehicles]
     kind = np.repeat(np.arange(len(vehicles)), counts)
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in vehicles]
-    finite = np.where(np.isinf(fleet.costs), 0.0, fleet.costs)
-    forbidden = _FORBIDDEN * max(1.0, float(finite.max(initial=0.0))) * (rules.n + 1)
+    forbidden = _FORBIDDEN * max(1.0, float(fleet.greatest_legs.max())) * (rules.n + 1)
     costs = np.moveaxis(np.where(np.isinf(fleet.costs), forbidden, fleet.costs), 0, -1)
+    places = [line.places for line in fleet.lines] or np.empty((2, 0, 3))
     return Problem(
         costs=np.ascontiguousarray(costs)[np.newaxis],
+        places=np.ascontiguousarray(np.moveaxis(np.array(places), 0, 1)),
+        curved=np.array([line.curved for line in fleet.lines], np.bool_),
+        factors=np.array([[line.factor for line in fleet.lines]]),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
         swept=-1 if rules.swept is None else rules.swept,
@@ -208,12 +215,8 @@ def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
     """Return the nearest stops to visit of each stop, shape (n, k), in both costs together."""
     k = min(_NEAR, len(clients) - 1)
     near = np.zeros((fleet.rules.n, k), np.int32)
-    units = np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
     for stop in clients.tolist():
-        away = np.zeros(len(clients))
-        for layer, unit in enumerate(units.tolist()):
-            there, back = fleet.legs_from(layer, stop), fleet.legs_to(layer, stop)
-            away += np.minimum(there, back)[clients] / unit
+        away = fleet.away(stop)[clients]
         away[clients == stop] = np.inf
         first = np.argpartition(away, k - 1)[:k] if k else np.empty(0, int)
         near[stop] = clients[first[np.argsort(away[first], kind="stable")]]

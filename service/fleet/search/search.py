@@ -37,6 +37,7 @@ BRIEF = 0.25  # seconds to find what is in the way where there is no plan
 _CALL = 0.003  # seconds that compiled code may run before the time is checked
 _STILL = 0.1  # share of the rounds of a step at its end that accept nothing that is worse
 _FIRST_ORDERS = NEAR, FAR, SOON, RANDOM  # in which the stops of a first plan are inserted
+_ATTEMPTS = 3  # at a first plan: of many stops some find every place passed by at random
 _FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
 _IDLE_STEPS = 72  # steps without a new plan, after which it ends
 _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
@@ -188,7 +189,9 @@ class RuinSearch:
                 break
             clear(state)
             set_prices(state)
-            insert_all(state, order)
+            for _ in range(_ATTEMPTS):
+                if self._working.counts[MISSING]:
+                    insert_all(state, order)
             if (cost := total_cost(self._working)) < least:
                 least = cost
                 write_row(self._problem, self._working, row)

@@ -1,5 +1,6 @@
 """The plan that a search is changing: routes as linked lists, and what is known along them."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -149,7 +150,22 @@ def leg(problem: Problem, profile: int, a: int, b: int, layer: int) -> float:
     """Return what a leg between two places costs in a profile; 0 from or to anywhere."""
     if a < 0 or b < 0:
         return 0.0
+    if len(problem.places) > 0:
+        return line(problem, profile, a, b, layer)
     return float(problem.costs[profile, a, b, layer])
+
+
+@inlined
+def line(problem: Problem, profile: int, a: int, b: int, layer: int) -> float:
+    """Return what a leg that is a line costs in a profile."""
+    square = 0.0
+    for axis in range(3):
+        side = problem.places[a, layer, axis] - problem.places[b, layer, axis]
+        square += side * side
+    length = math.sqrt(square)
+    if problem.curved[layer]:
+        length = 2.0 * math.asin(min(1.0, 0.5 * length))
+    return float(problem.factors[profile, layer] * length)
 
 
 @inlined

@@ -13,7 +13,14 @@ from service.errors import Fault, Refusal, invalid
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
-from service.requests.limits import Limits, check_amounts, check_limit, check_router, lower_defaults
+from service.requests.limits import (
+    Limits,
+    check_amounts,
+    check_fleet,
+    check_limit,
+    check_router,
+    lower_defaults,
+)
 from service.requests.parser import actor_for_plans
 from service.requests.replan.costs import (
     AllStops,
@@ -52,11 +59,13 @@ def rest_of_fleet(
     rest = _Rest(request, source.front, fleet, task.labels)
     n = len(rest.labels.stops)
     if n > limits.fleet_stops:
-        raise too_many_cities("add", limits.fleet_stops, n)
+        raise too_many_cities("add", limits.fleet_stops, n, "too-many-left")
     # Each stop may come in a route, and depots again in each of as many routes.
     id_bytes = 3 * rest.labels.id_bytes + sum(len(name.id) for name in rest.names)
     check_amounts(request, n, limits, id_bytes)
     subject = rest.subject
+    code = "too-many-left-unless-straight"
+    check_fleet("add", subject.stops, limits, request.time_limit, code)
     check_router(subject.stops.sources, limits)
     return Task(
         subject=subject,

@@ -19,7 +19,7 @@ _LIMITS = 12  # of a sweep, the first of which is none
 
 def swept(fleet: Fleet, seconds: float) -> list[Plan]:
     """Return the plans under evenly spaced limits on the longest route, down to the least."""
-    least = 2 * float(fleet.costs[0, 0].max())
+    least = 2 * float(fleet.matrices()[0, 0].max())
     free = route_fleet(fleet, np.inf, seconds / _LIMITS)
     if free is None:
         return []
@@ -40,7 +40,7 @@ def route_fleet(fleet: Fleet, limit: float, seconds: float) -> Plan | None:
     one type, start and end at stop 0, and have a capacity of one dimension.
     """
     (vehicle,) = fleet.rules.vehicles
-    whole = np.ceil(fleet.costs[0] * FINENESS).astype(np.int64)
+    whole = np.ceil(fleet.matrices()[0] * FINENESS).astype(np.int64)
     manager = pywrapcp.RoutingIndexManager(fleet.rules.n, vehicle.count, 0)
     routing = pywrapcp.RoutingModel(manager)
     transit = routing.RegisterTransitMatrix(whole.tolist())
@@ -88,7 +88,7 @@ def route_in_time(fleet: Fleet, vehicle_cost: float, seconds: float) -> Plan | N
     """
     rules = fleet.rules
     (vehicle,) = rules.vehicles
-    whole = np.ceil(fleet.costs[0] * _FINE).astype(np.int64)
+    whole = np.ceil(fleet.matrices()[0] * _FINE).astype(np.int64)
     count = min(vehicle.count, len(rules.clients))
     manager = pywrapcp.RoutingIndexManager(rules.n, count, 0)
     routing = pywrapcp.RoutingModel(manager)

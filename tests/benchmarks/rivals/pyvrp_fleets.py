@@ -89,10 +89,10 @@ class _Problem:
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet, rules = fleet, fleet.rules
-        self._scale = 10.0 ** floor(_DIGITS - log10(float(fleet.costs[0].max())))
+        self._scale = 10.0 ** floor(_DIGITS - log10(float(fleet.matrices()[0].max())))
         self._timed = rules.clock is not None
         (vehicle,) = rules.vehicles
-        legs = np.ceil(fleet.costs[0] * self._scale - _EXACT).astype(np.int64)
+        legs = np.ceil(fleet.matrices()[0] * self._scale - _EXACT).astype(np.int64)
         self._clients = [stop for stop in rules.clients if stop not in rules.shipped]
         early, late = self._window(vehicle.shift)
         kind = pyvrp.VehicleType(

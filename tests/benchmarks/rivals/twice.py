@@ -13,6 +13,6 @@ Solve = Callable[[Fleet, float, float], Plan | None]  # with a cost of a vehicle
 
 def cheapest_twice(solve: Solve, fleet: Fleet, seconds: float) -> list[Plan]:
     """Return the plans that are found where vehicles cost nothing, and where they cost much."""
-    much = _LEGS_OF_VEHICLE * float(np.max(fleet.costs[0]))
+    much = _LEGS_OF_VEHICLE * float(np.max(fleet.matrices()[0]))
     plans = (solve(fleet, cost, seconds) for cost in (0.0, much))
     return [plan for plan in plans if plan is not None]

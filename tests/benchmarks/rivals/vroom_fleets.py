@@ -28,7 +28,7 @@ def route_by_vroom(fleet: Fleet, vehicle_cost: float, seconds: float) -> Plan | 
     rules = fleet.rules
     (vehicle,) = rules.vehicles
     problem = vroom.Input()
-    durations = np.ceil(_FINE * fleet.costs[0]).astype(np.uint32)
+    durations = np.ceil(_FINE * fleet.matrices()[0]).astype(np.uint32)
     problem.set_durations_matrix("car", durations)
     costs = vroom.VehicleCosts(fixed=round(_FINE * vehicle_cost))
     for number in range(min(vehicle.count, len(rules.clients))):
