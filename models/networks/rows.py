@@ -38,8 +38,8 @@ def changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
     return _made(type(rows), (member if member is None else change(member) for member in rows))
 
 
-def side_by_side(numbers: Float[Tensor, "*x"], count: int) -> Float[Tensor, "*x count"]:
-    """Return each number `count` times.
+def side_by_side(numbers: Float[Tensor, "*x"], count: Any) -> Float[Tensor, "*x count"]:
+    """Return each number `count` times: an integer, while a network is exported a tensor of one.
 
     Exported, a product takes less time than to repeat numbers, or to let them spread.
     """
