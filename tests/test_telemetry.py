@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler
 
 import httpx
@@ -15,24 +16,9 @@ from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
 from service.telemetry import PlainFormatter, logging_every, trace
+from tests.helpers.command import paretour
 from tests.helpers.http_handler import serving_handler
 from tests.helpers.processes import serve_process
-
-
-def test_every_line_of_the_log_is_an_object_and_each_request_has_one(
-    quick_actors: dict[str, str],
-) -> None:
-    with serve_process({"PARETOUR_WORKERS": "1", **quick_actors}) as service:
-        httpx.get(f"{service.url}/front/none?secret=1", headers={"X-Request-ID": "the-one"})
-    lines = [json.loads(line) for line in service.log.splitlines()]
-    assert {"time", "level", "logger", "message"} <= set.intersection(*map(set, lines))
-    assert any("uvicorn" in line["logger"] for line in lines)
-    [line] = [line for line in lines if line.get("request_id") == "the-one"]
-    assert line["logger"] == "paretour.requests"
-    assert (line["method"], line["path"], line["status"]) == ("GET", "/front/{id}", 404)
-    assert line["caller"] == "anonymous"
-    assert line["seconds"] > 0
-    assert b"secret" not in service.log
 
 
 def test_a_warning_of_python_is_a_line_of_the_log_in_worker_processes_too() -> None:
@@ -72,12 +58,50 @@ def collector() -> Iterator[tuple[str, list[ExportTraceServiceRequest]]]:
         yield url, received
 
 
-def test_each_request_is_a_span_at_the_collector(quick_actors: dict[str, str]) -> None:
+@dataclass(frozen=True)
+class Served:
+    """What was asked of a service with keys and traces, and what it told of that."""
+
+    log: bytes
+    spans: list[ExportTraceServiceRequest]
+    key: str
+    lets_in: list[int]
+
+
+@pytest.fixture(scope="module")
+def served(quick_actors: dict[str, str]) -> Served:
+    """A service that has ended, which let in the caller of a key that the command made."""
+    key, entry = paretour("key", "dispatch").stdout.splitlines()
+    bearer = {"Authorization": f"Bearer {key}"}
     with collector() as (endpoint, received):
-        settings = {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint, "PARETOUR_WORKERS": "1"}
-        with serve_process({**settings, **quick_actors}) as service:
-            httpx.get(f"{service.url}/front/none")
-        resources = [each for request in received for each in request.resource_spans]
+        settings = {"PARETOUR_API_KEYS": f" {entry} , lab:{64 * '0'}", "PARETOUR_WORKERS": "1"}
+        traced = {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}
+        with serve_process({**settings, **traced, **quick_actors}) as service:
+            request = {"X-Request-ID": "the-one", **bearer}
+            httpx.get(f"{service.url}/front/none?secret=1", headers=request)
+            asked = [httpx.get(f"{service.url}/actors", headers=each) for each in (bearer, {})]
+    return Served(service.log, received, key, [answer.status_code for answer in asked])
+
+
+def test_the_command_makes_a_key_that_its_entry_lets_in(served: Served) -> None:
+    assert served.lets_in == [200, 401]
+    assert served.key.encode() not in served.log
+
+
+def test_every_line_of_the_log_is_an_object_and_each_request_has_one(served: Served) -> None:
+    lines = [json.loads(line) for line in served.log.splitlines()]
+    assert {"time", "level", "logger", "message"} <= set.intersection(*map(set, lines))
+    assert any("uvicorn" in line["logger"] for line in lines)
+    [line] = [line for line in lines if line.get("request_id") == "the-one"]
+    assert line["logger"] == "paretour.requests"
+    assert (line["method"], line["path"], line["status"]) == ("GET", "/front/{id}", 404)
+    assert line["caller"] == "dispatch"
+    assert line["seconds"] > 0
+    assert b"secret" not in served.log
+
+
+def test_each_request_is_a_span_at_the_collector(served: Served) -> None:
+    resources = [each for request in served.spans for each in request.resource_spans]
     named = {
         (each.key, each.value.string_value)
         for resource in resources

@@ -11,7 +11,6 @@ from service.api.app import Edge
 from service.api.auth import Access, Rates
 from service.api.keys import KeyHash, new_key
 from tests.helpers.command import paretour
-from tests.helpers.processes import serve_process
 from tests.helpers.redis_server import redis_server
 from tests.helpers.serving import app_of, problem, serving
 
@@ -160,30 +159,13 @@ def test_without_keys_each_address_has_a_rate_and_a_latest_front() -> None:
 def test_an_address_of_ipv6_is_the_network_that_a_client_has(
     addresses: list[str], allowed: list[int]
 ) -> None:
-    edge = Edge(access=Access((), Rates("2/hour")))
+    edge = Edge(access=Access((), Rates("2/day")))
     with serving(app_of(edge=edge), warm=False) as url:
         answers = [
             httpx.get(f"{url}/actors", headers={"X-Forwarded-For": address})
             for address in addresses
         ]
     assert [answer.status_code for answer in answers] == allowed
-
-
-def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing(
-    quick_actors: dict[str, str],
-) -> None:
-    settings = {
-        "PARETOUR_RATE": "2/hour",
-        "FORWARDED_ALLOW_IPS": "192.0.2.1",
-        "PARETOUR_WORKERS": "1",
-        **quick_actors,
-    }
-    with serve_process(settings) as service:
-        answers = [
-            httpx.get(f"{service.url}/actors", headers={"X-Forwarded-For": f"203.0.113.{last}"})
-            for last in range(3)
-        ]
-    assert [answer.status_code for answer in answers] == [200, 200, 429]
 
 
 @pytest.mark.parametrize(
@@ -204,20 +186,6 @@ def test_an_entry_without_a_hash_is_refused(text: str, sentence: str) -> None:
 
 def test_a_hash_is_read_as_it_is_written() -> None:
     assert KeyHash.read(f"lab:{LAB_HASH}") == HASHES[2]
-
-
-def test_the_command_makes_a_key_that_its_entry_lets_in(quick_actors: dict[str, str]) -> None:
-    made = paretour("key", "dispatch")
-    key, entry = made.stdout.splitlines()
-    keys = f" {entry} , lab:{LAB_HASH}"
-    settings = {"PARETOUR_API_KEYS": keys, "PARETOUR_WORKERS": "1", **quick_actors}
-    with serve_process(settings) as service:
-        for shown in (key, LAB):
-            assert httpx.get(f"{service.url}/actors", headers=bearing(shown)).status_code == 200
-        assert httpx.get(f"{service.url}/actors").status_code == 401
-    assert key.encode() not in service.log
-    [line] = [line for line in service.log.splitlines() if b'"caller": "dispatch"' in line]
-    assert b"/actors" in line
 
 
 def test_the_command_makes_no_key_for_a_name_that_no_entry_can_hold() -> None:

@@ -13,8 +13,7 @@ from service.jobs.engine import EngineStats
 from service.kinds.front_document import FrontDocument
 from service.requests.task import KindName
 from tests.helpers.actors import Broken
-from tests.helpers.processes import serve_process
-from tests.helpers.serving import app_of, serving
+from tests.helpers.serving import app_of, serving, serving_settings
 
 FOUND = FrontDocument(
     kind="front",
@@ -109,13 +108,13 @@ def test_fronts_of_tours_of_fleets_and_of_robots_are_counted_apart() -> None:
 
 
 def test_fronts_are_counted_by_phase_and_size_class(quick_actors: dict[str, str]) -> None:
-    with serve_process({"PARETOUR_WORKERS": "1", **quick_actors}, ready=True) as service:
+    with serving_settings({"PARETOUR_WORKERS": "1", **quick_actors}, warm=True) as url:
         for n, seconds in [(12, 1.0), (12, 0.0), (60, 0.0)]:
             cities = np.random.default_rng(n).random((n, 4)).tolist()
             request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}
-            answer = httpx.post(f"{service.url}/front", json=request, timeout=60)
+            answer = httpx.post(f"{url}/front", json=request, timeout=60)
             assert answer.status_code == 200
-        counted = samples(service.url)
+        counted = samples(url)
     assert counted["paretour_workers",] == 1
     for phase in ("construction", "improvement", "selection", "bound"):
         assert counted["paretour_planning_seconds_count", "20", phase] == 2

@@ -12,7 +12,8 @@ from tests.guide.pages import GUIDE, blocks
 from tests.helpers.processes import ServeProcess, serve_process
 from tests.helpers.redis_server import LASTING, redis_server
 from tests.helpers.required import give_up
-from tests.helpers.sampled import IS_WHOLE, at_night
+from tests.helpers.sampled import at_night
+from tests.helpers.serving import serving_settings
 
 REQUEST = {
     "coordinates": np.random.default_rng(1).random((9, 4)).tolist(),
@@ -40,8 +41,8 @@ def planned(service: ServeProcess) -> dict[str, Any]:
     return front
 
 
-def front_of(service: ServeProcess, front: dict[str, Any]) -> httpx.Response:
-    return httpx.get(f"{service.url}/front/{front['id']}")
+def front_of(url: str, front: dict[str, Any]) -> httpx.Response:
+    return httpx.get(f"{url}/front/{front['id']}")
 
 
 def test_a_running_service_is_backed_up_and_restored(
@@ -54,21 +55,20 @@ def test_a_running_service_is_backed_up_and_restored(
         run("back-up.sh", service.process.pid, store, copy)
         after = planned(service)
         run("back-up.sh", service.process.pid, store, tmp_path / "tuesday")
-        assert front_of(service, before).json() == before
+        assert front_of(service.url, before).json() == before
         service.process.kill()
         service.process.wait()
     assert Path(f"{store}-wal").exists()
     assert copy.stat().st_mode & 0o77 == 0
     store.write_bytes(b"lost")
     run("restore.sh", copy, store)
-    if IS_WHOLE:
-        with serve_process(settings) as service:
-            assert front_of(service, before).json() == before
-            assert front_of(service, after).status_code == 404
+    with serving_settings(settings) as url:
+        assert front_of(url, before).json() == before
+        assert front_of(url, after).status_code == 404
     run("restore.sh", tmp_path / "tuesday", store)  # over the backup before it
-    with serve_process(settings) as service:
-        assert front_of(service, before).json() == before
-        assert front_of(service, after).json() == after
+    with serving_settings(settings) as url:
+        assert front_of(url, before).json() == before
+        assert front_of(url, after).json() == after
 
 
 @pytest.mark.parametrize("folder", [pytest.param(None, marks=at_night), "gone"])
@@ -83,7 +83,7 @@ def test_a_store_that_cannot_be_backed_up_says_so_and_goes_on(
     ) as service:
         front = planned(service)
         subprocess.run(["kill", "-USR1", str(service.process.pid)], check=True)
-        assert front_of(service, front).json() == front
+        assert front_of(service.url, front).json() == front
     assert b"the store cannot be backed up" in service.log
 
 

@@ -54,7 +54,7 @@ def test_a_front_is_planned_through_it(url: str) -> None:
 
 
 def test_a_client_cannot_call_itself_by_another_address(tmp_path: Path) -> None:
-    edge = Edge(access=Access(rates=Rates("2/hour")))
+    edge = Edge(access=Access(rates=Rates("2/day")))
     with serving(app_of(edge=edge), warm=False) as service, nginx_before(service, tmp_path) as url:
         statuses = [
             httpx.get(f"{url}/actors", headers={"X-Forwarded-For": f"192.0.2.{last}"}).status_code

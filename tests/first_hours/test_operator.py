@@ -10,7 +10,7 @@ from tests.first_hours.steps import page_of, says
 from tests.guide.pages import blocks
 from tests.helpers.command import paretour
 from tests.helpers.processes import ServeProcess, serve_process
-from tests.helpers.serving import problem
+from tests.helpers.serving import problem, serving_settings
 
 PRODUCTION = "run-it-in-production"
 REQUEST = {
@@ -70,15 +70,15 @@ def test_a_front_outlives_restart_upgrade_and_loss(
     says(PRODUCTION, "It ends with status 0 once the requests in progress are answered")
     assert service.process.returncode == 0
 
-    with serve_process(settings) as service:
+    with serving_settings(settings) as url:
         for each in (front, later):
-            assert httpx.get(f"{service.url}/front/{each['id']}", headers=key).json() == each
+            assert httpx.get(f"{url}/front/{each['id']}", headers=key).json() == each
 
     store.write_bytes(b"lost")
     run_script("restore.sh", monday, store)
     says("upgrade", "Try the new version on a copy of the store, at another port:")
-    with serve_process(settings) as service:
+    with serving_settings(settings) as url:
         says("back-it-up", "ask for a front that you know: `GET /front/{id}` answers as before.")
-        assert httpx.get(f"{service.url}/front/{front['id']}", headers=key).json() == front
-        since = httpx.get(f"{service.url}/front/{later['id']}", headers=key)
+        assert httpx.get(f"{url}/front/{front['id']}", headers=key).json() == front
+        since = httpx.get(f"{url}/front/{later['id']}", headers=key)
         assert since.status_code == 404

@@ -3,7 +3,7 @@
 import json
 import threading
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import pytest
 from fastapi import FastAPI
 
 from service.api.app import Edge, create_app
@@ -140,6 +141,20 @@ def serving_released() -> Iterator[str]:
     """
     with serving(build(Settings(workers=1, rate=UNLIMITED), Ending())) as address:
         yield address
+
+
+@contextmanager
+def serving_settings(settings: Mapping[str, str], warm: bool = False) -> Iterator[str]:
+    """Serve the service with these environment variables, and yield its address.
+
+    Where nothing is asked of the command itself, this takes a tenth of what its process takes.
+    With `warm`, the address is yielded once its workers are.
+    """
+    with pytest.MonkeyPatch.context() as environment:
+        for name, value in {"PARETOUR_RATE": UNLIMITED, **settings}.items():
+            environment.setenv(name, value)
+        with serving(build(Settings(), Ending()), warm=warm) as address:
+            yield address
 
 
 def problem(

@@ -61,10 +61,24 @@ def test_the_document_names_the_path_as_its_server(url: str) -> None:
         assert "servers" not in httpx.get(f"{other}/openapi.json").json()
 
 
-def test_the_command_serves_under_the_path_of_its_setting(quick_actors: dict[str, str]) -> None:
-    settings = {"PARETOUR_ROOT_PATH": "/set", "PARETOUR_WORKERS": "1", **quick_actors}
+def test_the_command_heeds_the_settings_of_its_path_and_of_the_proxies_it_trusts(
+    quick_actors: dict[str, str],
+) -> None:
+    settings = {
+        "PARETOUR_ROOT_PATH": "/set",
+        "PARETOUR_RATE": "2/day",
+        "FORWARDED_ALLOW_IPS": "192.0.2.1",
+        "PARETOUR_WORKERS": "1",
+        **quick_actors,
+    }
     with serve_process(settings) as service:
         problem(httpx.get(f"{service.url}/none"), 404, "no-such-path", "/set")
+        # The header of a proxy that is not trusted counts for nothing.
+        answers = [
+            httpx.get(f"{service.url}/actors", headers={"X-Forwarded-For": f"203.0.113.{last}"})
+            for last in range(3)
+        ]
+    assert [answer.status_code for answer in answers] == [200, 200, 429]
 
 
 def test_a_problem_that_an_earlier_release_stored_stays_as_it_was() -> None:
