@@ -23,6 +23,7 @@ from playwright.sync_api import (
 )
 
 from tests.helpers.required import MAY_BE_MISSING
+from tests.helpers.sampled import IS_WHOLE
 
 WITHOUT_WINDOW, WHOLE = Path("/usr/bin/chromium-headless-shell"), Path("/usr/bin/chromium")
 CHROMIUM = WITHOUT_WINDOW if WITHOUT_WINDOW.exists() else WHOLE
@@ -59,6 +60,28 @@ globalThis.fetch = (path, options) => {{
 }};
 """
 
+# By night the service, files and the clipboard are late, as on a busy machine: what a test does not
+# wait for is not there yet.
+COME_LATE = """
+const late = () => new Promise(done => setTimeout(done, 400));
+const answered = globalThis.fetch;
+globalThis.fetch = async (...asked) => {
+  await late();
+  const answer = await answered(...asked);
+  await late();
+  return answer;
+};
+const later = (prototype, name) => {
+  const before = prototype?.[name];
+  if (before) prototype[name] = async function (...given) {
+    await late();
+    return before.apply(this, given);
+  };
+};
+for (const name of ["text", "arrayBuffer"]) later(Blob.prototype, name);
+later(globalThis.Clipboard?.prototype, "writeText");
+"""
+
 # The colours of the canvas on which routes are drawn, as #rrggbb.
 DRAWN = """canvas => {
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -78,6 +101,13 @@ CUT_OFF = """() => {
     const isWider = each.clientWidth > 0 && each.scrollWidth > each.clientWidth;
     return isWider || each.getBoundingClientRect().right > card.right + 0.5;
   }).map(each => each.textContent.trim());
+}"""
+
+PASTE = """text => {
+  const clipboardData = new DataTransfer();
+  clipboardData.setData("text", text);
+  const paste = { clipboardData, bubbles: true, cancelable: true };
+  document.activeElement.dispatchEvent(new ClipboardEvent("paste", paste));
 }"""
 
 # What the clipboard holds, as soon as it holds anything.
@@ -185,6 +215,8 @@ def new_window(browser: Browser, **options: Any) -> Page:
     page = browser.new_page(permissions=CLIPBOARD, **options)
     page.set_default_timeout(120 * SECOND)
     page.add_init_script(SHORTEN_SEARCH)
+    if IS_WHOLE:
+        page.add_init_script(COME_LATE)
     return page
 
 
@@ -217,6 +249,12 @@ def copied(page: Page, name: str) -> str:
     page.get_by_role("button", name=f"Copy {name}").click()
     text: str = page.evaluate(CLIPBOARD_TEXT)
     return text
+
+
+def paste(page: Page, text: str, said: Locator, words: str) -> None:
+    """Paste a text where the cursor is, and wait until a part of the page says that it is read."""
+    page.evaluate(PASTE, text)
+    expect(said).to_contain_text(words)
 
 
 def to_three_digits(value: float) -> str:
@@ -270,14 +308,18 @@ class Held:
         else:
             self._routes.append(route)
 
-    def release(self) -> None:
-        """Let them pass, once there is one."""
+    def wait(self) -> None:
+        """Wait until there is one: what ends it before that ends a request that is not sent."""
         for _ in range(1000):
             if self._routes:
                 break
             self._page.wait_for_timeout(20)
         assert self._routes
-        routes, self._routes = self._routes, None
+
+    def release(self) -> None:
+        """Let them pass, once there is one."""
+        self.wait()
+        routes, self._routes = self._routes or [], None
         for route in routes:
             route.continue_()
 

@@ -3,12 +3,12 @@
 import re
 from collections.abc import Callable
 from itertools import cycle
-from typing import Any, Literal
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.accessibility import load_axe, unfold, violations
+from tests.helpers.accessibility import Scheme, load_axe, look, unfold, violations
 from tests.helpers.browsing import (
     DESK,
     PHONE,
@@ -16,13 +16,11 @@ from tests.helpers.browsing import (
     open_files,
     open_page,
     plan_city_deliveries,
-    wait_for_next_frame,
     wait_until_planned,
 )
 from tests.helpers.sampled import IS_WHOLE, at_night
 
 TABLET, WIDE = 768, 1920
-Scheme = Literal["light", "dark"]
 
 Looks = tuple[tuple[int, Scheme], ...]
 
@@ -56,7 +54,7 @@ def test_the_reference_needs_nothing_from_elsewhere_and_axe_finds_nothing_seriou
         expect(page.get_by_role("button", name="Authorize")).to_be_hidden()
         expect(page.locator(".authorization__btn").first).to_be_hidden()
         looks = TWO_LOOKS if IS_WHOLE else TWO_LOOKS[:1]
-        found = findings(page, looks, settled=500)  # its colours fade into one another
+        found = findings(page, looks)
         assert [each for each in found if each[0] in ("serious", "critical")] == []
         page.emulate_media(color_scheme="dark")
         expect(page.locator("html.dark-mode")).to_be_visible()
@@ -125,23 +123,12 @@ def test_axe_finds_nothing_in_any_state_of_the_page(browser: Browser, released: 
             assert findings(page, looks, part) == [], reach.__name__
 
 
-def findings(
-    page: Page,
-    looks: Looks = LOOKS,
-    part: str = "html",
-    settled: int = 0,
-) -> list[Any]:
-    """Return what axe finds in a part of the page: impact, rule, where first, and how it looked.
-
-    It is looked at so many milliseconds after a change of the scheme.
-    """
+def findings(page: Page, looks: Looks = LOOKS, part: str = "html") -> list[Any]:
+    """Return what axe finds in a part of the page: impact, rule, where first, and how it looked."""
     load_axe(page)
     found = []
     for width, scheme in looks:
-        page.set_viewport_size({"width": width, "height": 900})
-        page.emulate_media(color_scheme=scheme)
-        wait_for_next_frame(page)
-        page.wait_for_timeout(settled)
+        look(page, width, scheme)
         for rule in violations(page, part=part):
             where = rule["nodes"][0]["target"]
             found.append((rule["impact"], rule["id"], where, width, scheme))

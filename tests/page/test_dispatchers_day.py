@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.helpers.accessibility import load_axe, violations
+from tests.helpers.accessibility import found_on_desk_and_phone
 from tests.helpers.browsing import (
-    PHONE,
     copied,
     needs_chromium,
     new_window,
     open_page,
+    paste,
     wait_until_planned,
     wait_until_read,
 )
@@ -27,12 +27,6 @@ ORDERS = "order,customer,lon,lat,crates\n" + "".join(
 )
 VANS = "vehicle,capacity\nPekka,20\nAnna,20\nOlli,20\n"
 NEW = "order,customer,lon,lat,crates\nB1,Bakery,24.95,60.17,1\nB2,Cinema,24.96,60.18,1\n"
-PASTE = """text => {
-  const clipboardData = new DataTransfer();
-  clipboardData.setData("text", text);
-  const paste = { clipboardData, bubbles: true, cancelable: true };
-  document.activeElement.dispatchEvent(new ClipboardEvent("paste", paste));
-}"""
 
 
 class Desk:
@@ -53,10 +47,10 @@ class Desk:
         self._found(what).fill(text)
         self._found(what).press("Tab")
 
-    def paste(self, text: str) -> None:
-        """Paste a text where the cursor is."""
+    def paste(self, text: str, where: str, said: str) -> None:
+        """Paste a text where the cursor is, and wait until a part of the page says so."""
         self.count += 1
-        self.page.evaluate(PASTE, text)
+        paste(self.page, text, self.page.locator(where), said)
 
     def open(self, folder: Path, files: dict[str, str]) -> None:
         """Choose files."""
@@ -89,7 +83,7 @@ def test_a_dispatchers_day_takes_25_clicks_and_fields(
     for said in (f"{left[0]} (Shop ", "is cancelled", "B1 (Bakery) is new: ", "out of service"):
         expect(changes).to_contain_text(said)
     expect(page.locator("#choice")).to_contain_text("The last vehicle is back at 1")
-    assert found_by_axe(page, "#changes", "#today", "#fleet") == []
+    assert found_on_desk_and_phone(page, "#changes", "#today", "#fleet") == []
     desk.press("#drive")
     sheet = on_sheets(desk)
     assert {"B1", "B2"} <= set(sheet)
@@ -99,7 +93,7 @@ def test_a_dispatchers_day_takes_25_clicks_and_fields(
     expect(page.locator("#link-help")).to_have_text(
         "The link leaves out customer, which you and the drivers see."
     )
-    assert found_by_axe(page, ".numbers") == []
+    assert found_on_desk_and_phone(page, ".numbers") == []
     assert desk.count <= MOST
     shown = page.locator("#fleet-legend").text_content() or ""
     with open_page(browser, link) as other:
@@ -120,7 +114,7 @@ def plan_in_the_morning(desk: Desk, folder: Path) -> None:
     desk.open(folder, {"orders.csv": ORDERS, "vans.csv": VANS})
     missing = page.locator("#everyday-said")
     expect(missing).to_contain_text("No time at the stops is given: 0 min.")
-    assert found_by_axe(page, "#everyday") == []
+    assert found_on_desk_and_phone(page, "#everyday") == []
     desk.fill("#everyday-service", "40")
     desk.fill("#everyday-shift", "8:00-16:00")
     desk.press("#place-depot")
@@ -148,8 +142,7 @@ def at_eleven(desk: Desk) -> list[str]:
     )
     desk.press(chips.last.get_by_role("checkbox"))
     desk.press(page.get_by_role("button", name=f"Cancel {left[0]}", exact=True))
-    desk.paste(NEW)
-    expect(page.locator("#orders-help")).to_have_text("2 rows were read.")
+    desk.paste(NEW, "#orders-help", "2 rows were read.")
     return left
 
 
@@ -158,21 +151,6 @@ def on_sheets(desk: Desk) -> list[str]:
     desk.press(desk.page.get_by_role("button", name="Print the stops"))
     names = desk.page.locator("#sheet tbody td:nth-child(2)").all_text_contents()
     return [name for name in names if name != "depot" and " at " not in name]
-
-
-def found_by_axe(page: Page, *parts: str) -> list[str]:
-    """Return what axe finds in parts of the page, on a desk and in the dark on a phone."""
-    load_axe(page)
-    size, found = page.viewport_size, []
-    assert size is not None
-    for width, scheme in ((size["width"], "light"), (PHONE, "dark")):
-        page.set_viewport_size({"width": width, "height": 900})
-        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-        page.wait_for_timeout(500)  # colours fade into one another
-        found += [each["id"] for part in parts for each in violations(page, part=part)]
-    page.emulate_media(color_scheme="light")
-    page.set_viewport_size(size)
-    return found
 
 
 def test_what_was_said_once_is_remembered_for_the_next_file(
@@ -184,7 +162,7 @@ def test_what_was_said_once_is_remembered_for_the_next_file(
     desk.open(tmp_path, {"orders.csv": ORDERS, "vans.csv": VANS})
     desk.fill("#everyday-service", "soon")
     expect(page.locator("#everyday-fault")).to_contain_text("as 5 min")
-    assert found_by_axe(page, "#everyday") == []
+    assert found_on_desk_and_phone(page, "#everyday") == []
     desk.fill("#everyday-service", "7")
     desk.fill("#everyday-depot", "A3")
     expect(page.locator("#everyday-depot")).to_have_value("A3 (depot)")
@@ -201,19 +179,18 @@ def test_what_was_said_once_is_remembered_for_the_next_file(
 
 
 def test_cells_of_a_spreadsheet_fill_a_column(desk: Desk, tmp_path: Path) -> None:
-    page, status = desk.page, desk.page.locator("#status")
+    page = desk.page
     desk.open(tmp_path, {"orders.csv": ORDERS, "vans.csv": VANS})
     page.locator("#stops-column").select_option("Window")
     page.get_by_label("Window of A1", exact=True).click()
-    desk.paste("\n".join(f"8-{k}" for k in range(10, 20)))
-    expect(status).to_have_text("10 cells were filled. Undo takes that back.")
+    hours = "\n".join(f"8-{k}" for k in range(10, 20))
+    desk.paste(hours, "#status", "10 cells were filled. Undo takes that back.")
     expect(page.get_by_label("Window of A10", exact=True)).to_have_value("8:00-19:00")
     page.get_by_label("Window of A9", exact=True).click()
     page.get_by_role("button", name="Fill down window").click()
     expect(page.get_by_label("Window of A15", exact=True)).to_have_value("8:00-18:00")
     page.get_by_label("customer of A14", exact=True).click()
-    desk.paste("Lee\nBo\nCy\n")
-    expect(status).to_contain_text("2 cells were filled. 1 row was left out")
+    desk.paste("Lee\nBo\nCy\n", "#status", "2 cells were filled. 1 row was left out")
     expect(page.get_by_label("customer of A15", exact=True)).to_have_value("Bo")
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_label("customer of A15", exact=True)).to_have_value("Shop 15")

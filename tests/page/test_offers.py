@@ -4,7 +4,7 @@ from playwright.sync_api import Page, expect
 
 from tests.helpers.browsing import needs_chromium
 from tests.helpers.node import Node
-from tests.page.test_today import PASTE, left_of_a_planned_day, replan
+from tests.page.test_today import left_of_a_planned_day, paste_orders, replan
 
 ASKED = {
     "clock": "time",
@@ -44,8 +44,7 @@ def test_an_offer_says_what_rises(node: Node) -> None:
 def test_a_time_that_is_promised_is_the_window_of_the_order(window: Page) -> None:
     page, offers = window, window.locator("#offers button")
     left_of_a_planned_day(page)
-    page.evaluate(PASTE, "id,lon,lat\nB1,24.95,60.18\n")
-    expect(page.locator("#orders-help")).to_have_text("1 row was read.")
+    paste_orders(page, "id,lon,lat\nB1,24.95,60.18\n", "1 row was read.")
     page.get_by_role("button", name="Offer a time").click()
     expect(offers.first).to_be_visible()
     begin = str(offers.first.text_content()).partition("\u2013")[0]

@@ -87,6 +87,7 @@ def test_a_read_that_fails_leaves_a_plan_as_it_is(page: Page) -> None:
 def test_stop_ends_the_reading_of_a_file(opened: Page) -> None:
     held = Held(opened, "**/files")
     choose(opened, GOOD.replace("c,", "d,"))
+    held.wait()
     with opened.expect_event("requestfailed", lambda failed: failed.url.endswith("/files")):
         button(opened, "Stop").click()
     expect(opened.locator("#status")).to_have_text("Stopped.")
@@ -102,6 +103,7 @@ def test_stop_ends_the_reading_of_an_example_which_can_be_chosen_again(opened: P
     choice = opened.get_by_label("Example")
     choice.select_option("City deliveries")
     expect(opened.locator("#status")).to_have_text("The example is being opened.")
+    held.wait()
     button(opened, "Stop").click()
     expect(opened.locator("#status")).to_have_text("Stopped.")
     expect(choice).to_have_value("")

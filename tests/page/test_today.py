@@ -6,12 +6,12 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.accessibility import load_axe, violations
+from tests.helpers.accessibility import found_on_desk_and_phone
 from tests.helpers.browsing import (
-    PHONE,
     curl_body,
     needs_chromium,
     open_files,
+    paste,
     wait_until_planned,
 )
 from tests.helpers.node import Node
@@ -234,12 +234,6 @@ FLEET: dict[str, Any] = {
     "time_limit": 0.05,
 }
 FLEET["stops"][1]["window"] = FLEET["stops"][4]["window"] = [8 * HOUR, 8.5 * HOUR]
-PASTE = """text => {
-  const clipboardData = new DataTransfer();
-  clipboardData.setData("text", text);
-  const paste = { clipboardData, bubbles: true, cancelable: true };
-  document.body.dispatchEvent(new ClipboardEvent("paste", paste));
-}"""
 
 
 @needs_chromium
@@ -254,7 +248,7 @@ def test_a_day_is_replanned_from_what_is_done_by_now(window: Page) -> None:
     replan(page)
     for said in (f"{last} is cancelled", "new 1 is new", "out of service"):
         expect(changes).to_contain_text(said)
-    found = found_by_axe(page)
+    found = found_on_desk_and_phone(page, "#today", "#changes")
     # The drivers' sheets have each stop that is left once, and none that is done or cancelled.
     rest = sorted({*left, "B1", "new 1"} - {last})
     assert sorted(on_sheets(page)) == rest
@@ -299,9 +293,8 @@ def order_three(page: Page, known: str) -> None:
     """Order by a click on the map, by rows that are pasted, and by one that is not taken."""
     page.get_by_role("button", name="Click where it is").click()
     page.locator("#plane-1").click(position={"x": 200, "y": 150})
-    page.evaluate(PASTE, f"id,lon,lat\nB1,24.95,60.18\n{known},24.95,60.18\n")
-    said = page.locator("#orders-help")
-    expect(said).to_have_text("2 rows were read; 1 is a stop of the plan already.")
+    said = "2 rows were read; 1 is a stop of the plan already."
+    paste_orders(page, f"id,lon,lat\nB1,24.95,60.18\n{known},24.95,60.18\n", said)
     page.locator("#add-order").click()
     page.get_by_label("Name of order 3").fill(known)
     page.get_by_label("Name of order 3").press("Tab")
@@ -309,6 +302,11 @@ def order_three(page: Page, known: str) -> None:
     fault = f"{known} is a stop of the plan already: give the new order another name."
     expect(page.locator("#today-fault")).to_have_text(fault)
     page.locator("#orders").get_by_role("button", name=f"Delete {known}").click()
+
+
+def paste_orders(page: Page, text: str, said: str) -> None:
+    """Paste the rows of new orders, and wait until they are read."""
+    paste(page, text, page.locator("#orders-help"), said)
 
 
 def replan(page: Page) -> None:
@@ -334,19 +332,3 @@ def on_sheets(page: Page) -> list[str]:
     page.get_by_role("button", name="Print the stops").click()
     names = page.locator("#sheet tbody td:nth-child(2)").all_text_contents()
     return [name for name in names if name != "depot" and " at " not in name]
-
-
-def found_by_axe(page: Page) -> list[Any]:
-    """Return what axe finds in the day and its changes, on a desk and in the dark on a phone."""
-    load_axe(page)
-    size, found = page.viewport_size, []
-    assert size is not None
-    for width, scheme in ((size["width"], "light"), (PHONE, "dark")):
-        page.set_viewport_size({"width": width, "height": 900})
-        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-        page.wait_for_timeout(500)  # colours fade into one another
-        for part in ("#today", "#changes"):
-            found += [each["id"] for each in violations(page, part=part)]
-    page.emulate_media(color_scheme="light")
-    page.set_viewport_size(size)
-    return found
