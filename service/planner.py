@@ -180,14 +180,12 @@ def _bound(instance: Instance, reference_point: Array, watch: Watch[Front]) -> f
 def _no_tour(instance: Instance, options: PlanOptions, result: SearchResult) -> NoTour:
     """Return the refusal of an instance for which no tour without a forbidden leg was found."""
     if options.time_limit == 0:
-        found = "was built by the network: a time_limit above 0 has a search look for one"
+        why = "network-found-none"
     elif instance.n <= MAX_ENUMERATED and result.terminated == "converged":
-        found = "exists: all were tried"
+        why = "none-exists"
     else:
-        found = f"was found in {options.time_limit:g} s"
-    fewest = "the fewest ways lead to and from {cities}"
-    sentence = f"no tour without a forbidden leg {found}; {fewest}"
-    return NoTour([Obstacle(sentence, tightest(instance))])
+        why = "none-in-time"
+    return NoTour([Obstacle(why, tightest(instance), values={"seconds": options.time_limit})])
 
 
 def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:

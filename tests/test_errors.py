@@ -12,6 +12,7 @@ import pytest
 from service.errors import PROBLEMS, Fault, InvalidCoverage, Refusal, TooManyPlaces, WorkerLost
 from service.errors.faults import SENTENCES
 from service.errors.printable import printable, printable_lines
+from service.errors.tours import OBSTACLES
 
 SERVICE = Path(__file__).parents[1] / "service"
 MAKERS = {
@@ -92,16 +93,22 @@ def faults_in(tree: ast.AST) -> Iterator[tuple[str, set[str] | None]]:
 
 
 def unknown_in(tree: ast.AST) -> Iterator[str]:
-    """The texts that are given for the code of a fault, and are none."""
+    """The texts that are given for the code of a fault or of an obstacle, and are none."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(
                 func=ast.Name("invalid" | "uncoverable" | "invalid_header"), args=[_, code]
-            ) if not isinstance(code, ast.Name):
-                texts = [code.body, code.orelse] if isinstance(code, ast.IfExp) else [code]
-                for text in texts:
-                    if not isinstance(text, ast.Constant) or text.value not in SENTENCES:
-                        yield ast.unparse(text)
+            ):
+                known = SENTENCES
+            case ast.Call(func=ast.Name("Obstacle"), args=[code, *_]):
+                known = OBSTACLES
+            case _:
+                continue
+        texts = [code.body, code.orelse] if isinstance(code, ast.IfExp) else [code]
+        for text in texts:
+            written = isinstance(text, ast.Constant) and text.value in known
+            if not written and not isinstance(text, ast.Name):
+                yield ast.unparse(text)
 
 
 def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
@@ -114,6 +121,7 @@ def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
         if isinstance(node, ast.Constant)
     }
     assert {code for code in SENTENCES if code not in used} == OF_PYDANTIC
+    assert {code for code in OBSTACLES if code not in used} == set()
     assert [text for source in sources for text in unknown_in(ast.parse(source))] == []
     for source in sources:
         for code, given in faults_in(ast.parse(source)):

@@ -1,13 +1,19 @@
 """Refuse cities that no tour or plan can have, and name them."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from service.errors.exceptions import Refusal
 from service.errors.faults import Fault, quoted
 
 _MOST_NAMED = 5  # cities of one kind in one sentence
 _PLURALS = {"city": "cities", "stop": "stops", "place": "places"}
+_TABLE = tomllib.loads(Path(__file__).with_name("obstacles.toml").read_text(encoding="utf-8"))
+_BOUNDS: Mapping[str, str] = _TABLE.pop("bounds")
+OBSTACLES: Mapping[str, str] = _TABLE
 
 
 @dataclass(frozen=True)
@@ -30,8 +36,7 @@ class CityNames:
         names = [self._name(city) for city in cities[:_MOST_NAMED]]
         if len(cities) > _MOST_NAMED:
             names.append(f"{len(cities) - _MOST_NAMED} more")
-        listed = ", ".join(names[:-1])
-        return f"{noun} {listed} and {names[-1]}" if listed else f"{noun} {names[-1]}"
+        return f"{noun} {_listed(names)}"
 
     def pointer(self, city: int) -> str | None:
         """Return the JSON pointer to a city in the request."""
@@ -46,21 +51,26 @@ class Obstacle:
     """A reason why every tour has a forbidden leg, or why a fleet has no plan.
 
     Args:
-        sentence: A template with the fields `{cities}`, `{noun}` and optionally `{others}`.
+        code: One of OBSTACLES.
         cities: The cities at fault.
         others: Further cities that the sentence names.
+        values: Its other values; `bounds` are names of the table `bounds`.
     """
 
-    sentence: str
+    code: str
     cities: tuple[int, ...]
     others: tuple[int, ...] = ()
+    values: Mapping[str, Any] = field(default_factory=dict)
 
     def fault(self, names: CityNames) -> Fault:
         """Return the reason as a fault of a request."""
-        detail = self.sentence.format(
+        others = names.of(self.others) if self.others else ""
+        detail = OBSTACLES[self.code].format(
             cities=names.of(self.cities),
-            others=names.of(self.others) if self.others else "",
+            others=others,
+            shared=f"{others} alone" if others else "none",
             noun=names.noun,
+            **{name: _word(name, value) for name, value in self.values.items()},
         )
         return Fault("no-plan", pointer=names.pointer(self.cities[0]), said=detail)
 
@@ -87,3 +97,14 @@ class NoTour(Refusal):
     def named(self, names: CityNames) -> "NoTour":
         """Return this refusal with other names of the cities."""
         return NoTour(self.obstacles, names, self.code)
+
+
+def _word(name: str, value: Any) -> Any:
+    """Return a value of an obstacle as its sentence has it."""
+    return _listed([_BOUNDS[each] for each in value]) if name == "bounds" else value
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names as a sentence lists them, such as a, b and c."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

@@ -29,7 +29,7 @@ def no_plan(fleet: Fleet, sentence: str, ended: Callable[[], bool]) -> Refusal:
     stops = _in_the_way(fleet, ended)
     if not stops:
         return Refusal("no-plan", reason=sentence)
-    return NoTour([Obstacle(f"{sentence}; without {{cities}} there is one", stops)], NAMES)
+    return NoTour([Obstacle("in-the-way", stops, values={"reason": sentence})], NAMES)
 
 
 def _in_the_way(fleet: Fleet, ended: Callable[[], bool]) -> tuple[int, ...]:

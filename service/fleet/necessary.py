@@ -79,8 +79,7 @@ def _unserved(rules: Rules) -> Iterator[Obstacle]:
     """Yield the stops that no vehicle may visit."""
     for stop in _required(rules):
         if not rules.servers(stop):
-            sentence = "{cities} cannot be visited: no vehicle that may do so has all of the skills"
-            yield Obstacle(sentence, (stop,))
+            yield Obstacle("no-skills", (stop,))
 
 
 def _too_heavy(rules: Rules) -> Iterator[Obstacle]:
@@ -89,9 +88,8 @@ def _too_heavy(rules: Rules) -> Iterator[Obstacle]:
         demand = rules.visits[stop].demand  # of every dimension, or empty
         vehicles = [rules.vehicles[each] for each in rules.servers(stop)]
         if not any(all(map(le, demand, vehicle.capacity)) for vehicle in vehicles):
-            every = "that may visit it" if len(vehicles) < len(rules.vehicles) else ""
-            sentence = f"the demand of {{cities}} is over the capacity of every vehicle {every}"
-            yield Obstacle(sentence.strip(), (stop,))
+            some = len(vehicles) < len(rules.vehicles)
+            yield Obstacle("too-heavy-for-its-vehicles" if some else "too-heavy", (stop,))
 
 
 def _check_totals(rules: Rules) -> None:
@@ -147,23 +145,19 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
         )
         served = any(ended() or not first_broken(fleet, route) for route in routes)
         if not served and triangle():
-            sentence = (
-                f"{{cities}} cannot be reached within {_bounds_of(rules, stop)} by any vehicle that"
-                " may visit it, even on a route of its own"
-            )
-            yield Obstacle(sentence, (stop,))
+            bounds = _bounds_of(rules, stop)
+            yield Obstacle("out-of-reach", (stop,), values={"bounds": bounds})
 
 
-def _bounds_of(rules: Rules, stop: int) -> str:
-    """Return what bounds the visit of a stop, in words."""
+def _bounds_of(rules: Rules, stop: int) -> list[str]:
+    """Return what bounds the visit of a stop, as the table of obstacles names it."""
     vehicles = [rules.vehicles[each] for each in rules.servers(stop)]
     bounds = {
-        "its window": rules.visits[stop].windows != (ALWAYS,),
-        "the shift": any(each.shift != ALWAYS for each in vehicles),
-        "the longest route": any(each.longest < inf for each in vehicles),
+        "window": rules.visits[stop].windows != (ALWAYS,),
+        "shift": any(each.shift != ALWAYS for each in vehicles),
+        "longest": any(each.longest < inf for each in vehicles),
     }
-    *first, last = [name for name, given in bounds.items() if given] or ["the route"]
-    return f"{', '.join(first)} and {last}" if first else last
+    return [name for name, given in bounds.items() if given] or ["route"]
 
 
 def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
@@ -178,12 +172,11 @@ def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
     required = _required(rules)
     for stop in sorted([*required, *(deliveries[s] for s in required if s in deliveries)]):
         if not any(to[start][stop] for start, _ in ends):
-            yield Obstacle("a way must lead to {cities} from the start of a vehicle", (stop,))
+            yield Obstacle("no-way-from-start", (stop,))
         elif not any(back[end][stop] for _, end in ends):
-            yield Obstacle("a way must lead from {cities} to the end of a vehicle", (stop,))
+            yield Obstacle("no-way-to-end", (stop,))
         elif not any(to[start][stop] and back[end][stop] for start, end in ends):
-            sentence = "ways must lead to {cities} from the start of one vehicle, and on to its end"
-            yield Obstacle(sentence, (stop,))
+            yield Obstacle("no-way-through", (stop,))
 
 
 def _connected(fleet: Fleet, end: int | None, *, back: bool) -> NDArray[np.bool_]:
@@ -202,11 +195,7 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
         pickup, delivery = rules.visits[each.pickup], rules.visits[each.delivery]
         opens, closes = pickup.windows[0][0], delivery.windows[0][1]
         if pickup.prize is None and is_over(opens + pickup.service, closes):
-            sentence = (
-                "the window of {cities}, where a shipment is delivered, closes before it can be"
-                " picked up at {others}"
-            )
-            yield Obstacle(sentence, (each.delivery,), (each.pickup,))
+            yield Obstacle("delivered-too-early", (each.delivery,), (each.pickup,))
 
 
 def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:

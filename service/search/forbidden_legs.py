@@ -82,9 +82,9 @@ def _with_return(allowed: Mask, ends: RouteEnds) -> Mask:
 def _dead_ends(cycle: Mask, n: int) -> Iterator[Obstacle]:
     """Yield the cities, of the first n, that no way leads to or from."""
     for city in np.flatnonzero(~cycle[:, :n].any(axis=0)).tolist():
-        yield Obstacle("a way must lead to {cities} from another {noun}, and none does", (city,))
+        yield Obstacle("no-way-to", (city,))
     for city in np.flatnonzero(~cycle[:n].any(axis=1)).tolist():
-        yield Obstacle("a way must lead from {cities} to another {noun}, and none does", (city,))
+        yield Obstacle("no-way-from", (city,))
 
 
 def _apart(allowed: Mask, closed: bool) -> Iterator[Obstacle]:
@@ -94,17 +94,12 @@ def _apart(allowed: Mask, closed: bool) -> Iterator[Obstacle]:
         to_first = len(parts[0]) <= len(parts[-1])
         part = parts[0 if to_first else -1]
         rest = np.setdiff1d(np.arange(len(allowed)), part)
-        ways = "to {cities} from" if to_first else "from {cities} to"
-        sentence = f"a way must lead {ways} {{others}}, and none does"
-        yield Obstacle(sentence, part, tuple(rest.tolist()))
+        code = "no-way-between-to" if to_first else "no-way-between-from"
+        yield Obstacle(code, part, tuple(rest.tolist()))
     for one, other in pairwise(parts):
         # No part between them can be on the way: these are in the order in which ways lead.
         if not closed and not allowed[np.ix_(one, other)].any():
-            sentence = (
-                "a way must lead from {cities} to {others}, over others maybe, or back, and none"
-                " does"
-            )
-            yield Obstacle(sentence, one, other)
+            yield Obstacle("apart", one, other)
 
 
 def _components(allowed: Mask) -> list[list[int]]:
@@ -145,19 +140,15 @@ def _pendants(cycle: Mask) -> Iterator[Obstacle]:
         return
     neighbours = cycle | cycle.T
     for city in np.flatnonzero(neighbours.sum(axis=1) == 1).tolist():
-        sentence = (
-            "ways must lead to {cities} from one {noun} and on to another one, and there are ways"
-            " to and from {others} alone"
-        )
-        yield Obstacle(sentence, (city,), (int(neighbours[city].argmax()),))
+        yield Obstacle("one-neighbour", (city,), (int(neighbours[city].argmax()),))
 
 
 def _shared_neighbours(cycle: Mask, ends: RouteEnds) -> Iterator[Obstacle]:
     """Yield cities that have fewer cities to come next, or before, than they are."""
     n = len(cycle) if ends.closed else len(cycle) - 1
-    for legs, beside, last, ways in (
-        (cycle, "have a {noun} of its own after it", "last", "from them to"),
-        (cycle.T, "have a {noun} of its own before it", "first", "to them from"),
+    for legs, few, few_but_one in (
+        (cycle, "few-after", "few-after-but-last"),
+        (cycle.T, "few-before", "few-before-but-first"),
     ):
         found = _too_few_neighbours(legs)
         if found is None:
@@ -165,10 +156,7 @@ def _shared_neighbours(cycle: Mask, ends: RouteEnds) -> Iterator[Obstacle]:
         cities, others = (tuple(i for i in each if i < n) for each in found)
         if len(cities) <= 1:
             continue
-        but_one = f", but for one that may be the {last}" if n in found[1] else ""
-        shared = "{others} alone" if others else "none"
-        sentence = f"each of {{cities}} must {beside}{but_one}, and ways lead {ways} {shared}"
-        yield Obstacle(sentence, cities, others)
+        yield Obstacle(few_but_one if n in found[1] else few, cities, others)
 
 
 def _too_few_neighbours(legs: Mask) -> tuple[list[int], list[int]] | None:
