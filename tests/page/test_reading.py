@@ -117,6 +117,7 @@ def test_stop_ends_the_reading_of_an_example_which_can_be_chosen_again(opened: P
 def test_a_bad_file_does_not_take_the_place_of_an_example_under_way(opened: Page) -> None:
     held = Held(opened, "**/examples/*.json")
     opened.get_by_label("Example").select_option("City deliveries")
+    held.wait()
     open_bad = opened.locator("#file-fault")
     choose(opened, BAD, "one.csv")
     choose(opened, BAD, "two.csv")
@@ -131,6 +132,7 @@ def test_a_bad_file_does_not_take_the_place_of_an_example_under_way(opened: Page
 def test_a_good_file_takes_the_place_of_an_example_under_way(opened: Page) -> None:
     held = Held(opened, "**/examples/*.json")
     opened.get_by_label("Example").select_option("City deliveries")
+    held.wait()
     choose(opened, GOOD.replace("c,", "d,"))
     expect(opened.locator("#file-notes p")).to_have_text("chosen.csv")
     held.release()
