@@ -21,7 +21,8 @@ from tests.helpers.processes import serve_process
 from tests.helpers.serving import app_of, serving
 
 JSON = "Content-Type: application/json\r\n"
-STALLED = f"POST /front HTTP/1.1\r\nHost: x\r\n{JSON}Content-Length: 100\r\n\r\n[".encode()
+HEAD = f"POST /front HTTP/1.1\r\nHost: x\r\n{JSON}Content-Length: 100\r\n"
+STALLED = f"{HEAD}\r\n[".encode()
 CHUNK = b"10000\r\n" + b" " * 2**16 + b"\r\n"
 
 
@@ -30,6 +31,13 @@ def connected(url: str, source: str = "127.0.0.1") -> socket.socket:
     return socket.create_connection(
         (address.hostname, address.port), timeout=60, source_address=(source, 0)
     )
+
+
+def stall(connection: socket.socket) -> None:
+    """Begin a body and do not go on, once the server has begun to read it."""
+    connection.sendall(f"{HEAD}Expect: 100-continue\r\n\r\n".encode())
+    assert connection.recv(2**16).startswith(b"HTTP/1.1 100")
+    connection.sendall(b"[")
 
 
 def received(connection: socket.socket) -> tuple[int, dict[str, str], bytes]:
@@ -146,8 +154,7 @@ def test_where_all_connections_are_busy_a_new_one_is_told_so() -> None:
     with ExitStack() as stack:
         url = stack.enter_context(serving(app_of(), warm=False, connections=limits))
         for _ in range(3):
-            stack.enter_context(connected(url)).sendall(STALLED)
-        time.sleep(0.2)
+            stall(stack.enter_context(connected(url)))
         for _ in range(40):
             refused = httpx.get(f"{url}/actors")
             assert refused.status_code == 503
@@ -162,8 +169,7 @@ def test_the_connection_that_is_idle_longest_makes_way() -> None:
     with serving(app_of(), warm=False, connections=limits) as url, ExitStack() as stack:
         first = stack.enter_context(connected(url))
         busy = stack.enter_context(connected(url))
-        busy.sendall(STALLED)
-        time.sleep(0.2)
+        stall(busy)
         assert httpx.get(f"{url}/actors").status_code == 200
         assert is_closed(first)
         busy.sendall(b" " * 98 + b"]")
@@ -175,22 +181,26 @@ def answered(connection: socket.socket, request: bytes = b"GET /actors") -> int:
     return int(connection.recv(2**16).split()[1])
 
 
+def status_at(url: str, source: str) -> int:
+    with connected(url, source) as connection:
+        return answered(connection)
+
+
 def test_one_address_cannot_take_the_connections_of_others() -> None:
     limits = ConnectionLimits(connections=8, share=0.25)
     with serving(app_of(), warm=False, connections=limits) as url, ExitStack() as stack:
         crowd = [stack.enter_context(connected(url, "127.0.0.2")) for _ in range(2)]
         for busy in crowd:
-            busy.sendall(STALLED)
-        time.sleep(0.2)
+            stall(busy)
         for _ in range(40):
             with connected(url, "127.0.0.2") as more:
                 problem_in(more, 503, "too-many-connections")
         with connected(url, "127.0.0.3") as other:
             assert answered(other) == 200
         crowd[0].close()
-        time.sleep(0.2)
-        with connected(url, "127.0.0.2") as freed:
-            assert answered(freed) == 200
+        ends = time.monotonic() + 30  # for the server to notice
+        while status_at(url, "127.0.0.2") != 200:
+            assert time.monotonic() < ends
 
 
 def test_of_an_address_with_its_share_the_connection_idle_longest_makes_way() -> None:
@@ -213,8 +223,7 @@ def test_a_trusted_proxy_may_take_all_connections(proxies: str, status: int) -> 
     limits = ConnectionLimits(connections=8, share=0.25, proxies=proxies)
     with serving(app_of(), warm=False, connections=limits) as url, ExitStack() as stack:
         for _ in range(2):
-            stack.enter_context(connected(url, "127.0.0.2")).sendall(STALLED)
-        time.sleep(0.2)
+            stall(stack.enter_context(connected(url, "127.0.0.2")))
         with connected(url, "127.0.0.2") as third:
             assert answered(third) == status
 
