@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from paretour.choice import balances, knee
@@ -40,6 +40,7 @@ def test_no_points_have_no_balances() -> None:
 
 
 @given(POINTS)
+@example(np.array([[0.0, 10.0], [1.0, 8.0], [5.0, 5.0], [10.0, 0.0]]))  # not that of the least most
 def test_no_point_has_a_smaller_sum_in_the_box_than_the_knee(points: np.ndarray) -> None:
     least, most = points.min(axis=0), points.max(axis=0)
     box = np.where(most > least, most - least, 1)
