@@ -9,7 +9,15 @@ from typing import Any
 
 import pytest
 
-from service.errors import PROBLEMS, Fault, InvalidCoverage, Refusal, TooManyPlaces, WorkerLost
+from service.errors import (
+    PROBLEMS,
+    CityNames,
+    Fault,
+    InvalidCoverage,
+    Refusal,
+    TooManyPlaces,
+    WorkerLost,
+)
 from service.errors.faults import SENTENCES
 from service.errors.printable import printable, printable_lines
 from service.errors.tours import OBSTACLES
@@ -218,3 +226,8 @@ def test_what_would_move_a_cursor_or_turn_a_text_round_is_not_printed(
 
 def test_a_text_of_several_lines_keeps_them() -> None:
     assert printable_lines("a\x1b[2J\r\nb") == "a?[2J \nb"
+
+
+def test_of_many_cities_five_are_named() -> None:
+    assert CityNames("stop").of(range(5)) == "stops 0, 1, 2, 3 and 4"
+    assert CityNames("stop").of(range(7)) == "stops 0, 1, 2, 3, 4 and 2 more"

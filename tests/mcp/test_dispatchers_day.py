@@ -208,7 +208,7 @@ def test_amounts_are_read_as_people_write_them(text: str, unit: str, number: flo
 def test_budgets_and_times_are_read_and_written() -> None:
     assert budget_in("3%", 200, "m") == 206
     assert [clock_time(t, "s") for t in (29100, 115500)] == ["8:05", "day 2, 8:05"]
-    assert [amount(t, "min") for t in (130, 12)] == ["2:10 h", "12 min"]
+    assert [amount(t, "min") for t in (130, 60, 12)] == ["2:10 h", "1:00 h", "12 min"]
     assert amount(14200, "m") == "14.2 km"
     with pytest.raises(ValueError, match="must be a number, a time as 10:00"):
         number_in("soon", "s")
