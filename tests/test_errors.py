@@ -39,10 +39,14 @@ def codes_in(tree: ast.AST) -> Iterator[str]:
         match node:
             case (
                 ast.Call(func=ast.Name("Refusal"), args=[ast.Constant(str(code)), *_])
-                | ast.Assign(targets=[ast.Name("code")], value=ast.Constant(str(code)))
                 | ast.Call(func=ast.Attribute(attr="__init__"), args=[ast.Constant(str(code)), *_])
             ):
                 yield code
+            case ast.ClassDef(body=body):
+                for member in body:
+                    match member:
+                        case ast.Assign(targets=[ast.Name("code")], value=ast.Constant(str(code))):
+                            yield code
 
 
 def test_every_code_of_the_table_is_raised_and_every_code_raised_is_in_it() -> None:
