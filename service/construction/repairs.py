@@ -4,7 +4,7 @@ from service.instance import Kind
 
 TOURS_REPAIRED = 2  # for each preference: its tour, and another one that was found on the way
 
-# With these, a call takes four to ten times as long as without, with matrices of up to 100
+# With these, a call takes five to nine times as long as without, with matrices of up to 100
 # cities five to eight times, and has most of what repairs gain: `python -m tests.benchmarks
 # literature`, `actors`, `asymmetric`, `behind`. A repair lays out whole tours, so it takes longer
 # where there are many cities, and fewer of them are worth it.
