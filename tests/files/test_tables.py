@@ -300,6 +300,10 @@ DATES: dict[str, tuple[list[str], Becomes | str]] = {
         [DUE.format("30.11.2026 10:00", "1.12.2026 9:30")],
         stops("depot a b", "2026-12-01 0:00 is 24:00", due=[None, 36000, 120600]),
     ),
+    "British dates": (
+        [DUE.format("30/11/2026 10:00", "1/12/2026 9:30")],
+        stops("depot a b", "2026-12-01 0:00 is 24:00", due=[None, 36000, 120600]),
+    ),
     "American dates": (
         [DUE.format("11/30/2026 8:00 AM", "12/1/2026 1:30:00 PM")],
         stops("depot a b", "Times count from 2026-11-30", due=[None, 28800, 135000]),
