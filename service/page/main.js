@@ -17,6 +17,7 @@ import { Placing } from "./inputs/placing.js";
 import { holdStill } from "./inputs/pressing.js";
 import { Undo } from "./inputs/undo.js";
 import { ReplanForm } from "./planning/replan_form.js";
+import { Remedies, patched } from "./planning/remedies.js";
 import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
 import { SURVEY, say, sentence } from "./planning/status.js";
@@ -60,6 +61,7 @@ const opening = new Opening(service, result, {
   settings: () => serviceSettings,
   started: () => started,
 });
+const remedies = new Remedies(element("remedies"), remedy);
 const { examples, reading, surroundings } = opening;
 const undo = new Undo(element("undo"), takeBack);
 
@@ -69,6 +71,7 @@ let mostSeconds = Infinity; // of a plan
 let planning = null; // the planning that is running
 let answer = null; // the best front so far
 let answered = null; // its request
+let refusal = null; // the last request that was refused, and why
 let last = null; // the state in which the last plan was done, its request, and what was chosen in it
 let opened = 0; // how many requests were opened
 let shownOf = 0; // how many there were when the front was shown
@@ -105,6 +108,7 @@ function edited(instance, fit) {
   opening.giveUp();
   leave();
   opening.clear();
+  remedies.clear();
   if (!reading.isRunning) say("");
   if (!instance) return;
   const { asked } = input;
@@ -124,6 +128,7 @@ function edited(instance, fit) {
   way = null;
   take(null);
   if (again) showAgain(last);
+  else if (isAsked(refusal?.asked)) remedies.show(refusal.problem);
   else if (isDropped) say(DROPPED);
 }
 
@@ -169,6 +174,7 @@ async function run(states, waiting = "A first try is being made.", failed = fail
   leave();
   const mine = (planning = new Planning(service, mostSeconds));
   opening.clear();
+  remedies.clear();
   offer();
   placeResult();
   say(waiting);
@@ -213,6 +219,14 @@ function plan() {
   if (input.fault) return fail(input.fault);
   const onGrid = kindOf(input.asked).onGrid;
   return run((mine) => planned(mine.plan(input.request)), onGrid ? SURVEY : undefined);
+}
+
+/** Changes the request by a remedy, and plans it; where stops may be left out, most of them are to be visited. */
+function remedy({ code, patch }) {
+  change(patched(input.asked, patch), input.objectives);
+  if (code === "leave-out") result.want(0);
+  element("result").focus({ preventScroll: !narrow.matches });
+  plan();
 }
 
 /** Leaves the front before as it is until there is another one: the request may be refused. */
@@ -310,8 +324,11 @@ function fail(error, said = answer ? "Not planned: what is shown is the plan bef
   if (!(error instanceof Problem)) throw error;
   say(said);
   showFaults(error);
+  remedies.show(error);
+  refusal = { asked: input.asked, problem: error };
   input.mark();
-  return (element("waiting").textContent = revealFault()); // a phone shows the form below
+  element("waiting").textContent = revealFault(); // a phone shows the form below
+  remedies.reveal();
 }
 
 /** Opens the front that a link names. Returns false if it names none. */

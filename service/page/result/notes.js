@@ -19,7 +19,13 @@ export function noteOn(objectives, axis, item, { movers, asked }) {
   if (!item) return ""; // units are known from the answer on
   const objective = objectives[axis];
   const of = movers && !objective.measure ? ofRoutes(objective, axis, item, { movers, asked }) : "";
-  return [unitOf(objective), of].filter(Boolean).join("; ");
+  return [unitOf(objective), of, axis === 0 && prizesIn(objectives, item)].filter(Boolean).join("; ");
+}
+
+/** How much of the first objective is the prizes of stops that are left out; "" if they are not added to it. */
+function prizesIn(objectives, { measures }) {
+  const isOwn = objectives.some(({ measure }) => measure === "unassigned");
+  return measures?.unassigned && !isOwn ? `${amount(measures.unassigned, objectives[0])} of it for stops left out` : "";
 }
 
 /** A unit that is too long to stand beside a number, or what a number without one is. */
