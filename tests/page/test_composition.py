@@ -70,16 +70,13 @@ REACH = """canvas => {
 }"""
 # The names of tours on the chart below which the line of the front is drawn.
 CROSSED = """() => {
-  const canvas = document.querySelector("#front-chart canvas");
-  const [context, over] = [canvas.getContext("2d"), canvas.getBoundingClientRect()];
-  const hex = getComputedStyle(document.documentElement).getPropertyValue("--improved").trim();
-  const line = [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16));
+  const line = document.querySelector("#front-chart .line");
+  const { left: x, top: y } = line.ownerSVGElement.getBoundingClientRect();
+  const points = Array.from({ length: line.getTotalLength() }, (_, at) => line.getPointAtLength(at));
   const labels = [...document.querySelectorAll(".label")].filter(each => each.checkVisibility());
   return labels.filter(each => {
-    const { left, top, width, height } = each.getBoundingClientRect();
-    const { data } = context.getImageData(left - over.left, top - over.top, width, height);
-    return Array.from({ length: data.length / 4 }, (_, at) => data.slice(4 * at, 4 * at + 4))
-      .some(pixel => pixel[3] === 255 && line.every((part, at) => pixel[at] === part));
+    const { left, top, right, bottom } = each.getBoundingClientRect();
+    return points.some(at => at.x + x > left && at.x + x < right && at.y + y > top && at.y + y < bottom);
   }).map(each => each.textContent);
 }"""
 
@@ -146,7 +143,7 @@ def test_nothing_on_the_chart_collides(example: Page) -> None:
         boxes = example.evaluate(BOXES, ".label, .budget")
         assert not [(a, b) for at, a in enumerate(boxes) for b in boxes[:at] if overlap(a, b)]
         assert example.evaluate(CROSSED) == []
-        for axis, *_ in example.evaluate(BOXES, "#front-chart .u-over"):
+        for axis, *_ in example.evaluate(BOXES, "#front-chart .within"):
             assert all(left >= axis for left, *_ in example.evaluate(BOXES, ".label"))
 
 

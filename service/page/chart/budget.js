@@ -19,7 +19,7 @@ export class Budget {
   #limit = null; // { axis, most }; there is at most one budget
 
   /**
-   * @param {uPlot} plot the chart on which the lines lie
+   * @param {Plot} plot the chart on which the lines lie
    * @param {(index: number) => void} onBudget called with the best tour within a budget
    */
   constructor(plot, onBudget) {
@@ -91,7 +91,7 @@ export class Budget {
     const objective = this.#objectives[axis];
     line.firstChild.textContent = limited ? `${objective.name} ≤ ${amount(most, objective)}` : `limit ${objective.name}`;
     line.classList.toggle("limited", limited);
-    this.#move(line, axis, this.#plot.valToPos(most, axis ? "y" : "x"));
+    this.#move(line, axis, this.#plot.at(most, axis));
     const [least, all] = this.#ends(axis);
     for (const [name, value] of Object.entries({ valuemin: least, valuemax: all, valuenow: most })) line.setAttribute(`aria-${name}`, value);
     line.setAttribute("aria-valuetext", limited ? `at most ${amount(most, this.#objectives[axis])}` : "no limit");
@@ -122,12 +122,12 @@ export class Budget {
 
   #grasp(line, axis, event) {
     line.setPointerCapture(event.pointerId);
-    this.#grasped = this.#plot.valToPos(Number(line.getAttribute("aria-valuenow")), axis ? "y" : "x") - this.#placeOf(axis, event);
+    this.#grasped = this.#plot.at(Number(line.getAttribute("aria-valuenow")), axis) - this.#placeOf(axis, event);
   }
 
   /** Moves a line as far as the pointer moved since it grasped the handle. */
   #drag(axis, event) {
-    this.#set(axis, this.#plot.posToVal(this.#placeOf(axis, event) + this.#grasped, axis ? "y" : "x"));
+    this.#set(axis, this.#plot.valueAt(this.#placeOf(axis, event) + this.#grasped, axis));
   }
 
   #placeOf(axis, { clientX, clientY }) {

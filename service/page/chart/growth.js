@@ -1,60 +1,34 @@
 /** A chart of the hypervolume's growth during a search. */
 
-import uPlot from "./uplot.js";
-import { colour, onSchemeChange } from "../common/colours.js";
-import { share } from "../common/numbers.js";
+import { share, tick } from "../common/numbers.js";
+import { Plot } from "./plot.js";
 
-const FONT = "11px system-ui, sans-serif";
+const MARGINS = { top: 8, right: 18, bottom: 22, left: 52 }; // pixels
+const ROOM = 0.1; // of the range, over and under the line
 
 export class Growth {
   #element;
   #unknown;
-  #chart;
+  #plot;
 
   /** @param {HTMLElement} unknown is shown in place of the chart if the search reported nothing */
   constructor(element, unknown) {
     this.#element = element;
     this.#unknown = unknown;
-    this.#chart = new uPlot(options(element), [[], []], element);
-    new ResizeObserver(() => this.#chart.setSize(size(element))).observe(element);
-    onSchemeChange(() => this.#chart.redraw(false, true));
+    this.#plot = new Plot(element, MARGINS);
   }
 
   /** Shows rows of seconds and hypervolume. */
   show(growth) {
-    this.#chart.setData([growth.map(([seconds]) => seconds), growth.map(([, grown]) => 100 * grown)]);
     const drawn = growth.length > 1; // one row does not make a line
     this.#element.hidden = !drawn;
     this.#unknown.hidden = drawn;
     if (!drawn) return;
-    const said = `from ${share(growth[0][1])} to ${share(growth.at(-1)[1])}`;
-    this.#element.setAttribute("aria-label", `Hypervolume over time: ${said}`);
+    const [[begin, least], [end, most]] = [growth[0], growth.at(-1)];
+    const room = ROOM * (most - least || 1);
+    const axis = (ends, unit) => ({ range: () => ends, said: (value, step) => `${tick(value, step)} ${unit}` });
+    const points = growth.map(([seconds, grown]) => [seconds, 100 * grown]);
+    this.#plot.show([axis([begin, end], "s"), axis([100 * (least - room), 100 * (most + room)], "%")], [{ name: "improved", points, line: (at) => `L${at}` }]);
+    this.#element.setAttribute("aria-label", `Hypervolume over time: from ${share(least)} to ${share(most)}`);
   }
-}
-
-const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
-
-function options(element) {
-  const stroke = () => colour("improved");
-  return {
-    ...size(element),
-    legend: { show: false },
-    cursor: { show: false },
-    padding: [8, 18, 0, 0],
-    scales: { x: { time: false } },
-    axes: [axis(22, (tick) => `${tick} s`, 50), axis(52, (tick) => `${tick} %`, 24)],
-    series: [{}, { stroke, width: 1.5, points: { show: false } }],
-  };
-}
-
-function axis(room, shown, space) {
-  return {
-    size: room,
-    space,
-    font: FONT,
-    stroke: () => colour("quiet"),
-    grid: { stroke: () => colour("line"), width: 1 },
-    ticks: { show: false },
-    values: (_, ticks) => ticks.map(shown),
-  };
 }

@@ -1,6 +1,6 @@
 /** Call the service over HTTP, and follow its events. */
 
-import { EventSourceParserStream } from "../vendor/eventsource-parser/stream.js";
+import { EventStream } from "./event_stream.js";
 
 /** An error of the service, or that it did not answer. */
 export class Problem extends Error {
@@ -47,7 +47,7 @@ export class Service {
     const response = await this.ask(path, { signal });
     const events = response.body
       .pipeThrough(new TextDecoderStream())
-      .pipeThrough(new EventSourceParserStream());
+      .pipeThrough(new EventStream());
     const reader = events.getReader();
     try {
       for (;;) {
