@@ -72,11 +72,14 @@ REACH = """canvas => {
 CROSSED = """() => {
   const line = document.querySelector("#front-chart .line");
   const { left: x, top: y } = line.ownerSVGElement.getBoundingClientRect();
-  const points = Array.from({ length: line.getTotalLength() }, (_, at) => line.getPointAtLength(at));
+  const points = Array.from({ length: line.getTotalLength() }, (_, at) => {
+    const point = line.getPointAtLength(at);
+    return [point.x + x, point.y + y];
+  });
   const labels = [...document.querySelectorAll(".label")].filter(each => each.checkVisibility());
   return labels.filter(each => {
     const { left, top, right, bottom } = each.getBoundingClientRect();
-    return points.some(at => at.x + x > left && at.x + x < right && at.y + y > top && at.y + y < bottom);
+    return points.some(([x, y]) => x > left && x < right && y > top && y < bottom);
   }).map(each => each.textContent);
 }"""
 

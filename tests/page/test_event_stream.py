@@ -13,7 +13,8 @@ READ = """async (pieces) => {
       controller.close();
     },
   });
-  for await (const { event, data } of text.pipeThrough(new EventStream())) found.push([event, data]);
+  const events = text.pipeThrough(new EventStream());
+  for await (const { event, data } of events) found.push([event, data]);
   return found;
 }"""
 TEXT = (

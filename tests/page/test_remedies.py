@@ -35,9 +35,7 @@ REMEDIES = [
     {
         "code": "leave-out",
         "detail": "let stops be left out, for a prize of 9000 each: 2 of 4 are then visited",
-        "patch": [
-            {"op": "add", "path": f"/stops/{k}/prize", "value": 9000.0} for k in range(1, 5)
-        ],
+        "patch": [{"op": "add", "path": f"/stops/{k}/prize", "value": 9000.0} for k in range(1, 5)],
     },
     {
         "code": "more-vehicles",

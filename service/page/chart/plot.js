@@ -95,7 +95,9 @@ export class Plot {
   /** Takes the pixels of an axis; returns its ticks, each where it is and as it is `said`. `room` returns the pixels of one, given those of its text. */
   #ticks(axis, pixels, room) {
     const { range, steps, said } = this.#axes[axis];
-    const [least, most] = (this.#ranges[axis] = range(pixels));
+    const [least, greatest] = range(pixels);
+    const most = greatest > least ? greatest : least + 1;
+    this.#ranges[axis] = [least, most];
     this.#sides[axis] = pixels;
     const wide = widthOf([{ said: said(most, (most - least) / 5) }]);
     const { values, step } = ticksOf({ steps }, least, most, Math.max(1, pixels / room(wide)));
