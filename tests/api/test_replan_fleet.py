@@ -144,6 +144,24 @@ def test_a_van_that_may_load_again_brings_a_new_order_after_it_has(client: httpx
         assert "route" not in route or "depot" in stops[: stops.index("new")]
 
 
+def test_a_van_that_is_back_brings_a_new_order_once_it_is_loaded(client: httpx.Client) -> None:
+    front = client.post("/fleet", json=request(count=1, capacity=[12], max_trips=None)).json()
+    (route,) = front["front"][0]["routes"]
+    now = route["arrivals"][-1] + 60
+    new = {"id": "new", "location": [24.93, 60.16], "demand": [1]}
+
+    def rest(position: str) -> httpx.Response:
+        way = {"route": 0, "done": route["stops"][1:-1], "position": position}
+        return replan(client, front, now=now, plan=0, routes=[way], add=[new])
+
+    answer = rest("depot").json()
+    (again,) = answer["front"][0]["routes"]
+    assert (again["stops"], again["route"]) == (["depot", "new", "depot"], 0)
+    assert again["arrivals"][0] >= now
+    elsewhere = rest(route["stops"][-2])
+    assert elsewhere.json()["errors"][0]["code"] == "no-vehicle-for-stop"
+
+
 def test_the_rest_of_the_rest_is_replanned_too(client: httpx.Client, front: dict[str, Any]) -> None:
     plan = full_plan(front)
     stops = front["front"][plan]["routes"][0]["stops"]

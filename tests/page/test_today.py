@@ -51,7 +51,7 @@ PROGRESS = """async ([driven, now, turned]) => {
         (545, [], ["A", True, 0, "1 of 2 done, at A; 2 on board"]),
         (575, [], ["A", True, 0.5, "1 of 2 done, on the way to B; 2 on board"]),
         (635, [], ["AB", True, 0.5, "2 of 2 done, on the way to depot; 0 on board"]),
-        (660, [], ["AB", True, 0, "all 2 done"]),
+        (660, [], ["AB", True, 0, "all 2 done, back at depot"]),
         (575, ["A"], ["", True, 0, "0 of 2 done, at depot; 4 on board"]),
         (500, ["A"], ["A", True, 0, "1 of 2 done, at A; 2 on board"]),
         (None, ["A", "B"], ["AB", True, 0, "all 2 done"]),
@@ -79,6 +79,8 @@ LOADING = """async ([driven, now, out]) => {
         (630, [], {}, False),
         (630, [], {"reload": ["depot"]}, True),
         (630, [], {"count": 3}, True),
+        (660, [], {}, True),  # the first is back
+        (660, ["van 1"], {}, False),
     ],
 )
 def test_the_page_says_when_nobody_can_load_new_orders(
@@ -86,7 +88,7 @@ def test_the_page_says_when_nobody_can_load_new_orders(
 ) -> None:
     asked = {**ASKED, "vehicles": [{**ASKED["vehicles"][0], **van}]}  # type: ignore[dict-item]
     said = node.evaluate(LOADING, [{**DRIVEN, "asked": asked}, now, out])
-    assert said == "" if can else said.startswith("All vehicles have left, and none loads again")
+    assert said == "" if can else said.startswith("All vehicles are on their way, and none loads again")
 
 
 BODY = """async ([driven, now, tips, out, cancelled, added]) => {

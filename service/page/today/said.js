@@ -21,7 +21,7 @@ function whereOf(van, clock) {
   const done = doneOf(van).length;
   const all = done + leftOf(van).length;
   if (!isOut) return clock ? `leaves at ${clock.said(visits[0].leaves)}` : "has not left";
-  if (isBack) return `all ${all} done`;
+  if (isBack) return `all ${all} done${visits[at].kind === "end" ? `, back at ${visits[at].stop}` : ""}`;
   const next = visits.slice(at + 1).find(({ done: isDone }) => !isDone);
   const where = share >= 1 ? `waits at ${next.stop}` : share > 0 ? `on the way to ${next.stop}` : `at ${visits[at].stop}`;
   return `${done} of ${all} done, ${where}`;
@@ -40,7 +40,7 @@ export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
 }
 
 const NO_LOADING =
-  "All vehicles have left, and none loads again today: nobody can bring new orders with a load, or what a vehicle out of service has on board. Before you plan the next day, tick “Vehicles load again at the depot” above the stops.";
+  "All vehicles are on their way, and none loads again today: nobody can bring new orders with a load, or what a vehicle out of service has on board. Before you plan the next day, tick “Vehicles load again at the depot” above the stops.";
 
 /**
  * Says that nobody can bring what must be loaded first; "" if somebody can, or nothing is loaded.
@@ -52,8 +52,9 @@ const NO_LOADING =
 export function loadingSaid(vans, routes, { vehicles, stops }, out) {
   if (!stops.some(({ demand }) => demand?.some((amount) => amount > 0))) return "";
   const loads = (id) => vehicles.some((each) => each.id === id && each.reload?.length);
+  const isHome = ({ isBack, visits, at }) => isBack && visits[at].kind === "end" && visits[at].stop === visits[0].stop;
   const isSpare = ({ id, count = 1 }) => routes.filter(({ vehicle }) => vehicle === id).length < count;
-  const canLoad = vans.some(({ name, isOut }, at) => !out.has(name) && (!isOut || loads(routes[at].vehicle))) || vehicles.some(isSpare);
+  const canLoad = vans.some((van, at) => !out.has(van.name) && (!van.isOut || isHome(van) || loads(routes[at].vehicle))) || vehicles.some(isSpare);
   return canLoad ? "" : NO_LOADING;
 }
 

@@ -29,6 +29,8 @@ class Way:
         trips: The number of trips that have ended.
         departure: When it left; None without a clock.
         broken_down: Whether it is out of service.
+        is_back: Whether all is done, and it stands where it started: it can load what it brings
+            next.
     """
 
     part: str
@@ -39,6 +41,7 @@ class Way:
     trips: int
     departure: float | None
     broken_down: bool
+    is_back: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,17 +128,21 @@ def _way(
 ) -> Way:
     done = _done(item, part, rules, route, ids)
     after = max((route.stops.index(stop) for stop in done), default=-1) + 1
-    reload = rules.vehicles[route.vehicle].reload
+    vehicle = rules.vehicles[route.vehicle]
+    reload = vehicle.reload
+    position = _position(item, part, rules, route, done, ids)
     skipped = [s for s in route.stops[:after] if s not in done and s not in reload]
+    left = (*skipped, *route.stops[after:])
     return Way(
         part=part,
         type=route.vehicle,
-        position=_position(item, part, rules, route, done, ids),
-        left=(*skipped, *route.stops[after:]),
+        position=position,
+        left=left,
         done=done,
         trips=sum(stop in reload for stop in route.stops[:after]),
         departure=departure,
         broken_down=item.broken_down,
+        is_back=position is not None and position == vehicle.start and set(left) <= {*reload},
     )
 
 

@@ -191,12 +191,12 @@ class _Rest:
             count=1,
             start=position,
             shift=(self._now, max(self._now, vehicle.shift[1])) if timed else vehicle.shift,
-            leaves_by=self._now if timed else inf,
+            leaves_by=self._now if timed and not way.is_back else inf,
             longest=longest,
             fixed=0.0,
             max_stops=None if visits is None else max(0, visits - len(way.done)),
             max_trips=None if trips is None else max(1, trips - way.trips),
-            initial_load=() if way.trips else vehicle.initial_load,
+            initial_load=() if way.trips or way.is_back else vehicle.initial_load,
         )
 
     def _visit(self, stop: int) -> Visit:
@@ -226,11 +226,10 @@ class _Rest:
         """Return the types of the rest that may visit a stop; empty for all.
 
         What a vehicle carries stays with it. Vehicles on their way cannot load what they do not
-        carry, unless they come to a stop for loading again.
+        carry, unless they come to a stop for loading again, or are back.
         """
-        on_the_way = len(self._types) - sum(name.route is None for name in self.names)
+        working = [i for i, way in enumerate(self._day.ways) if not way.broken_down]
         if stop in self._carried:
-            working = [i for i, way in enumerate(self._day.ways) if not way.broken_down]
             return (working.index(self._carried[stop]),)
         able = [
             index
@@ -238,7 +237,8 @@ class _Rest:
             if not visit.vehicles or old in visit.vehicles
         ]
         if self._must_be_loaded(stop, visit):
-            able = [i for i in able if i >= on_the_way or self._types[i].reload]
+            out = [i for i, number in enumerate(working) if not self._day.ways[number].is_back]
+            able = [i for i in able if i not in out or self._types[i].reload]
         if not able:
             fault = Fault("no-vehicle-for-stop", values={"stop": self._all.stops[stop].id})
             raise Refusal("no-plan", errors=[fault])
