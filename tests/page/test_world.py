@@ -1,5 +1,7 @@
 """The map of the world under stops of one's own, and the bar that says how long a kilometre is."""
 
+import json
+
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
@@ -9,6 +11,15 @@ from tests.helpers.node import Node
 from tests.helpers.world import encoded, encoded_towns, joined, varints, worth_of
 
 STOPS = "id,lon,lat,risk\na,24.94,60.17,1\nb,25.95,60.18,2\nc,24.93,61.16,3"
+
+PLANE = [[0, 0], [3, 1], [5, 2]]
+IN_KILOMETRES = {
+    "stops": [{"id": name} for name in "abc"],
+    "objectives": [
+        {"name": "distance", "unit": "km", "coordinates": PLANE},
+        {"name": "risk", "coordinates": PLANE[::-1]},
+    ],
+}
 
 # What the map has at a place, and the towns near it: rings that a ray from the place crosses.
 AT = """async ([east, north]) => {
@@ -122,3 +133,7 @@ def test_stops_of_ones_own_lie_on_the_world_and_those_of_an_example_on_its_stree
         open_files(page, {"planes.csv": "0,0,5,5\n3,1,9,1\n5,2,2,8"})
         for part in ("canvas.world", ".scale"):
             expect(page.locator(f"#plane-1 {part}")).to_be_hidden()
+        # In a plane there is a bar where its unit is a length.
+        open_files(page, {"planes.json": json.dumps(IN_KILOMETRES)})
+        expect(page.locator("#plane-1 .scale")).to_have_text("1 km")
+        expect(page.locator("#plane-2 .scale")).to_be_hidden()

@@ -32,6 +32,11 @@ export class Frame {
     return new Frame(least, unit, sides.map((side) => side / unit));
   }
 
+  /** How much in the plane is one on the map. */
+  get unit() {
+    return this.#unit;
+  }
+
   get bounds() {
     return [[0, 0], [this.#size[1], this.#size[0]]];
   }

@@ -10,6 +10,7 @@ import { EARTH, mapsOf } from "../inputs/places.js";
 import { stylesOf } from "../fleet/route_styles.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { Planes, roundOf } from "./planes.js";
+import { metresOf } from "./scale.js";
 import { Ways } from "./ways/ways.js";
 import { showRoutes } from "./key.js";
 
@@ -112,6 +113,7 @@ export class Maps {
     this.#drawn.forEach((drawn, map) => {
       element(`plane-${map + 1}-title`).textContent = single || drawn === EARTH ? "Map" : titled(this.#objectives[drawn]);
     });
+    this.#planes.measure(this.#drawn.map((drawn) => metresOf(this.#objectives[drawn])));
     const redrawn = single || this.#drawn[1] === EARTH ? null : this.#objectives[this.#drawn[1]];
     element("plane-2-note").textContent = redrawn ? `The same stops, drawn anew: the longer a line, the ${wordsOf(redrawn).more} ${redrawn.name}.` : "";
     element("length-1").hidden = single || this.#drawn[0] === EARTH;

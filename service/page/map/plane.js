@@ -8,7 +8,7 @@ import { Frame } from "./frame.js";
 import { Handling } from "./handling.js";
 import { Mercator } from "./mercator.js";
 import { Routes } from "./routes.js";
-import { ScaleBar } from "./scale.js";
+import { ScaleBar, metresAt } from "./scale.js";
 import { Streets } from "./streets.js";
 import { TourLine } from "./tourline.js";
 import { World } from "./world.js";
@@ -40,6 +40,7 @@ export class Plane {
   #past = new Routes("past");
   #world = new World();
   #scale;
+  #metres; // of one in the plane, if that is known
   #streets = new Streets();
   #names = L.layerGroup();
   #surroundings = { streets: null, places: [], extent: [], awaited: false };
@@ -117,7 +118,19 @@ export class Plane {
     for (const { name, at } of places) this.#names.addLayer(nameAt(name, this.#frame.latlng(at)));
     if (this.#isBare) this.#world.show((place) => this.#frame.latlng(place));
     else this.#world.hide();
-    this.#scale.show(this.#onEarth && this.#places.length ? (latlng) => this.#frame.place(latlng) : null);
+    this.#showScale();
+  }
+
+  /** Takes the metres of one in the plane; undefined if that is not known. */
+  measure(metres) {
+    this.#metres = metres;
+    this.#showScale();
+  }
+
+  #showScale() {
+    const onEarth = (latlng) => metresAt(this.#frame.place(latlng)[1]);
+    const inPlane = this.#metres && (() => this.#metres * this.#frame.unit);
+    this.#scale.show((this.#places.length && (this.#onEarth ? onEarth : inPlane)) || null);
   }
 
   /** Whether there are places on the earth, and neither tiles nor streets under them. */

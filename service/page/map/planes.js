@@ -54,6 +54,11 @@ export class Planes {
     if (this.#chosen.choosable && city !== this.#chosen.city) this.#chosen.choose(city);
   }
 
+  /** Takes the metres of one in the plane of each map: see Plane. */
+  measure(metres) {
+    this.#maps.forEach((map, at) => map.measure(metres[at]));
+  }
+
   /** Draws map tiles under the first map, while places on the earth are shown; null for none. */
   tile(url) {
     this.#maps[0].tile(url);
