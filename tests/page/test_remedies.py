@@ -31,7 +31,7 @@ FLEET: dict[str, Any] = {
     ],
 }
 # As the service has tried them on this request: see `tests/remedies`.
-REMEDIES = [
+REMEDIES: list[dict[str, Any]] = [
     {
         "code": "leave-out",
         "detail": "let stops be left out, for a prize of 9000 each: 2 of 4 are then visited",

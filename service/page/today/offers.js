@@ -4,6 +4,7 @@ import { amount } from "../common/amounts.js";
 import { SECONDS } from "../common/durations.js";
 import { made } from "../common/elements.js";
 import { counted } from "../common/numbers.js";
+import { isMetres } from "../common/objectives.js";
 import { clockUnit, withUnits } from "../fleet/units.js";
 import { Problem } from "../planning/service.js";
 
@@ -31,7 +32,8 @@ export function offersBody({ add, seed, time_limit, ...body }, asked) {
 
 /** An offer in words, such as "9:00–10:00: +1.2 km, +3 min"; what does not rise is left out. */
 export function offerSaid({ slot, choices }, objectives, clock) {
-  const rises = choices[0].rise.map((rise, m) => (Math.abs(rise) < 1e-9 ? "" : `${rise < 0 ? "−" : "+"}${amount(Math.abs(rise), objectives[m])}`));
+  const least = (objective) => (isMetres(objective) ? 1 : 1e-9);
+  const rises = choices[0].rise.map((rise, m) => (Math.abs(rise) < least(objectives[m]) ? "" : `${rise < 0 ? "−" : "+"}${amount(Math.abs(rise), objectives[m])}`));
   return `${slot.map(clock.said).join("–")}: ${rises.filter(Boolean).join(", ") || "costs nothing"}`;
 }
 
