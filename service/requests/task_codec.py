@@ -139,8 +139,10 @@ def _decoded(value: Any, arrays: Sequence[NDArray[Any]]) -> Any:
     if "$rows" in value:
         flat = _FLAT_TYPES[value["$of"]]
         names = [each.name for each in fields(flat)]
+        # Members that a row of an earlier version lacks have their defaults.
         return tuple(
-            flat(**dict(zip(names, map(_tuples, row), strict=True))) for row in value["$rows"]
+            flat(**dict(zip(names[: len(row)], map(_tuples, row), strict=True)))
+            for row in value["$rows"]
         )
     members = {k: _decoded(each, arrays) for k, each in value.items() if k != "$type"}
     return _TYPES[value["$type"]](**members)

@@ -85,6 +85,18 @@ def test_the_rest_of_a_way_is_the_same_once_it_was_written_and_read() -> None:
         assert is_kept(parse_replan(ReplanSource(body, change.front), LIMITS, INFOS))
 
 
+def test_what_an_earlier_version_did_not_write_of_vehicles_has_its_default() -> None:
+    task = task_of("fleet", FLEET)
+    line, rest = encode_task(task).split(b"\n", 1)
+    length = int.from_bytes(rest[:8])
+    header = json.loads(rest[8 : 8 + length])
+    for row in header["subject"]["rules"]["vehicles"]["$rows"]:
+        del row[-4:]
+    shorter = json.dumps(header).encode()
+    old = line + b"\n" + len(shorter).to_bytes(8) + shorter + rest[8 + length :]
+    assert same(task, decode_task(old))
+
+
 def test_damage_is_told() -> None:
     rng = np.random.default_rng(0)
     for request in (REQUESTS[0], REQUESTS[4], REQUESTS[6]):
