@@ -31,7 +31,8 @@ def anneal(
     ruins: int,
     heat: float,
     cooling: float,
-) -> float:
+    ends_whole: bool,
+) -> tuple[float, int]:
     """Ruin and recreate a plan so many times, and offer each plan that is made.
 
     Args:
@@ -40,13 +41,14 @@ def anneal(
         ruins: How often.
         heat: The temperature at first.
         cooling: The factor of the temperature in each iteration.
+        ends_whole: Whether to end with the first plan that visits all required stops.
 
     Returns:
-        The temperature at the end.
+        The temperature at the end, and how often it was done.
     """
     problem, plan, _ = state
     beyond = _beyond(state, found)
-    for _ in range(ruins):
+    for number in range(ruins):
         before = total_cost(plan) + beyond
         begin_iteration(plan)
         try_outside(plan)
@@ -66,7 +68,9 @@ def anneal(
             beyond = exceeding
             measure_changed(state)
         heat *= cooling
-    return heat
+        if ends_whole and plan.counts[MISSING] == 0:
+            return heat, number + 1
+    return heat, ruins
 
 
 @inlined

@@ -1,10 +1,11 @@
 """Choose what the search of a fleet minimises next, and from which plan it starts.
 
-First each objective alone, then trade-offs. Under two objectives these are taken between two
-neighbours of the front, most often where the rectangle between them is large: a limit on the
-longest route or the number of vehicles, or the weights with which both neighbours are as good
-(Aneja and Nair, 1979). Under more, weights and limits are random. Each starts from the best plan
-found so far under it, and is annealed.
+Where vehicles are counted beside one other objective, first the fewest, then the least length with
+each number of them. Else first each objective alone, then trade-offs. Under two objectives these
+are taken between two neighbours of the front, most often where the rectangle between them is large:
+a limit on the longest route, or the weights with which both neighbours are as good (Aneja and Nair,
+1979). Under more, weights and limits are random. Each starts from the best plan found so far under
+it, and is annealed.
 """
 
 from collections.abc import Callable, Iterator
@@ -33,6 +34,13 @@ _UNLIMITED_AGAIN = 0.1  # share of the further directions under two objectives w
 _ANY_START = 0.25  # share of those under three objectives that start from a random plan
 _BELOW = 0.95  # how far below the least longest route limits go
 
+# Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
+# to find one vehicle less, for the fewest, and for any number; and the chance of the fewest after
+# that. Where few vehicles are full, only a hotter search gets from one plan to the next.
+_DESCENT, _AT_FEWEST, _AT_ANY = 0.07, (0.3, 0.4), 0.5
+_AGAIN, _OFTEN_FEWEST = 0.25, 0.6
+_HOTTER = 10.0  # times both temperatures, which are then those of SISR
+
 _LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
 
 
@@ -46,6 +54,7 @@ class Step:
         rounds: How long it lasts.
         heat: Its first temperature.
         cooled: Its last temperature.
+        ends_whole: Whether it ends with the first plan that visits all required stops.
     """
 
     direction: Direction
@@ -53,6 +62,7 @@ class Step:
     rounds: int
     heat: float
     cooled: float
+    ends_whole: bool = False
 
 
 class Directions:
@@ -84,7 +94,10 @@ class Directions:
         self._per_stop = ruins / max(1, len(fleet.rules.clients))
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
         self._bound = _least_longest(fleet)
+        optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
         self._by_limit = [over in _LIMITED for over in self._over]
+        two = len(self._over) == OBJECTIVES and sum(self._by_limit) == 1
+        self._counts_vehicles = two and "vehicles" in self._over and not optional
 
     def first(self) -> Step:
         """Return a short search for the least first length."""
@@ -100,6 +113,10 @@ class Directions:
 
     def steps(self) -> Iterator[Step]:
         """Yield the directions; each must be searched before the next is requested."""
+        if self._counts_vehicles:
+            while not len(self._points()):
+                yield self._at_most(inf, self._share(_FIRST_SHARE))
+            yield from self._by_vehicles()
         alone = [index for index, over in enumerate(self._over) if not self._by_limit[index]]
         rounds = self._share(_FIRST_SHARE / max(1, len(alone)))
         for objective in alone or [0]:
@@ -114,6 +131,36 @@ class Directions:
         while True:
             part = np.exp(self._random.uniform(*np.log(_SHALLOW)))
             yield self._between(None, self._share(1 / part))
+
+    def _by_vehicles(self) -> Iterator[Step]:
+        """Yield directions to the fewest vehicles, and to the least length with each number."""
+        fewest, now = inf, self._ends()[0]
+        while 1 < now < fewest:
+            fewest = now
+            yield replace(self._at_most(fewest - 1, self._share(_DESCENT)), ends_whole=True)
+            now = self._ends()[0]
+        for share in _AT_FEWEST:
+            yield self._at_most(now, self._share(share))
+        yield self._at_most(inf, self._share(_AT_ANY))
+        fewest, greatest = self._ends()
+        for limit in range(greatest - 1, fewest, -1):
+            yield self._at_most(limit, self._share(_AT_ANY / (limit - fewest)))
+        while True:
+            fewest, greatest = self._ends()
+            limit = int(self._random.integers(fewest - 1, greatest + 1))
+            often = self._random.random() < _OFTEN_FEWEST
+            yield self._at_most(fewest if often else limit, self._share(_AGAIN))
+
+    def _ends(self) -> tuple[int, int]:
+        """Return the least and the greatest number of vehicles of the front."""
+        numbers = self._points()[:, self._by_limit.index(True)]
+        return int(numbers.min()), int(numbers.max())
+
+    def _at_most(self, vehicles: float, rounds: int) -> Step:
+        """Return the least length with so many vehicles at most."""
+        weights = np.where(self._by_limit, _LESSER, 1.0) / self._scale
+        limits = {} if vehicles == inf else {self._by_limit.index(True): vehicles}
+        return self._step(weights, limits, rounds)
 
     def _share(self, share: float) -> int:
         """Return the rounds in a share of the time that is left."""
@@ -252,8 +299,9 @@ class Directions:
         if any_start and len(points):
             start = int(self._random.integers(len(points)))
         ruins = max(1.0, rounds * self._per_stop)
-        heat = min(_HOTTEST, _HEAT * ruins**_POWER)
-        heat, cooled = unit * max(heat, 2 * _COLDEST), unit * _COLDEST
+        hotter = _HOTTER if self._counts_vehicles else 1.0
+        heat, cooled = min(_HOTTEST, _HEAT * ruins**_POWER), hotter * unit * _COLDEST
+        heat = max(hotter * unit * heat, 2 * cooled)
         direction = self._direction(weights, limits, bounds, unit)
         return Step(direction, start, rounds, heat, cooled)
 

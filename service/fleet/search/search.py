@@ -239,9 +239,10 @@ class RuinSearch:
             most = left if left <= still else left - still
             rounds = min(most, self._options.iterations - self._rounds, self._at_once())
             heat = heat if left > still else 0.0
-            heat = anneal(state, self._archives, rounds * RUINS, heat, cooling)
-            self._rounds += rounds
-            left -= rounds
+            ruins = rounds * RUINS
+            heat, done = anneal(state, self._archives, ruins, heat, cooling, step.ends_whole)
+            self._rounds += math.ceil(done / RUINS)
+            left = left - rounds if done == ruins else 0
         return False
 
     def _at_once(self) -> int:
