@@ -7,7 +7,8 @@ rates, limits and the queue are those of every other request.
 
 import asyncio
 from collections.abc import AsyncIterator
-from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from contextlib import asynccontextmanager
+from functools import partial
 
 from fastapi import APIRouter
 from mcp.server.streamable_http_manager import StreamableHTTPSessionManager
@@ -19,11 +20,12 @@ from service.api.auth import client_of
 from service.api.body import receive_message
 from service.api.body_budget import BodyAllowance, BodyBudget
 from service.api.disconnect import unless_disconnected
-from service.mcp.in_process import client_of_app
+from service.mcp.in_process import client_of_app, state_of_app
 from service.mcp.server import make_server
 from service.mcp.tools import Planner
 
 _MOST_BYTES = 2**21  # of a message: it is parsed in the event loop
+_PROGRESS = b'"progressToken"'  # in a message whose client asks for progress
 
 
 class AgentRoute:
@@ -40,16 +42,23 @@ class AgentRoute:
         self._app = app
         self._budget = budget
         self._most_bytes = min(most_bytes, _MOST_BYTES)
-        self._manager = StreamableHTTPSessionManager(
-            make_server(self._connect, version),
-            json_response=True,
-            stateless=True,
-            max_request_body_size=self._most_bytes,
+        server = make_server(self._connect, version)
+        # Progress is told by a stream of events; all other answers are JSON.
+        self._plain, self._streaming = (
+            StreamableHTTPSessionManager(
+                server,
+                json_response=json_response,
+                stateless=True,
+                max_request_body_size=self._most_bytes,
+            )
+            for json_response in (True, False)
         )
 
-    def running(self) -> AbstractAsyncContextManager[None]:
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
         """Return the context in which messages are answered."""
-        return self._manager.run()
+        async with self._plain.run(), self._streaming.run():
+            yield
 
     def router(self) -> APIRouter:
         """Return the route; its messages are documented by the protocol, not in OpenAPI."""
@@ -61,7 +70,9 @@ class AgentRoute:
         """Answer a message of the protocol."""
         with self._budget.open(client_of(request)) as allowance:
             body = await receive_message(request, self._most_bytes, allowance)
-            return _Answer(self._manager, body, allowance.hand_over())
+            streams = _PROGRESS in body and "text/event-stream" in request.headers.get("accept", "")
+            manager = self._streaming if streams else self._plain
+            return _Answer(manager, body, allowance.hand_over())
 
     @asynccontextmanager
     async def _connect(self, request: Request) -> AsyncIterator[Planner]:
@@ -72,7 +83,7 @@ class AgentRoute:
         address = (request.client.host, request.client.port) if request.client else ("", 0)
         client = client_of_app(self._app, client=address, headers=headers)
         try:
-            yield Planner(client, str(request.base_url))
+            yield Planner(client, str(request.base_url), partial(state_of_app, self._app))
         finally:
             await client.close()
 

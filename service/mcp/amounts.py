@@ -1,7 +1,7 @@
 """Read and write times, durations and budgets as people say them: "10:00", "2:10 h", "3%"."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 MINUTE, HOUR, DAY = 60, 3600, 86400
@@ -9,12 +9,14 @@ _TIMES = {"s": 1, "second": 1, "seconds": 1, "min": MINUTE, "minute": MINUTE, "m
 SECONDS = {**_TIMES, "h": HOUR, "hour": HOUR, "hours": HOUR}  # in each unit of time
 _METRES = {"m": 1, "km": 1000}
 _FAR = 10_000  # metres, from which kilometres are said
-_CLOCK = re.compile(r"(\d{1,3}):([0-5]\d)(?::([0-5]\d))?(?: ?h)?")
-_AMOUNT = re.compile(r"(\d+(?:\.\d+)?) ?([^\d\s].*)?")
+# 10:00, 2:10 h, 10:00:30, and day 2, 8:05
+_CLOCK = re.compile(r"(?:day (\d{1,3}), ?)?(\d{1,6}):([0-5]\d)(?::([0-5]\d))?(?: ?h)?")
+_AMOUNT = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?) ?([^\d\s].*)?")
 _PER_CENT = re.compile(r"(\d+(?:\.\d+)?) ?%")
 # The members of requests that are times or durations, in the unit of the clock.
 TIMED = frozenset(
     (
+        "at",
         "departure",
         "due",
         "earliest",
@@ -23,13 +25,16 @@ TIMED = frozenset(
         "longest",
         "max_overtime",
         "now",
+        "over_the_day",
         "release",
     )
 ) | {"service", "shift", "shifts", "slots", "window", "windows"}
 # What such members may be in; below other members the same names mean something else.
 _HOLDERS = frozenset(
-    ("add", "breaks", "departure", "order", "position", "routes", "stops", "vehicles")
-)
+    ("add", "breaks", "departure", "objectives", "order", "position", "routes", "stops", "traffic")
+) | {"vehicles"}
+# Members whose own members are times under names that mean something else elsewhere.
+_OWN = {"every": ("from", "to", "length", "step"), "slices": ("from",)}
 
 
 def clock_time(time: float, unit: str | None) -> str | float:
@@ -62,8 +67,9 @@ def number_in(text: str, unit: str | None) -> float:
         ValueError: The text says none, or the unit is of another kind.
     """
     if found := _CLOCK.fullmatch(text.strip()):
-        hours, minutes, seconds = (int(part or 0) for part in found.groups())
-        value, given = float(HOUR * hours + MINUTE * minutes + seconds), "s"
+        hours, minutes, seconds = (int(part or 0) for part in found.group(2, 3, 4))
+        days = int(found[1] or 1) - 1
+        value, given = float(DAY * days + HOUR * hours + MINUTE * minutes + seconds), "s"
     elif found := _AMOUNT.fullmatch(text.strip()):
         value, given = float(found[1]), (found[2] or unit or "")
     else:
@@ -99,11 +105,19 @@ def with_times(members: Mapping[str, Any], unit: str | None) -> dict[str, Any]:
 
 def _member(name: str, value: Any, unit: str | None) -> Any:
     """Return a member of a request with numbers for the times in it that are texts."""
-    if name == "every" and isinstance(value, Mapping):  # all its members are times
-        return {each: _numbers(time, unit) for each, time in value.items()}
+    if name in _OWN:
+        return _own(value, _OWN[name], unit)
     if name in TIMED and not isinstance(value, Mapping):
         return _numbers(value, unit)
     return _inside(value, unit) if name in _HOLDERS else value
+
+
+def _own(value: Any, names: Sequence[str], unit: str | None) -> Any:
+    if isinstance(value, list):
+        return [_own(each, names, unit) for each in value]
+    if not isinstance(value, Mapping):
+        return value
+    return {name: _numbers(x, unit) if name in names else x for name, x in value.items()}
 
 
 def _inside(value: Any, unit: str | None) -> Any:

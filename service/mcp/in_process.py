@@ -1,5 +1,6 @@
 """Connect the Python client with an application in this process, without a network."""
 
+import math
 from collections.abc import Mapping
 
 import httpx
@@ -45,3 +46,18 @@ def client_of_app(
         most_bytes=_MOST_BYTES,
         transport=_Transport(app, client, plain),
     )
+
+
+async def state_of_app(app: ASGIApp) -> str:
+    """Return in words what an application in this process does before it plans."""
+    transport = httpx.ASGITransport(app)
+    async with httpx.AsyncClient(transport=transport, base_url="http://paretour") as client:
+        answer = await client.get("/health/ready")
+    found = answer.json()
+    if found.get("code") == "warming-up":
+        left = int(answer.headers["Retry-After"])
+        return f"compiling the search, which takes {left} s more or so"
+    if compiling := found.get("compiling"):
+        left = math.ceil(compiling["seconds_left"])
+        return f"planning, maybe once more code is compiled, which takes {left} s more or so"
+    return str(found.get("detail", "planning"))

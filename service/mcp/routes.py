@@ -52,6 +52,24 @@ def measures_of(front: FrontOfAnyKind, number: int) -> dict[str, Any]:
     }
 
 
+def hours_of(front: FrontOfAnyKind, number: int) -> dict[str, Any]:
+    """Return when a tour leaves and ends, or the first and the last route of a plan, if known."""
+    item: Any = front[number]
+    if isinstance(item, Tour):
+        return dict(_way_of_tour(item).known)
+    timed = [each.arrivals for each in item.routes if getattr(each, "arrivals", None) is not None]
+    if not timed or not isinstance(front, FleetFront):
+        return {}
+    unit = None if front.clock is None else front.clock.unit
+    first, last = min(each[0] for each in timed), max(each[-1] for each in timed)
+    return {"leaves": clock_time(float(first), unit), "ends": clock_time(float(last), unit)}
+
+
+def left_out_of(front: FrontOfAnyKind, number: int) -> list[str]:
+    """Return the ids of the stops that a plan leaves out."""
+    return list(getattr(front[number], "unassigned", ()))
+
+
 def fairest(front: FrontOfAnyKind) -> int | None:
     """Return the number of the plan whose routes differ least; None if that is not known."""
     if not isinstance(front, FleetFront) or "imbalance" not in front[0].measures:

@@ -6,13 +6,11 @@ from contextlib import AbstractAsyncContextManager, AsyncExitStack, nullcontext
 from functools import partial
 
 import anyio
-from httpx import ASGITransport, AsyncBaseTransport
-from httpx import AsyncClient as HttpClient
 from mcp.server.stdio import stdio_server
 from paretour import AsyncClient
 from starlette.applications import Starlette
 
-from service.mcp.in_process import client_of_app
+from service.mcp.in_process import client_of_app, state_of_app
 from service.mcp.server import make_server
 from service.mcp.tools import Planner
 
@@ -34,17 +32,10 @@ def serve_of_app(app: Starlette, version: str) -> None:
         async def __aenter__(self) -> Planner:  # type: ignore[override]
             await super().__aenter__()
             await self.enter_async_context(app.router.lifespan_context(app))
-            state = partial(_state, ASGITransport(app))
-            return Planner(client_of_app(app, patience=_PATIENCE), state=state)
+            client = client_of_app(app, patience=_PATIENCE)
+            return Planner(client, state=partial(state_of_app, app))
 
     _run(Started, version)
-
-
-async def _state(transport: AsyncBaseTransport) -> str:
-    """Return what the application does before it plans, in words."""
-    async with HttpClient(transport=transport, base_url="http://paretour") as client:
-        answer = (await client.get("/health/ready")).json()
-    return str(answer.get("detail", "planning"))
 
 
 def _run(started: Callable[[], AbstractAsyncContextManager[Planner]], version: str) -> None:

@@ -13,7 +13,15 @@ from paretour.kinds import kind_of
 from paretour.questions import Option, Question
 
 from service.mcp.amounts import amount
-from service.mcp.routes import Way, fairest, measures_of, names_of, ways_of
+from service.mcp.routes import (
+    Way,
+    fairest,
+    hours_of,
+    left_out_of,
+    measures_of,
+    names_of,
+    ways_of,
+)
 from service.objectives import OBJECTIVES
 
 MOST_BYTES = 8000  # of a text
@@ -72,10 +80,18 @@ def unreadable_text(error: Refused) -> str:
 def explanation(front: FrontOfAnyKind, link: str | None) -> str:
     """Return the text of a front's trade-offs: its ranges, some tours, and sentences.
 
-    A sentence says how much less of one objective a little more of another buys.
+    A sentence says how much less of one objective a little more of another buys. Of plans, the
+    routes of the knee follow.
     """
-    document = {**_heading(front, link), "tours": _representatives(front)}
-    return _fitted({**document, "trades": _trades(front)})
+    document = {
+        **_heading(front, link),
+        "tours": _representatives(front),
+        "trades": _trades(front),
+    }
+    if not kind_of(front.document).mover or not len(front):
+        return _fitted(document)
+    middle = knee(front.lengths)
+    return _with_stops({**document, "stops_of": middle}, front, middle, 0)
 
 
 def tour_text(front: FrontOfAnyKind, number: int, first_stop: int, link: str | None) -> str:
@@ -219,6 +235,8 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
 
     The first `first` stops are left out.
     """
+    if unassigned := left_out_of(front, number):
+        document = {**document, "unassigned": unassigned}
     ways = ways_of(front, number)
     pairs = [(at, place) for at, way in enumerate(ways) for place in range(len(way.stops))]
     rest = pairs[first:]
@@ -279,9 +297,10 @@ def _noun(front: FrontOfAnyKind) -> str:
 
 
 def _known(front: FrontOfAnyKind, number: int) -> Named:
-    """Return the lengths of a tour or plan, and the measures of a plan."""
+    """Return the lengths of a tour or plan, its times of day, and the measures of a plan."""
     measures = measures_of(front, number)
-    return {"lengths": _lengths(front, number), **({"measures": measures} if measures else {})}
+    found = {"lengths": _lengths(front, number), **hours_of(front, number)}
+    return {**found, **({"measures": measures} if measures else {})}
 
 
 def _lengths(front: FrontOfAnyKind, number: int) -> dict[str, float]:
@@ -314,11 +333,11 @@ def _linked(document: dict[str, Any], link: str | None) -> dict[str, Any]:
 def _fitted(document: Named) -> str:
     """Return the text of a document, shortened if long names make it too long.
 
-    The last trade-offs are left out first, then the last tours, then all ranges, and then the last
-    sentences on the file and on the request.
+    The last trade-offs are left out first, then the last tours, then all ranges, then the last
+    sentences on the file and on the request, and then the last stops that a plan leaves out.
     """
     members = dict(document)
-    for name in ("trades", "tours", "ranges", "assumed", "notes"):
+    for name in ("trades", "tours", "ranges", "assumed", "notes", "unassigned"):
         while len(_text(members).encode()) > MOST_BYTES and members.get(name):
             members[name] = members[name][:-1] if isinstance(members[name], list) else {}
     return _text(members)

@@ -1,6 +1,7 @@
 """A dispatcher's day with an agent, from the morning to the afternoon, by the SDK's client."""
 
 import asyncio
+import json
 from collections.abc import Iterator
 from contextlib import nullcontext
 from dataclasses import replace
@@ -13,10 +14,10 @@ from paretour import AsyncClient
 
 from service.api.app import Edge
 from service.mcp import server
-from service.mcp.amounts import amount, budget_in, clock_time, number_in
+from service.mcp.amounts import amount, budget_in, clock_time, number_in, with_times
 from service.mcp.tools import Planner
 from tests.helpers.serving import app_of, serving
-from tests.mcp.test_tools import LIMITS, agent, call, said
+from tests.mcp.test_tools import FLEET, LIMITS, agent, call, said
 
 ORDERS = [
     {"id": f"o{i}", "location": [24.9 + i * i % 11 / 100, 60.1 + i * 3 % 7 / 100], "demand": [1]}
@@ -78,6 +79,8 @@ def test_a_day_of_a_dispatcher_from_the_morning_to_the_afternoon(url: str) -> No
             stored = httpx.get(f"{url}/front/{morning['front']}").json()["front"]
             explained = await call(client, "explain_front", front=morning["link"])
             assert explained["front"] == morning["front"]
+            assert {each["stops_of"] for each in (explained, morning)} == {morning["stops_of"]}
+            check_plan(explained)
             await check_choices(client, morning, stored)
             chosen = await check_questions(client, morning, stored)
             rest = await check_replanning(client, morning, stored, chosen)
@@ -177,6 +180,38 @@ def test_a_client_that_asks_for_progress_hears_what_a_tool_waits_for(
     assert set(heard) == {"compiling the search: 40 %"}
 
 
+def test_progress_is_told_over_http_to_those_who_ask_for_it(
+    url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server, "_PAUSE", 0.1)
+    heard: list[str | None] = []
+
+    async def hear(_: float, __: float | None, message: str | None) -> None:
+        heard.append(message)
+
+    async def talk() -> None:
+        day = {**DAY, "time_limit": 0.6}
+        async with agent(url) as client:
+            told = await client.call_tool("plan_fleet", day, progress_callback=hear)
+            check_plan(json.loads(told.content[0].text))
+
+    asyncio.run(talk())
+    assert "planning" in heard
+
+
+def test_a_plan_names_the_stops_that_it_leaves_out(url: str) -> None:
+    async def talk() -> None:
+        stops = [{**stop, "prize": 0} if "demand" in stop else stop for stop in FLEET["stops"]]
+        vans = [{**FLEET["vehicles"][0], "count": 1}]
+        async with agent(url) as client:
+            front = await call(client, "plan_fleet", **{**FLEET, "stops": stops, "vehicles": vans})
+            depot, *others = [stop["id"] for stop in stops]
+            served = {stop for each in front["routes"] for stop in each["stops"]} - {depot}
+            assert sorted([*served, *front["unassigned"]]) == others
+
+    asyncio.run(talk())
+
+
 def test_several_files_are_planned_together(url: str) -> None:
     async def talk() -> None:
         async with agent(url) as client:
@@ -199,10 +234,32 @@ def test_several_files_are_planned_together(url: str) -> None:
         ("12.5 km", "m", 12500),
         ("40 EUR", "EUR", 40),
         ("40", None, 40),
+        ("day 2, 8:05", "min", 1925),
+        (clock_time(115500, "s"), "s", 115500),
+        *((amount(x, unit), unit, x) for unit in ("s", "m", "EUR") for x in (0, 30, 7200, 2e7)),
     ],
 )
 def test_amounts_are_read_as_people_write_them(text: str, unit: str, number: float) -> None:
     assert number_in(text, unit) == pytest.approx(number)
+
+
+def test_times_of_the_day_are_read_wherever_a_request_has_them() -> None:
+    day = {
+        "departure": {"earliest": "8:00", "latest": "day 2, 0:10"},
+        "objectives": [
+            {"name": "a", "over_the_day": [["0:00", 1], ["0:01", 2]]},
+            {"from": "road_time", "traffic": {"at": ["0:01"]}},
+            {"slices": [{"from": "0:01", "matrix": [[0]]}]},
+        ],
+        "every": {"from": "0:01", "to": "0:03", "length": "1 min", "step": "1 min"},
+    }
+    read: Any = with_times(day, "s")
+    assert read["departure"] == {"earliest": 28800, "latest": 87000}
+    changing, traffic, sliced = read["objectives"]
+    assert changing["over_the_day"] == [[0, 1], [60, 2]]
+    assert (traffic["from"], traffic["traffic"]["at"]) == ("road_time", [60])
+    assert sliced["slices"][0]["from"] == 60
+    assert read["every"] == {"from": 60, "to": 180, "length": 60, "step": 60}
 
 
 def test_budgets_and_times_are_read_and_written() -> None:
