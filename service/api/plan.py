@@ -13,7 +13,7 @@ from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import BodyAllowance, BodyBudget
 from service.api.disconnect import disconnected
-from service.api.geojson.answers import CONTENT, FrontAnswers
+from service.api.geojson.answers import FRONT_CONTENT, TEXT_CONTENT, FrontAnswers
 from service.api.middleware import ANSWER_HEADERS
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
@@ -88,12 +88,18 @@ class PlanRoutes:
             202: {"model": AcceptedAnswer, "description": "Accepted", "content": _ACCEPTED},
             **problem_responses(400, 406, 408, 413, 415, 422, 503, 504),
         }
-        with_roads = {200: CONTENT, **problem_responses(502)}
+        with_roads = {200: FRONT_CONTENT, **problem_responses(502)}
         of_earlier = {**with_roads, **problem_responses(404, 409, 410)}
         rest = FrontAnswer | CoverageAnswer | FleetAnswer
         for path, endpoint, answer, body, more in (
             ("/front", self.plan_front, FrontAnswer, FRONT_BODY, with_roads),
-            ("/coverage", self.plan_coverage, CoverageAnswer | RobotsAnswer, COVERAGE_BODY, {}),
+            (
+                "/coverage",
+                self.plan_coverage,
+                CoverageAnswer | RobotsAnswer,
+                COVERAGE_BODY,
+                {200: TEXT_CONTENT},
+            ),
             ("/front/{id}/replan", self.replan_front, rest, REPLAN_BODY, of_earlier),
             ("/fleet", self.plan_fleet, FleetAnswer, FLEET_BODY, with_roads),
         ):
@@ -112,7 +118,8 @@ class PlanRoutes:
         multipart/form-data body, beside the part `request` with everything else.
 
         With `Accept: application/geo+json`, and stops that have locations, the answer is GeoJSON.
-        Its lines follow the streets where `geometry` says `roads`.
+        Its lines follow the streets where `geometry` says `roads`. With `Accept: text/plain` it is
+        the lengths alone, as a set of points that `moocore` reads.
 
         With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
         will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.

@@ -9,6 +9,7 @@ from service.errors import invalid_header
 from service.webhooks.targets import MOST_LETTERS, Targets
 
 GEOJSON = "application/geo+json"
+TEXT = "text/plain"
 # Which headers a page of another origin may send (CORS).
 ALLOWED = (
     *("Authorization", "Content-Type", "Idempotency-Key", "Last-Event-ID", "Prefer"),
@@ -84,6 +85,16 @@ def accepts_geojson(request: Request) -> bool:
     weights = _weights(request, "accept")
     quality = weights.get(GEOJSON, 0.0)
     return quality > 0 and quality >= weights.get("application/json", 0.0)
+
+
+def prefers_text(request: Request) -> bool:
+    """Return whether the caller prefers plain text to JSON, to anything, and to GeoJSON.
+
+    Libraries that accept JSON, text and anything alike get JSON.
+    """
+    weights = _weights(request, "accept")
+    others = ("application/json", GEOJSON, "application/*", "*/*")
+    return weights.get(TEXT, 0.0) > max(weights.get(each, 0.0) for each in others)
 
 
 def accepts_gzip(request: Request) -> bool:

@@ -9,7 +9,7 @@ from starlette.responses import Response, StreamingResponse
 
 from service.api.auth import caller_of, owner_of
 from service.api.front_events import PARAMETERS, Seen, events_after
-from service.api.geojson.answers import CONTENT, FrontAnswers
+from service.api.geojson.answers import CONTENT, FRONT_CONTENT, FrontAnswers
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.response_headers import LINK
 from service.api.responses import (
@@ -65,7 +65,7 @@ class StoredFrontRoutes:
         router.get(
             "/front/{id}",
             response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
-            responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
+            responses={200: FRONT_CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.get_front)
         router.delete(
             "/front/{id}",

@@ -1,4 +1,4 @@
-"""Answers of fronts and tours: in JSON, or in GeoJSON where the request accepts that.
+"""Answers of fronts and tours: in JSON, or in GeoJSON or text where the request accepts that.
 
 Lines of tours are straight from stop to stop, or follow the streets as a routing engine knows them.
 """
@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.text_sets import label, text_set, unnamed
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
@@ -18,7 +19,7 @@ from service.api.auth import client_of
 from service.api.body_budget import BodyBudget
 from service.api.disconnect import unless_disconnected
 from service.api.geojson.features import Drawing, Line
-from service.api.request_headers import GEOJSON, accepts_geojson
+from service.api.request_headers import GEOJSON, TEXT, accepts_geojson, prefers_text
 from service.api.responses import compressed, json_bytes, record_under, root_path_of
 from service.errors import Fault, Refusal
 from service.jobs.record import Record
@@ -43,6 +44,18 @@ CONTENT: dict[str, Any] = {
         }
     }
 }
+TEXT_CONTENT: dict[str, Any] = {
+    "content": {
+        TEXT: {
+            "schema": {
+                "description": "the lengths of each tour or plan in a line, as a set of points that"
+                " moocore reads",
+                "type": "string",
+            }
+        }
+    }
+}
+FRONT_CONTENT = {"content": {**CONTENT["content"], **TEXT_CONTENT["content"]}}
 Stops = Sequence[dict[str, Any]]
 
 
@@ -94,7 +107,7 @@ class FrontAnswers:
         seconds: float = math.inf,
         plan: int | None = None,
     ) -> Response:
-        """Return a front as GeoJSON where the request accepts that, else as JSON.
+        """Return a front as GeoJSON or text where the request accepts that, else as JSON.
 
         A front that was planned for this request is sent even where the budget has no room.
 
@@ -119,6 +132,8 @@ class FrontAnswers:
             if accepts_geojson(request):
                 drawing = await asyncio.to_thread(Drawing.of, record, b"[%b]" % items, plan or 0)
                 response = await self._drawn(request, drawing, geometry, seconds)
+            elif prefers_text(request):
+                response = await compressed(request, _points(record))
             else:
                 response = await compressed(request, json_bytes(record.json()))
             return allowance.until_sent(response)
@@ -162,6 +177,15 @@ class FrontAnswers:
         collection = await asyncio.to_thread(drawing.encode, lines)
         response = Response(collection, media_type=GEOJSON, headers=VARY)
         return await compressed(request, response)
+
+
+def _points(record: Record) -> Response:
+    """Return the lengths of all tours or plans, as text that moocore reads."""
+    lengths = record.front.lengths
+    named = record.front.objectives
+    labels = [label(each["name"], each["unit"]) for each in named or ()]
+    text = text_set(labels or unnamed(lengths.shape[1]), lengths.tolist())
+    return Response(text, media_type=TEXT, headers=VARY)
 
 
 def _fault(request: Request, code: str, said: str = "", **values: str) -> Fault:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from paretour import display
 from paretour.choice import losses
 from paretour.questions import OPTIONS, QUESTIONS, Question, ask
-from paretour.text_sets import text_set
+from paretour.text_sets import label, text_set, unnamed
 
 Array = NDArray[np.float64]
 Item = TypeVar("Item")  # a tour, or a plan
@@ -27,7 +27,7 @@ class Objective:
     @property
     def label(self) -> str:
         """The name, with the unit if there is one."""
-        return self.name if self.unit is None else f"{self.name} ({self.unit})"
+        return label(self.name, self.unit)
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class StoredFront(Generic[Item]):
         """The name of each objective; `length_1` and so on, where the request named none."""
         if self.objectives:
             return [each.name for each in self.objectives]
-        return [f"length_{number + 1}" for number in range(self.lengths.shape[1])]
+        return unnamed(self.lengths.shape[1])
 
     @property
     def labels(self) -> list[str]:

@@ -3,6 +3,16 @@
 from collections.abc import Iterable, Sequence
 
 
+def label(name: str, unit: str | None) -> str:
+    """Return the name of an objective, with the unit if there is one."""
+    return name if unit is None else f"{name} ({unit})"
+
+
+def unnamed(count: int) -> list[str]:
+    """Return what objectives are called whose request named none."""
+    return [f"length_{number + 1}" for number in range(count)]
+
+
 def text_set(names: Iterable[str], points: Iterable[Sequence[float]]) -> str:
     """Return a line for each point, after a comment that names the objectives.
 

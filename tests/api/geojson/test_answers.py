@@ -1,11 +1,14 @@
-"""Fronts and tours as GeoJSON, against a live server, by the rules of RFC 7946."""
+"""Fronts and tours as GeoJSON, by the rules of RFC 7946, and as text, against a live server."""
 
 from collections.abc import Iterator
+from io import StringIO
 from typing import Any
 
 import httpx
+import moocore
 import numpy as np
 import pytest
+from paretour.kinds import parse_any
 
 from tests.helpers.serving import app_of, problem, serving
 
@@ -44,6 +47,40 @@ def check(collection: dict[str, Any], tours: list[dict[str, Any]]) -> None:
     assert [point["geometry"] for point in points] == [
         {"type": "Point", "coordinates": location} for location in LOCATIONS
     ]
+
+
+@pytest.mark.parametrize(
+    ("path", "request_"),
+    [
+        ("/front", REQUEST),
+        ("/front", {"coordinates": [[0, 1, 2, 3], [3, 1, 0, 2], [5, 5, 1, 7]], "time_limit": 0}),
+        (
+            "/fleet",
+            {**REQUEST, "vehicles": [{"id": "van", "count": 2, "start": 0, "end": 0}]},
+        ),
+    ],
+)
+def test_a_front_is_given_as_text_that_moocore_reads(
+    client: httpx.Client, path: str, request_: dict[str, Any]
+) -> None:
+    client.post(path, json=request_).raise_for_status()
+    stored = client.get("/front").json()["fronts"][0]["id"]
+    front = client.get(f"/front/{stored}").json()
+    text = client.get(f"/front/{stored}", headers={"Accept": "text/plain"})
+    assert text.headers["content-type"] == "text/plain; charset=utf-8"
+    assert text.text == parse_any(front).to_moocore()
+    points = moocore.read_datasets(StringIO(text.text))[:, :-1]
+    assert points.tolist() == [each["lengths"] for each in front["front"]]
+    again = client.post(path, json=request_, headers={"Accept": "text/plain"})
+    assert again.headers["content-type"] == text.headers["content-type"]
+    assert moocore.read_datasets(StringIO(again.text)).shape[1] == 3
+
+
+def test_a_library_that_accepts_text_as_well_gets_json(client: httpx.Client) -> None:
+    headers = {"Accept": "application/json, text/plain, */*"}
+    assert client.post("/front", json=REQUEST, headers=headers).json()["front"]
+    refused = client.get("/front/x", headers={"Accept": "text/plain"})
+    problem(refused, 404, "unknown-front")
 
 
 def test_a_front_and_its_tours_are_given_as_geojson(client: httpx.Client) -> None:
