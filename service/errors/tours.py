@@ -24,11 +24,14 @@ class CityNames:
         noun: The word for a city, such as "stop".
         ids: The caller's names of the cities; None where there are only indexes.
         part: The member of the request that has an item for each city; None where none has.
+        parts: In place of it, the part of the request that is each city, as add/0; empty where the
+            request has none.
     """
 
     noun: str = "city"
     ids: Sequence[str] | None = None
     part: str | None = None
+    parts: Sequence[str] | None = None
 
     def of(self, cities: Sequence[int]) -> str:
         """Return the names of some cities; of many, only the first few."""
@@ -40,6 +43,8 @@ class CityNames:
 
     def pointer(self, city: int) -> str | None:
         """Return the JSON pointer to a city in the request."""
+        if self.parts is not None:
+            return f"/{self.parts[city]}" if self.parts[city] else None
         return None if self.part is None else f"/{self.part}/{city}"
 
     def _name(self, city: int) -> str:

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.errors import Cancelled
+from service.errors import Cancelled, Refusal
+from service.errors.parts import by_stop
 from service.requests.stops import Array, RoadMeasure, Stops, Traffic
 from service.requests.task import Task, UnmeasuredFleet
 from service.roads.client import RoadClient
@@ -23,6 +24,13 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
         Refusal: Every tour has a leg for which the engine knows no way, or the engine fails; see
             RoadClient.costs.
     """
+    try:
+        return await _measured(task, client)
+    except Refusal as refusal:
+        raise by_stop(refusal, task.city_names) from None
+
+
+async def _measured(task: Task, client: RoadClient) -> Task:
     subject, labels = task.subject, task.labels
     assert isinstance(subject, Stops | UnmeasuredFleet)
     assert labels is not None

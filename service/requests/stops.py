@@ -36,10 +36,18 @@ class Stop:
 
 @dataclass(frozen=True)
 class Labels:
-    """The caller's names of everything in a request: its n stops, in order, and its objectives."""
+    """The caller's names of everything in a request: its n stops, in order, and its objectives.
+
+    Args:
+        stops: The stops.
+        objectives: The objectives.
+        parts: Of a request to replan: the part that has each stop, as add/0; empty for those of the
+            earlier front. None where the request lists all stops.
+    """
 
     stops: tuple[Stop, ...]
     objectives: tuple[Objective, ...]
+    parts: tuple[str, ...] | None = None
 
     @property
     def id_bytes(self) -> int:
@@ -49,7 +57,7 @@ class Labels:
     @property
     def city_names(self) -> CityNames:
         """The names of the stops in refusals."""
-        return CityNames("stop", [stop.id for stop in self.stops], "stops")
+        return CityNames("stop", [stop.id for stop in self.stops], "stops", self.parts)
 
     @property
     def members(self) -> dict[str, Any]:

@@ -177,6 +177,7 @@ def test_the_rest_of_the_rest_is_replanned_too(client: httpx.Client, front: dict
         assert {stop for route in each["routes"] for stop in visits_of(route)} == left
 
 
+NEW = {"id": "new", "location": [24.95, 60.17]}
 REFUSED = [
     ({"now": None}, "/now"),
     ({"plan": 999}, "/plan"),
@@ -187,6 +188,10 @@ REFUSED = [
     ({"remove": ["depot"]}, "/remove/0"),
     ({"add": [{"id": "order-1", "location": [25, 60]}]}, "/add/0/id"),
     ({"add": [{"id": "new"}]}, "/add/0/location"),
+    # What is checked, or found to be impossible, of the fleet that is made of the rest:
+    ({"add": [{**NEW, "demand": [1, 1]}]}, "/add/0/demand"),
+    ({"add": [NEW, {**NEW, "id": "other", "window": [9, 3]}]}, "/add/1/window"),
+    ({"add": [NEW, {**NEW, "id": "other", "demand": [99]}]}, "/add/1"),
 ]
 
 

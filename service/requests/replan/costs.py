@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import invalid
+from service.errors import CityNames, invalid
 from service.errors.faults import show
 from service.requests.arrays import costs_array
 from service.requests.replan.fields import CostEntry, NewStop
@@ -41,6 +42,16 @@ class AllStops:
     stops: tuple[Stop, ...]
     n: int
     new: Mapping[str, NewStop]
+
+    @cached_property
+    def parts(self) -> tuple[str, ...]:
+        """The part of the request that has each stop; empty for those of the front."""
+        return (*[""] * self.n, *self.new)
+
+    @property
+    def names(self) -> CityNames:
+        """The names of all stops in refusals."""
+        return CityNames("stop", [stop.id for stop in self.stops], parts=self.parts)
 
 
 def all_stops(known: Sequence[Stop], items: Mapping[str, NewStop | list[int]]) -> AllStops:

@@ -1,6 +1,6 @@
 """Requests of `POST /front/{id}/offers`: their fields, and what is asked for of which fleet."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -10,6 +10,7 @@ from pydantic_core import from_json, to_json
 
 from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal, invalid
+from service.errors.parts import Part, part_of, renamed
 from service.fleet.vehicles import Span
 from service.requests.fields import Cost, PositiveNumber, StrictModel, one_of, optional
 from service.requests.fleet_fields import TimeSpan
@@ -164,12 +165,14 @@ def offers_task(
         rest = rest_of_fleet(fleet, task, asked, limits, actors)
     except Refusal as refusal:
         raise _of_order(refusal, len(request.add)) from None
-    assert rest.labels is not None
-    ids = [stop.id for stop in rest.labels.stops]
+    labels = rest.labels
+    assert labels is not None
+    order = [stop.id for stop in labels.stops].index(request.order.id)
+    parts = ["order" if stop == order else part for stop, part in enumerate(labels.parts or ())]
     return OffersTask(
         front=source.front.id,
-        task=rest,
-        order=ids.index(request.order.id),
+        task=replace(rest, labels=replace(labels, parts=tuple(parts))),
+        order=order,
         slots=tuple(slots),
         seconds=min(request.time_limit, limits.seconds),
         plan=members["plan"],
@@ -210,20 +213,11 @@ def _of_order(refusal: Refusal, added: int) -> Refusal:
     """Return a refusal in which what is wrong with the last added stop is wrong with the order."""
     known = f"add/{added}"
 
-    def renamed(part: str | None) -> str | None:
-        if part is None or not (part == known or part.startswith(f"{known}/")):
-            return part
-        return f"order{part.removeprefix(known)}"
+    def rename(path: str) -> Part:
+        is_order = path == known or path.startswith(f"{known}/")
+        return part_of(f"order{path.removeprefix(known)}" if is_order else path)
 
-    def of_order(fault: Fault) -> Fault:
-        pointer = renamed(None if fault.pointer is None else fault.pointer[1:])
-        part = renamed(fault.part)
-        return replace(fault, part=part, pointer=None if pointer is None else f"/{pointer}")
-
-    errors: Sequence[Fault] = [of_order(fault) for fault in refusal.errors]
-    if errors == [*refusal.errors] or refusal.code != "invalid-request":
-        return refusal
-    return Refusal("invalid-request", errors=errors)
+    return renamed(refusal, rename)
 
 
 def _routes_of(plan: bytes) -> dict[str, int]:

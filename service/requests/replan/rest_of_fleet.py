@@ -10,6 +10,7 @@ import numpy as np
 
 from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal, invalid
+from service.errors.parts import by_stop
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
@@ -63,7 +64,10 @@ def rest_of_fleet(
     # Each stop may come in a route, and depots again in each of as many routes.
     id_bytes = 3 * rest.labels.id_bytes + sum(len(name.id) for name in rest.names)
     check_amounts(request, n, limits, id_bytes)
-    subject = rest.subject
+    try:
+        subject = rest.subject
+    except Refusal as refusal:
+        raise by_stop(refusal, rest.labels.city_names) from None
     code = "too-many-left-unless-straight"
     check_fleet("add", subject.stops, limits, request.time_limit, code)
     check_router(subject.stops.sources, limits)
@@ -120,7 +124,11 @@ class _Rest:
     @cached_property
     def labels(self) -> Labels:
         """The names of the stops of the rest, and of the objectives."""
-        return Labels(tuple(self._all.stops[stop] for stop in self._place), self._known.objectives)
+        return Labels(
+            tuple(self._all.stops[stop] for stop in self._place),
+            self._known.objectives,
+            tuple(self._all.parts[stop] for stop in self._place),
+        )
 
     @property
     def subject(self) -> UnmeasuredFleet:

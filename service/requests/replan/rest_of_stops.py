@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
-from service.errors import invalid
+from service.errors import Refusal, invalid
+from service.errors.parts import by_stop
 from service.objectives import Objective
 from service.requests.limits import Limits, check_amounts, check_router, lower_defaults
 from service.requests.parser import front_task
@@ -70,7 +71,11 @@ def rest_of_stops(
         _check_cities("add", rest, front.sources, limits)
     objectives, sources, changed = _all_costs(front, request, stops)
     _check_cities("objectives" if request.objectives else "costs", rest, sources, limits)
-    labels = Labels(tuple(stops.stops[index] for index in rest.stops), objectives)
+    labels = Labels(
+        tuple(stops.stops[index] for index in rest.stops),
+        objectives,
+        tuple(stops.parts[index] for index in rest.stops),
+    )
     n, id_bytes = len(labels.stops), labels.id_bytes
     check_amounts(request, n, limits, id_bytes)
     sources_of_rest = [between(each, rest.stops) for each in sources]
@@ -141,7 +146,10 @@ def _all_costs(
         for part, item in stops.new.items():
             for name in {"coordinates", "costs"} & item.model_fields_set:
                 raise invalid(f"{part}/{name}", "not-beside", member="objectives")
-        sources = read_sources(request.objectives, stops.stops)
+        try:
+            sources = read_sources(request.objectives, stops.stops)
+        except Refusal as refusal:
+            raise by_stop(refusal, stops.names) from None
     else:
         objectives = front.labels.objectives[: len(front.sources)]
         names = [objective.name for objective in objectives]
