@@ -12,7 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from service.api.geojson.answers import points_text
 from service.api.problem import Problem
+from service.api.request_headers import GEOJSON, TEXT
 from service.api.response_headers import HEADERS, add_headers
 from service.api.responses import PROBLEM_JSON
 from service.errors import PROBLEMS, Fault, Refusal
@@ -99,10 +101,20 @@ def _add_examples(document: dict[str, Any]) -> None:
         for status, response in operation["responses"].items():
             content = response.get("content", {})
             if status == "200" and name in examples["answers"]:
-                for media in content.values():
-                    media["example"] = examples["answers"][name]
+                for form, media in content.items():
+                    media |= _example(form, examples["answers"][name])
             if PROBLEM_JSON in content:
                 content[PROBLEM_JSON]["examples"] = _refusals(name, int(status))
+
+
+def _example(form: str, answer: Any) -> dict[str, Any]:
+    """Return the member `example` of an answer in a form; GeoJSON has its own."""
+    if form == GEOJSON:
+        return {}
+    if form == TEXT and isinstance(answer, Mapping):
+        lengths = [each["lengths"] for each in answer["front"]]
+        return {"example": points_text(answer.get("objectives", ()), lengths)}
+    return {"example": answer}
 
 
 def _refusals(operation: str, status: int) -> dict[str, Any]:

@@ -85,21 +85,16 @@ class PlanRoutes:
         """Return the routes with their entries in the OpenAPI document."""
         router = APIRouter(tags=["fronts"])
         responses: dict[int | str, dict[str, Any]] = {
+            200: TEXT_CONTENT,
             202: {"model": AcceptedAnswer, "description": "Accepted", "content": _ACCEPTED},
             **problem_responses(400, 406, 408, 413, 415, 422, 503, 504),
         }
         with_roads = {200: FRONT_CONTENT, **problem_responses(502)}
         of_earlier = {**with_roads, **problem_responses(404, 409, 410)}
-        rest = FrontAnswer | CoverageAnswer | FleetAnswer
+        of_map, rest = CoverageAnswer | RobotsAnswer, FrontAnswer | CoverageAnswer | FleetAnswer
         for path, endpoint, answer, body, more in (
             ("/front", self.plan_front, FrontAnswer, FRONT_BODY, with_roads),
-            (
-                "/coverage",
-                self.plan_coverage,
-                CoverageAnswer | RobotsAnswer,
-                COVERAGE_BODY,
-                {200: TEXT_CONTENT},
-            ),
+            ("/coverage", self.plan_coverage, of_map, COVERAGE_BODY, {}),
             ("/front/{id}/replan", self.replan_front, rest, REPLAN_BODY, of_earlier),
             ("/fleet", self.plan_fleet, FleetAnswer, FLEET_BODY, with_roads),
         ):

@@ -5,7 +5,7 @@ Lines of tours are straight from stop to stop, or follow the streets as a routin
 
 import asyncio
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,10 +24,21 @@ from service.api.responses import compressed, json_bytes, record_under, root_pat
 from service.errors import Fault, Refusal
 from service.jobs.record import Record
 from service.kinds.table import KINDS
+from service.objectives import OBJECTIVES
 from service.requests.fields import Geometry
 
 VARY = {"Vary": "Accept"}
 # For the OpenAPI document.
+_EXAMPLE = {
+    "type": "FeatureCollection",
+    "features": [
+        {
+            "type": "Feature",
+            "geometry": {"type": "LineString", "coordinates": [[24.94, 60.17], [24.95, 60.18]]},
+            "properties": {"names": ["distance", "risk"], "lengths": [1241.6, 3.0]},
+        }
+    ],
+}
 CONTENT: dict[str, Any] = {
     "content": {
         GEOJSON: {
@@ -40,7 +51,8 @@ CONTENT: dict[str, Any] = {
                     "type": {"const": "FeatureCollection"},
                     "features": {"type": "array", "items": {"type": "object"}},
                 },
-            }
+            },
+            "example": _EXAMPLE,
         }
     }
 }
@@ -133,7 +145,9 @@ class FrontAnswers:
                 drawing = await asyncio.to_thread(Drawing.of, record, b"[%b]" % items, plan or 0)
                 response = await self._drawn(request, drawing, geometry, seconds)
             elif prefers_text(request):
-                response = await compressed(request, _points(record))
+                text = points_text(record.front.objectives or (), record.front.lengths.tolist())
+                response = Response(text, media_type=TEXT, headers=VARY)
+                response = await compressed(request, response)
             else:
                 response = await compressed(request, json_bytes(record.json()))
             return allowance.until_sent(response)
@@ -179,13 +193,15 @@ class FrontAnswers:
         return await compressed(request, response)
 
 
-def _points(record: Record) -> Response:
-    """Return the lengths of all tours or plans, as text that moocore reads."""
-    lengths = record.front.lengths
-    named = record.front.objectives
-    labels = [label(each["name"], each["unit"]) for each in named or ()]
-    text = text_set(labels or unnamed(lengths.shape[1]), lengths.tolist())
-    return Response(text, media_type=TEXT, headers=VARY)
+def points_text(objectives: Sequence[Mapping[str, Any]], lengths: Sequence[Sequence[float]]) -> str:
+    """Return the lengths of all tours or plans, as text that moocore reads.
+
+    Args:
+        objectives: The name and unit of each objective; none where the request named none.
+        lengths: The lengths of each tour or plan.
+    """
+    labels = [label(each["name"], each.get("unit")) for each in objectives]
+    return text_set(labels or unnamed(len(lengths[0]) if len(lengths) else OBJECTIVES), lengths)
 
 
 def _fault(request: Request, code: str, said: str = "", **values: str) -> Fault:
