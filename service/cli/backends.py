@@ -6,7 +6,16 @@ from http import HTTPStatus
 from typing import TYPE_CHECKING, Protocol
 
 import httpx
-from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
+from paretour import (
+    Actor,
+    Client,
+    FrontOfAnyKind,
+    Job,
+    Offers,
+    OffersRequest,
+    Plan,
+    Refused,
+)
 from paretour.calls import address_of
 from rich.console import Console
 
@@ -66,6 +75,15 @@ class RemoteBackend:
         """
         with self._client() as client:
             return client.any_job(front).front()
+
+    def offers(self, front: str, request: OffersRequest) -> Offers:
+        """Return in which slots an order can be promised, beside a front's plan that is driven.
+
+        Raises:
+            Refused: The service makes no such offers.
+        """
+        with self._client() as client:
+            return client.offers(front, **request)
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""

@@ -147,6 +147,23 @@ def replan(
 
 @app.command()
 @with_groups
+def offers(
+    front_id: options.FrontId,
+    asked: options.AskedOffers,
+    *,
+    url: options.ServiceUrl,
+    api_key: options.ApiKey = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Say in which slots an order can be promised beside a fleet's plan, and what each costs."""
+    from service.cli.backends import RemoteBackend
+    from service.cli.offers import run_offers
+
+    run_offers(front_id, asked, as_json, RemoteBackend(url, api_key))
+
+
+@app.command()
+@with_groups
 def fleet(
     file: options.FleetFile,
     vehicles: options.VehiclesFile = None,

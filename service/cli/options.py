@@ -122,6 +122,14 @@ Changes = Annotated[
         " - is standard input."
     ),
 ]
+AskedOffers = Annotated[
+    Path,
+    Argument(
+        metavar="ASKED",
+        help="JSON: `order`, `slots` or `every`, and what has changed, as `now`: the members of a"
+        " request for POST /front/{id}/offers. - is standard input.",
+    ),
+]
 AskedFront = Annotated[
     str,
     Argument(

@@ -73,7 +73,8 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "no-offers": Problem(
         409,
-        "front {front} must have plans of a fleet, as only stops of a fleet have windows",
+        "front {front} must have plans of a fleet, as only stops of a fleet have windows: plan its"
+        " stops with POST /fleet, and one vehicle",
         _OFFERS,
     ),
     "front-unfinished": Problem(

@@ -55,8 +55,7 @@ class TaskRunner:
         """Return the front of a task. Its time limit begins once its network is open."""
         if task.actor in self.actors:
             self.actors[task.actor].load()
-        if self.measurer is not None and task.needs_roads:
-            task = self.measurer.measured(task, stop)
+        task = self.measured(task, stop)
         tools = Tools(self.actors, self.limits, self.search)
         run, watch = _RUNS[kind_of(task).name], Watch(stop=stop, report=report)
         if not task.notes:
@@ -66,6 +65,12 @@ class TaskRunner:
             return document.with_notes(task.notes)
 
         return noted(run(task.subject, task, tools, watch.converting(noted)))
+
+    def measured(self, task: Task, stop: Callable[[], bool]) -> Task:
+        """Return a task with its costs by road, where it lacks them and there is a measurer."""
+        if self.measurer is None or not task.needs_roads:
+            return task
+        return self.measurer.measured(task, stop)
 
     def _open_networks(self) -> None:
         """Open all, those first that build the tours of most requests."""

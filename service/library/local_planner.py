@@ -5,13 +5,16 @@ The garbage collector waits while this module imports what plans.
 
 from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any, cast
 
 from paretour import FrontOfAnyKind, Plan, Progress, Refused
 from paretour.bars import Display
+from paretour.expect import members
 from paretour.kinds import parse_any
+from paretour.offers import Offers
+from paretour.offers import parse_offers as read_offers
 from pydantic_core import from_json
 
 from service.jobs.uncollected import uncollected
@@ -21,6 +24,7 @@ with uncollected():
     from service.jobs.compiled_code import is_loaded, load_from_cache, warm_up
     from service.jobs.task_runner import TaskRunner, load_runner
     from service.kinds.front_document import FrontDocument
+    from service.kinds.offers import answer_offers, parse_offers
     from service.kinds.parsing import parse_replan, parse_task
     from service.kinds.parts import Compiling, Part
     from service.kinds.table import parts_of
@@ -73,6 +77,22 @@ class LocalPlanner:
         source = ReplanSource(plan.json, stored)
         parse = partial(parse_replan, source, self.runner.limits, self.runner.infos)
         return self._planned(parse, plan, display)
+
+    def offers(self, plan: Plan, earlier: Planned) -> Offers:
+        """Return the offers of an order beside what was planned before.
+
+        Raises:
+            Refused: The request is not valid, or the front is not of a fleet.
+        """
+        stored = StoredFront("", encode_task(earlier.task), earlier.document)
+        runner = self.runner
+        try:
+            asked = parse_offers(ReplanSource(plan.json, stored), runner.limits, runner.infos)
+            asked = replace(asked, task=runner.measured(asked.task, lambda: False))
+            answer = answer_offers(asked, runner.limits, runner.infos)
+        except Refusal as error:
+            raise Refused(error.document("")) from None
+        return read_offers(members(from_json(answer), "answer"))
 
     def _planned(self, parse: Callable[[], Task], plan: Plan, display: Display) -> Planned:
         try:

@@ -38,6 +38,7 @@ def help_on(function: Callable[..., Any]) -> str:
         (Client.replan_fleet, ReplanFleetRequest),
         (paretour.replan, ReplanFleetRequest),
         (Client.offers, OffersRequest),
+        (paretour.offer_slots, OffersRequest),
     ],
 )
 def test_the_help_says_what_each_member_of_the_request_is(

@@ -62,6 +62,29 @@ def test_a_fleet_is_planned_and_replanned() -> None:
     }
 
 
+def test_an_order_is_offered_slots_and_an_offer_is_taken() -> None:
+    minutes: Any = [{**OBJECTIVES[0], "unit": "min"}, OBJECTIVES[1]]
+    front = paretour.plan_fleet(
+        stops=STOPS[:5],
+        objectives=[{**each, "matrix": COSTS[m][:5, :5]} for m, each in enumerate(minutes)],
+        clock="time",
+        vehicles=[{"id": "van", "start": 0, "end": 0, "shift": [0, 900]}],
+        time_limit=0.2,
+    )
+    costs: Any = [{"to": [9] * 6, "from": [9] * 6}] * 2
+    slots = [[100, 200], [900, 999]]
+    offers = paretour.offer_slots(front, order={"id": "new", "costs": costs}, slots=slots)
+    possible, late = offers.offers
+    assert possible.replan is not None
+    assert not late.possible
+    taken: Any = paretour.replan(front, **possible.replan, time_limit=0.2)
+    for plan in taken:
+        route = plan.routes[0]
+        assert 100 <= route.arrivals[list(route.stops).index("new")] <= 200
+    with pytest.raises(paretour.Refused, match="POST /fleet, and one vehicle"):
+        paretour.offer_slots(paretour.plan(coordinates=CITIES, time_limit=0), order={"id": "new"})
+
+
 def test_tours_are_replanned_and_so_is_what_was_replanned() -> None:
     front = paretour.plan(stops=STOPS, objectives=OBJECTIVES, time_limit=0.1)
     rest = paretour.replan(front, done=["stop-0"], remove=["stop-3"], time_limit=0.1)

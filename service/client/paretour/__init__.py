@@ -27,6 +27,7 @@ from paretour.fronts import Objective, RequestNote
 from paretour.kinds import FrontOfAnyKind
 from paretour.library import (
     InstanceFailed,
+    offer_slots,
     plan,
     plan_coverage,
     plan_fleet,
@@ -107,6 +108,7 @@ __all__ = [
     "coverage_plan",
     "fleet_plan",
     "front_plan",
+    "offer_slots",
     "plan",
     "plan_coverage",
     "plan_fleet",

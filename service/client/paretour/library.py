@@ -19,12 +19,22 @@ from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
+    OffersRequest,
     ReplanFleetRequest,
     ReplanRequest,
     RobotsRequest,
 )
+from paretour.offers import Offers
 from paretour.plans import FleetFront, RobotFront
-from paretour.requests import Instance, Plan, coverage_plan, fleet_plan, front_plan, replan_plan
+from paretour.requests import (
+    Instance,
+    Plan,
+    coverage_plan,
+    fleet_plan,
+    front_plan,
+    offers_plan,
+    replan_plan,
+)
 from paretour.values import Front
 
 _planned: WeakKeyDictionary[FrontOfAnyKind, Any] = WeakKeyDictionary()  # what `replan` starts from
@@ -96,9 +106,36 @@ def replan(front: Front | FleetFront, *, progress: bool = False, **request: Any)
         ValueError: The front was not planned in this process.
         Refused: The front cannot be replanned so.
     """
+    earlier = _planned_here(front)
+    return _run(replan_plan(front, cast(ReplanRequest, request)), progress, earlier)
+
+
+def _planned_here(front: FrontOfAnyKind) -> Any:
+    """Return what was planned in this process.
+
+    Raises:
+        ValueError: The front was not.
+    """
     if front not in _planned:
         raise ValueError("front must be one that was planned in this process")
-    return _run(replan_plan(front, cast(ReplanRequest, request)), progress, _planned[front])
+    return _planned[front]
+
+
+@explaining(OffersRequest)
+def offer_slots(front: FleetFront, **request: Unpack[OffersRequest]) -> Offers:
+    """Return the offers of an order beside a plan of this process, as `Client.offers` does.
+
+    Args:
+        front: A front that `plan_fleet` or `replan` returned.
+        **request: The order, the slots, and what has changed.
+
+    Raises:
+        ValueError: The front was not planned in this process.
+        Refused: The request is not valid.
+    """
+    earlier = _planned_here(front)
+    offers: Offers = _planner().offers(offers_plan(front, request), earlier)
+    return offers
 
 
 class InstanceFailed(Exception):
