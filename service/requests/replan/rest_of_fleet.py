@@ -68,8 +68,8 @@ def rest_of_fleet(
         subject = rest.subject
     except Refusal as refusal:
         raise by_stop(refusal, rest.labels.city_names) from None
-    code = "too-many-left-unless-straight"
-    check_fleet("add", subject.stops, limits, request.time_limit, code)
+    most = (limits, request.time_limit, "too-many-left-unless-straight")
+    check_fleet("add", subject.stops, *most)
     check_router(subject.stops.sources, limits)
     return Task(
         subject=subject,
