@@ -326,6 +326,7 @@ function fail(error, said = answer ? "Not planned: what is shown is the plan bef
   showFaults(error);
   remedies.show(error);
   refusal = { asked: input.asked, problem: error };
+  if (!answer && error.errors[0]?.remedies) element("front-chart").setAttribute("aria-label", "There is no plan. What would help stands below Plan.");
   input.mark();
   element("waiting").textContent = revealFault(); // a phone shows the form below
   remedies.reveal();
@@ -368,8 +369,8 @@ function draft() {
 
 form.addEventListener("submit", (event) => {
   event.preventDefault();
+  plan(); // on a phone this puts the result above the form
   if (narrow.matches) element("result").scrollIntoView();
-  plan();
 });
 form.addEventListener("input", ({ target }) => {
   element("file-fault").textContent = "";
