@@ -75,6 +75,13 @@ class Fleet:
         """Return a cost of a leg."""
         return float(self.lines[layer].legs(a, b) if self.lines else self.costs[layer, a, b])
 
+    def legs_along(self, layer: int, path: Sequence[int]) -> list[float]:
+        """Return a cost of each leg of a path."""
+        stops = np.array(path, np.int64)
+        a, b = stops[:-1], stops[1:]
+        along: Array = self.lines[layer].legs(a, b) if self.lines else self.costs[layer, a, b]
+        return along.tolist()
+
     def legs_from(self, layer: int, stop: int) -> Array:
         """Return a cost of the legs from a stop to all stops, shape (n,)."""
         return self.lines[layer].legs_from(stop) if self.lines else self.costs[layer, stop]

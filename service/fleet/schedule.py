@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from itertools import pairwise
 from math import inf
 
 from service.fleet.breaks import Stay, place_breaks, with_breaks
@@ -217,4 +216,4 @@ def trips_of(rules: Rules, route: Route) -> list[list[int]]:
 
 def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
     """Return the costs of the legs of a route in one objective."""
-    return [fleet.leg(objective, a, b) for a, b in pairwise(path_of(fleet.rules, route))]
+    return fleet.legs_along(objective, path_of(fleet.rules, route))
