@@ -115,7 +115,7 @@ def _tried(state: State, stop: int, spot: Spot) -> float:
     return cost if fits else np.inf
 
 
-@compiled
+@inlined
 def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
     """Return what the cost of a route grows by with a stop in a spot; inf if a rule forbids it.
 
