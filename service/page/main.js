@@ -328,8 +328,10 @@ function fail(error, said = answer ? "Not planned: what is shown is the plan bef
   refusal = { asked: input.asked, problem: error };
   if (!answer && error.errors[0]?.remedies) element("front-chart").setAttribute("aria-label", "There is no plan. What would help stands below Plan.");
   input.mark();
-  element("waiting").textContent = revealFault(); // a phone shows the form below
+  const fault = revealFault(); // a phone shows the form below
+  element("waiting").textContent = fault;
   remedies.reveal();
+  return fault;
 }
 
 /** Opens the front that a link names. Returns false if it names none. */
