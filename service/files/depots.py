@@ -214,7 +214,7 @@ def _without_orders(
 def _note_anywhere(columns: Columns, first: Stop) -> None:
     """Note that no row is a depot, so that vehicles start and end at any stop."""
     columns.source.note(
-        "depot",
+        "no-depot",
         f"No row is called a depot, and the first one, {quoted(first['id'])}, is an order: vehicles"
         " start and end at any stop. Where do they start? Add a row named depot, or a column start"
         " to a table of vehicles.",

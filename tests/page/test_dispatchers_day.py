@@ -115,10 +115,13 @@ def plan_in_the_morning(desk: Desk, folder: Path) -> None:
     missing = page.locator("#everyday-said")
     expect(missing).to_contain_text("No time at the stops is given: 0 min.")
     assert found_on_desk_and_phone(page, "#everyday") == []
+    asked = page.get_by_text("Where do they start?")
+    expect(asked).to_be_visible()
     desk.fill("#everyday-service", "40")
     desk.fill("#everyday-shift", "8:00-16:00")
     desk.press("#place-depot")
     desk.press("#plane-1", position={"x": 200, "y": 200})
+    expect(asked).to_be_hidden()
     desk.press("#everyday-reload")
     expect(missing).to_be_empty()
     expect(page.get_by_label("customer of A1", exact=True)).to_have_value("Shop 1")

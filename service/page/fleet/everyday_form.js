@@ -53,6 +53,7 @@ export class EverydayForm {
       input.removeAttribute("aria-invalid");
     }
     element("everyday-fault").textContent = "";
+    element("file-notes").classList.toggle("has-depot", !given.missing.depot);
     element("everyday-said").textContent = [this.#recalled, missingSaid(given)].filter(Boolean).join(" ");
   }
 

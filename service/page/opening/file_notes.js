@@ -3,6 +3,12 @@
 import { ColumnChoices } from "./column_choices.js";
 import { made } from "../common/elements.js";
 
+function noteItem({ code, text }) {
+  const item = made("li", {}, text);
+  item.dataset.code = code;
+  return item;
+}
+
 export class FileNotes {
   #status;
   #button;
@@ -28,13 +34,13 @@ export class FileNotes {
 
   /** Shows what was read from files, given what was chosen for their columns. */
   show(files, chosen, read) {
-    const { name, notes } = read;
+    const { name } = read;
     this.#name = name;
     this.#columns.show(files, chosen, read);
-    const said = notes.filter(({ code }) => code !== "columns"); // these are lists to choose from
-    const texts = [...new Set(said.map(({ text }) => text))]; // several files may have the same
-    const list = made("ul", {}, ...texts.map((text) => made("li", {}, text)));
-    this.#status.replaceChildren(made("p", {}, name), ...(texts.length ? [list] : []));
+    const said = read.notes.filter(({ code }) => code !== "columns"); // these are lists to choose from
+    const notes = [...new Map(said.map((note) => [note.text, note])).values()]; // several files may have the same
+    const list = made("ul", {}, ...notes.map(noteItem));
+    this.#status.replaceChildren(made("p", {}, name), ...(notes.length ? [list] : []));
     this.#button.setAttribute("aria-label", `Dismiss the notes on ${name}`);
     this.#button.hidden = false;
   }
