@@ -65,7 +65,11 @@ _NAMES = {
     " tempodiservizio durata"
     " tiemposervicio tiempodeservicio duracion temposervico tempodeservico duracao servicetijd"
     " lostijd duur palveluaika kesto",
-    "due": "due dueby deadline deliverydeadline deliverby deliverbefore frist",
+    "due": "due dueby dueto wantedto preferredto preferredend preferredtimeto preferredtimeend"
+    " deadline deliverydeadline deliverby deliverbefore frist",
+    "due_from": "duefrom wanted wantedfrom preferred preferredfrom preferredstart preferredtimefrom"
+    " preferredtimestart notwantedbefore",
+    "urgency": "urgency dringlichkeit urgence",
     "release": "release releasetime releasedate availablefrom readyatdepot",
     "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
     " qualifications qualification requiredtags specialtynames"
@@ -108,6 +112,7 @@ _OF_VEHICLES_ONLY = {
     "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
     "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
     "max_stops": "maxstops maxnumberofstops maxtasks maxorders maxjobs maxvisits maxdeliveries",
+    "min_stops": "minstops minnumberofstops mintasks minorders minjobs minvisits mindeliveries",
     "max_trips": "maxtrips maxnumberoftrips tripsperday maxtours",
     "reload": "reload reloadat reloadstop reloadstops reloaddepot reloaddepots reloadlocation",
     "max_overtime": "overtime maxovertime overtimelimit allowedovertime ueberstunden",
@@ -183,7 +188,7 @@ def _names_of_stops() -> dict[str, str]:
 NAMES_OF_STOPS = _names_of_stops()
 FLEET = (
     *(field for field in NAMES_OF_STOPS if field.startswith("window")),
-    *("demand", "service", "due", "release", "skills", "vehicle", "prize"),
+    *("demand", "service", "due", "due_from", "release", "skills", "vehicle", "prize", "urgency"),
 )
 
 

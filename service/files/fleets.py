@@ -147,6 +147,8 @@ def _measures(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> Iterator[tu
         yield "unassigned", left
     if any("due" in stop for stop in stops):
         yield "lateness", "lateness after stops are due"
+        if any(isinstance(stop.get("due"), list) for stop in stops):
+            yield "earliness", "earliness before they are"
     elif any("max_overtime" in vehicle for vehicle in vehicles):
         yield "overtime", "overtime beyond shifts"
 

@@ -63,6 +63,7 @@ def add_bounds(columns: Columns, vehicles: list[Vehicle]) -> None:
     """
     for name, add in (
         ("max_stops", _add_max_stops),
+        ("min_stops", _add_min_stops),
         ("max_trips", _add_max_trips),
         ("max_overtime", _add_max_overtime),
     ):
@@ -77,6 +78,10 @@ def _add_max_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> Non
         if other is not None and columns.text(row, other):
             raise _beside(columns, row, at, other)
     vehicle["max_stops"] = columns.whole(row, at)
+
+
+def _add_min_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+    vehicle["min_stops"] = columns.whole(row, at)
 
 
 def _beside(columns: Columns, row: int, at: int, other: int) -> UnreadableFile:

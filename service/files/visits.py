@@ -37,6 +37,7 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
         "skills": partial(texts_in, columns),
         "vehicle": lambda row, at: " ".join(columns.text(row, at).split()),
         "prize": columns.amount,
+        "urgency": columns.amount,
     }
     for name, read in readers.items():
         if (at := columns.find(name)) is not None:
@@ -44,9 +45,25 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
                 value = columns.tried(None, read, row, at)
                 if value is not None:
                     stops[row][name] = value
+    _add_wanted(columns, stops)
     for row, stop in enumerate(stops):
         stop |= spans("window", spans_in(columns, row, WINDOWS))
     return _add_demands(columns, demands, stops) if demands else 1
+
+
+def _add_wanted(columns: Columns, stops: list[Stop]) -> None:
+    """Make pairs of when visits are due: from the time in a column of its own."""
+    at = columns.find("due_from")
+    if at is not None:
+        for row in columns.filled(at):
+            columns.tried(None, _make_pair, columns, stops[row], row, at)
+
+
+def _make_pair(columns: Columns, stop: Stop, row: int, at: int) -> None:
+    wanted, due = seconds_in(columns, row, at), stop.get("due")
+    if due is None or due < wanted:
+        raise columns.refuse(row, at, "wanted-not-before-due", came=columns.text(row, at))
+    stop["due"] = [wanted, due]
 
 
 def texts_in(columns: Columns, row: int, at: int) -> list[str]:

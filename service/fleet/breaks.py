@@ -5,7 +5,7 @@ from math import inf
 from typing import NamedTuple
 
 from service.fleet.rounding import excess, is_over
-from service.fleet.vehicles import ALWAYS, Break, Span
+from service.fleet.vehicles import ALWAYS, Break, Span, VehicleType
 
 _ALWAYS = (ALWAYS,)
 
@@ -61,13 +61,13 @@ def place_breaks(
     stays: Sequence[Stay],
     driven: Sequence[float],
     span: Span,
-    leaves_by: float,
-    breaks: Sequence[Break],
+    vehicle: VehicleType,
+    early: bool,
 ) -> tuple[float, tuple[Placed, ...]] | None:
     """Return a departure and where breaks are taken so that a route ends as early as possible.
 
     Among the ways to end then, it is one of the least lateness; among these, one that allows to
-    leave the latest. None if the breaks fit nowhere.
+    leave the latest, or if `early` the earliest. None if the breaks fit nowhere.
 
     A vehicle takes its breaks in order, between two visits, and none while it drives. A break that
     can be taken before the departure, or after the end, is not on the way. This is dynamic
@@ -78,14 +78,15 @@ def place_breaks(
         stays: What is asked for at each of the m places.
         driven: The times of the m - 1 legs between them.
         span: The earliest departure, and the latest end.
-        leaves_by: The latest departure.
-        breaks: The k breaks, by ascending time.
+        vehicle: The vehicle, with k breaks by ascending time.
+        early: Whether it leaves as early as it may.
     """
     begin, last = span
-    states: list[list[_State]] = [_departing(begin, leaves_by)]
+    leaves_by, breaks = vehicle.leaves_by, vehicle.breaks
+    states: list[list[_State]] = [_departing(begin, leaves_by, early)]
     for opens, _, length in breaks:
         begin = max(begin, opens + length)
-        states.append(_departing(begin, leaves_by))
+        states.append(_departing(begin, leaves_by, early))
     for place, (stay, leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
         _rest(states, breaks, place, after=False)
         states = [each and _served(each, stay) for each in states]
@@ -109,11 +110,14 @@ def place_breaks(
     return best.departure, best.placed
 
 
-def _departing(begin: float, leaves_by: float) -> list[_State]:
-    """Return the state of a vehicle that may leave from a time on, if it may leave then."""
+def _departing(begin: float, leaves_by: float, early: bool) -> list[_State]:
+    """Return the state of a vehicle that may leave from a time on, if it may leave then.
+
+    Of vehicles that leave early, those that leave the earliest count as the latest.
+    """
     if is_over(begin, leaves_by):
         return []
-    return [_State(begin, 0.0, 0.0, leaves_by, begin, ())]
+    return [_State(begin, 0.0, 0.0, -begin if early else leaves_by, begin, ())]
 
 
 def _driven(state: _State, leg: float) -> _State:

@@ -39,6 +39,8 @@ def _in_the_way(fleet: Fleet, ended: Callable[[], bool]) -> tuple[int, ...]:
         return ()
     if is_enumerable(fleet.rules):
         plans = exact_plans(relaxed, ended) or []
+    elif any(vehicle.is_bounded_below for vehicle in fleet.rules.vehicles):
+        plans = []  # no route can begin with a single stop
     elif len(fleet.rules.clients) <= FEW_STOPS:
         plan = with_all_stops(relaxed, Plan(()))
         plans = [] if violations(relaxed, plan) else [plan]

@@ -4,7 +4,7 @@ Every plan is checked with this code, which shares nothing with the engine that 
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import accumulate
 from math import inf
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
-from service.fleet.plans import Plan, Route
+from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, Schedule, legs, schedule, trips_of
@@ -82,6 +82,9 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     - `vehicles`: the number of routes
     - `driving`, `service`, `waiting`: how long all vehicles do each, by the clock
     - `lateness`: the sum of the times by which visits begin after they are due
+    - `earliness`: the sum of the times by which they begin before they are wanted
+    - `weighted_arrival`: the sum of the times from the begin of the first shift until each visit
+      begins, times its urgency
     - `overtime`: the sum of the times by which routes end after their shifts
     - `longest`, `shortest`, `imbalance`: the longest and the shortest route, and their difference,
       by the clock; without a clock in the objective that is a maximum, or in the first one if
@@ -113,11 +116,16 @@ def _times(fleet: Fleet, plan: Plan, schedules: list[Schedule]) -> dict[str, flo
         "service": sum(rules.visits[stop].service for stop in plan.visited()),
         "waiting": sum(times.waiting for times in schedules),
     }
-    if any(visit.due < inf for visit in rules.visits):
-        found["lateness"] = sum(times.lateness for times in schedules)
-    if any(vehicle.max_overtime for vehicle in rules.vehicles):
+    allowed = {
+        "lateness": any(visit.due < inf for visit in rules.visits),
+        "overtime": any(vehicle.max_overtime for vehicle in rules.vehicles),
+        "earliness": any(visit.wanted for visit in rules.visits),
+        "weighted_arrival": "weighted_arrival" in rules.over
+        or any(visit.urgency != 1 for visit in rules.visits),
+    }
+    for name in (name for name, is_allowed in allowed.items() if is_allowed):
         columns = zip(plan.routes, schedules, strict=True)
-        found["overtime"] = sum(overtime(rules, route, times) for route, times in columns)
+        found[name] = sum(_OF_TIMES[name](rules, route, times) for route, times in columns)
     return found
 
 
@@ -151,10 +159,8 @@ def _length(
             return 1.0
         case "unassigned":
             return 0.0
-        case "overtime" if times is not None:
-            return overtime(fleet.rules, route, times)
-        case "lateness" if times is not None:
-            return times.lateness
+        case "overtime" | "lateness" | "earliness" | "weighted_arrival" if times is not None:
+            return _OF_TIMES[over](fleet.rules, route, times)
         case "load_distance":
             return load_distance(fleet, route)
         case "imbalance" if fleet.rules.limited is not None:
@@ -183,9 +189,35 @@ def load_distance(fleet: Fleet, route: Route) -> float:
     return sum(cost * load for cost, load in zip(legs(fleet, route, 0), loads, strict=True))
 
 
+def lateness(_: Rules, __: Route, times: Schedule) -> float:
+    """Return the sum of the times by which the visits of a route begin after they are due."""
+    return times.lateness
+
+
+def earliness(rules: Rules, route: Route, times: Schedule) -> float:
+    """Return the sum of the times by which the visits of a route begin before they are wanted."""
+    begins = zip(path_of(rules, route), times.begins, strict=True)
+    return sum(excess(rules.visits[stop].wanted, begin) for stop, begin in begins)
+
+
+def weighted_arrival(rules: Rules, route: Route, times: Schedule) -> float:
+    """Return the sum over the visits of a route of their urgency times when they begin.
+
+    Times count from the begin of the first shift.
+    """
+    begins = zip(path_of(rules, route), times.begins, strict=True)
+    visits = ((stop, begin) for stop, begin in begins if stop not in rules.depots)
+    return sum(rules.visits[stop].urgency * (begin - rules.begin) for stop, begin in visits)
+
+
 def overtime(rules: Rules, route: Route, times: Schedule) -> float:
     """Return how much later than its shift a route ends."""
     return excess(times.end, rules.vehicles[route.vehicle].shift[1])
+
+
+_OF_TIMES: Mapping[str, Callable[[Rules, Route, Schedule], float]] = {
+    each.__name__: each for each in (overtime, lateness, earliness, weighted_arrival)
+}
 
 
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
@@ -256,12 +288,30 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:
             over = times.end - vehicle.way[1] >= times.late
             yield Broken("shift" if over else "window", f"is late by {times.late:g}")
         reach = times.end
-    if vehicle.longest != inf:
+    yield from _length_broken(fleet, route, reach)
+    for rule, stop, other in rules.groups.broken([s for s in route.stops if s in rules.clients]):
+        yield Broken(rule, _IN_GROUPS[rule].format(stop=stop, other=other))
+
+
+_IN_GROUPS = {
+    "together": "visits stop {stop} without {other}",
+    "apart": "visits both stops {stop} and {other}",
+    "before": "visits stop {other} before {stop}",
+}
+
+
+def _length_broken(fleet: Fleet, route: Route, reach: float) -> Iterator[Broken]:
+    """Yield the rules about the length of a route that it breaks; it ends at `reach`."""
+    rules, vehicle = fleet.rules, fleet.rules.vehicles[route.vehicle]
+    if vehicle.longest != inf or vehicle.shortest:
         assert rules.limited is not None
         length = cost_length(fleet, route, rules.limited)
         if is_over(length, vehicle.longest, reach):
             detail = f"has a route of {length:g}, longer than {vehicle.longest:g}"
             yield Broken("longest", detail)
+        if is_over(vehicle.shortest, length, reach):
+            detail = f"has a route of {length:g}, shorter than {vehicle.shortest:g}"
+            yield Broken("shortest", detail)
 
 
 def _service_broken(rules: Rules, route: Route) -> Iterator[Broken]:
@@ -276,6 +326,8 @@ def _service_broken(rules: Rules, route: Route) -> Iterator[Broken]:
             yield Broken("vehicle", "is not the one that the stop names")
     if vehicle.max_stops is not None and len(visited) > vehicle.max_stops:
         yield Broken("max_stops", f"has {len(visited)} stops, and may have {vehicle.max_stops}")
+    if len(visited) < vehicle.min_stops:
+        yield Broken("min_stops", f"has {len(visited)} stops, and needs {vehicle.min_stops}")
 
 
 def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:

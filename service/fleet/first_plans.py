@@ -316,6 +316,8 @@ def warm_up() -> None:
 
 def _begin(rules: Rules, leg: float) -> float:
     """Return a time before which no vehicle needs to leave, if legs are at most this long."""
+    if rules.leave == "early":
+        return min(vehicle.shift[0] for vehicle in rules.vehicles)
     route = rules.n * leg + sum(visit.service for visit in rules.visits)
     first = min((time for span in rules.spans for time in span if 0 < time < inf), default=0.0)
     return max(0.0, first - route, min(vehicle.shift[0] for vehicle in rules.vehicles))

@@ -216,9 +216,9 @@ class Fleet:
     def scale(self) -> Array:
         """The unit of each of m objectives, shape (m,), 1 if that would be 0.
 
-        It is the largest leg, of lateness by the clock and of imbalance in the costs by which
-        routes are compared; otherwise one vehicle, the largest prize, the most overtime of a
-        vehicle, or the largest leg with the largest capacity.
+        It is the largest leg, of lateness and earliness by the clock and of imbalance in the costs
+        by which routes are compared; otherwise one vehicle, the largest prize, the most overtime of
+        a vehicle, the largest leg with the largest capacity, or with the sum of all urgencies.
         """
         pairs = zip(self.rules.over, self.rules.layers, strict=True)
         units = np.array([self._unit(over, layer) for over, layer in pairs])
@@ -233,8 +233,10 @@ class Fleet:
                 return max(visit.prize or 0.0 for visit in rules.visits)
             case "overtime":
                 return max(vehicle.max_overtime for vehicle in rules.vehicles)
-            case "lateness" | "imbalance":
+            case "lateness" | "earliness" | "imbalance":
                 return float(legs[rules.limited or 0])
+            case "weighted_arrival":
+                return float(legs[rules.limited or 0]) * _urgency(rules)
             case "load_distance":
                 return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
         return float(legs[layer])
@@ -281,7 +283,8 @@ def default_reference_point(fleet: Fleet) -> Array:
     They are the number of stops times the scale, plus what else can add to a length. In the first
     objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
     imbalance by the clock they are all services, and the time from the first shift or window to the
-    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed.
+    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of
+    weighted arrivals each may be as late.
     """
     rules = fleet.rules
     point = rules.n * fleet.scale
@@ -290,13 +293,21 @@ def default_reference_point(fleet: Fleet) -> Array:
     point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
     vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
     for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
-        timed = {"lateness": True, "imbalance": rules.clock is not None}
+        timed = {"lateness": True, "earliness": True, "imbalance": rules.clock is not None}
         costs = over in ("sum", "max") and layer == rules.clock
         if costs or timed.get(over, False):
             point[objective] += sum(visit.service for visit in rules.visits)
             once = over in ("max", "imbalance")
             point[objective] += _waiting(rules) * (1 if once else vehicles)
+        elif over == "weighted_arrival":
+            latest = sum(visit.service for visit in rules.visits) + _waiting(rules)
+            point[objective] += latest * _urgency(rules)
     return point
+
+
+def _urgency(rules: Rules) -> float:
+    """Return the sum of the urgencies of the stops to visit."""
+    return sum(rules.visits[stop].urgency for stop in rules.clients)
 
 
 def _waiting(rules: Rules) -> float:

@@ -19,7 +19,8 @@ from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rule
 
 _RULES: tuple[Rule, ...] = get_args(Rule)  # from those that never change to those that may
-_SAME_EVERYWHERE = ("skills", "vehicle", "capacity", "max_stops")  # wherever the stop is inserted
+# Rules that are broken wherever the stop is inserted, if they are.
+_SAME_EVERYWHERE = ("skills", "vehicle", "apart", "capacity", "max_stops")
 
 
 _Inserted = tuple[int, Route]  # the number of a route, and the route with one more stop
@@ -182,10 +183,11 @@ def _routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:
 def _extensions(fleet: Fleet, route: Route, stop: int) -> Iterator[Route]:
     """Yield the routes with a stop inserted, also after loading again at the end of a route.
 
-    Of a shipment both stops are inserted, one after the other.
+    Of a shipment both stops are inserted, one after the other, and so are all that ride together.
     """
     shipped = [each for each in fleet.rules.shipments if stop in (each.pickup, each.delivery)]
-    added = (shipped[0].pickup, shipped[0].delivery) if shipped else (stop,)
+    alone = tuple(sorted(fleet.rules.groups.mates.get(stop, (stop,))))
+    added = (shipped[0].pickup, shipped[0].delivery) if shipped else alone
     for place in range(len(route.stops) + 1):
         yield Route(route.vehicle, (*route.stops[:place], *added, *route.stops[place:]))
     for reload in fleet.rules.vehicles[route.vehicle].reload:

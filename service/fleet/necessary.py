@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import first_broken
 from service.fleet.fleet import LAYERS, Array, Fleet
+from service.fleet.groups import NO_GROUPS
 from service.fleet.plans import Route
 from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
@@ -126,9 +127,9 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
     rules = fleet.rules
     if not rules.has_bounds:
         return
-    # With another stop on the way, there may be a place for a break.
-    vehicles = tuple(replace(each, breaks=()) for each in rules.vehicles)
-    fleet = fleet.under(replace(rules, vehicles=vehicles))
+    # With other stops on the way, there may be a place for a break, and the route is longer.
+    vehicles = tuple(replace(each, breaks=(), min_stops=0, shortest=0.0) for each in rules.vehicles)
+    fleet = fleet.under(replace(rules, vehicles=vehicles, groups=NO_GROUPS))
     triangle = cache(partial(_triangle_holds, fleet, ended))
     deliveries = {each.pickup: (each.delivery,) for each in rules.shipments}
     pinned = any(visit.vehicles for visit in rules.visits)
@@ -192,8 +193,8 @@ def _connected(fleet: Fleet, end: int | None, *, back: bool) -> NDArray[np.bool_
 def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
     """Yield the shipments that must be delivered before they can be picked up."""
     for each in rules.shipments:
-        pickup, delivery = rules.visits[each.pickup], rules.visits[each.delivery]
-        opens, closes = pickup.windows[0][0], delivery.windows[0][1]
+        pickup = rules.visits[each.pickup]
+        opens, closes = pickup.windows[0][0], rules.windows[each.delivery][0][1]
         if pickup.prize is None and is_over(opens + pickup.service, closes):
             yield Obstacle("delivered-too-early", (each.delivery,), (each.pickup,))
 

@@ -39,6 +39,7 @@ class FleetArrays(NamedTuple):
     capacity: Indices  # (v, d)
     shift: Array  # (v, 2)
     leaves_by: Array  # (v,), the latest departure
+    early: bool  # whether vehicles leave as early as they may
     longest: Array  # (v,)
 
 
@@ -54,11 +55,12 @@ def arrays_of(fleet: Fleet) -> FleetArrays:
         demand=loads.demand,
         service=np.array([visit.service for visit in rules.visits]),
         release=np.array([visit.release for visit in rules.visits]),
-        window=np.array([visit.windows[0] for visit in rules.visits], np.float64),
+        window=np.array([windows[0] for windows in rules.windows], np.float64),
         ends=np.array(ends, np.int64),
         capacity=loads.capacity - loads.initial,
         shift=np.array([vehicle.way for vehicle in rules.vehicles], np.float64),
         leaves_by=np.array([vehicle.leaves_by for vehicle in rules.vehicles]),
+        early=rules.leave == "early",
         longest=np.array([vehicle.longest for vehicle in rules.vehicles]),
     )
 
@@ -116,6 +118,7 @@ class _Begun(NamedTuple):
 
     first: float  # its lengths
     second: float
+    departs: float  # the first departure
     time: float  # the least time from a departure, with waiting
     early: float  # the first and the last departure that need only this time
     late: float
@@ -132,7 +135,7 @@ def _write_lengths(
     start, end = fleet.ends[vehicle]
     longest = fleet.longest[vehicle]
     latest = min(returns, fleet.leaves_by[vehicle])
-    begun = _Begun(0.0, 0.0, 0.0, departs, latest, start, True)
+    begun = _Begun(0.0, 0.0, departs, 0.0, departs, latest, start, True)
     for count in range(len(lengths)):
         stop = sequence[(place + count) % len(sequence)]
         opens, closes = fleet.window[stop]
@@ -142,16 +145,23 @@ def _write_lengths(
             return
         route = _extended(fleet, begun, end, 0.0, returns, 0.0)
         if route.in_time and not _too_long(fleet, route, longest):
-            lengths[count, 0] = route.time if fleet.clock == 0 else route.first
-            lengths[count, 1] = route.time if fleet.clock == 1 else route.second
+            lengths[count, 0] = _time(fleet, route) if fleet.clock == 0 else route.first
+            lengths[count, 1] = _time(fleet, route) if fleet.clock == 1 else route.second
+
+
+@inlined
+def _time(fleet: FleetArrays, begun: _Begun) -> float:
+    """Return the time from the departure of a route to its end."""
+    return begun.early + begun.time - begun.departs if fleet.early else begun.time
 
 
 @inlined
 def _released(begun: _Begun, release: float) -> _Begun:
     """Return a route that departs no earlier than what it brings to a stop is released."""
-    early = max(begun.early, release)
+    early, departs = max(begun.early, release), max(begun.departs, release)
     in_time = begun.in_time and not _is_over(early, begun.late, early + begun.time)
-    return _Begun(begun.first, begun.second, begun.time, early, begun.late, begun.stop, in_time)
+    first, second, stop = begun.first, begun.second, begun.stop
+    return _Begun(first, second, departs, begun.time, early, begun.late, stop, in_time)
 
 
 @inlined
@@ -169,13 +179,16 @@ def _extended(
         second += fleet.costs[1, begun.stop, stop]
         leg = fleet.costs[max(fleet.clock, 0), begun.stop, stop]
     if fleet.clock < 0:
-        return _Begun(first, second, 0.0, 0.0, 0.0, stop, True)
+        return _Begun(first, second, 0.0, 0.0, 0.0, 0.0, stop, True)
     until = begun.time + leg
     arrival = begun.early + until
+    if closes < opens:  # whoever is there in time waits: see Rules.windows
+        opens, service = closes, service + opens - closes
     waiting = max(0.0, opens - until - begun.late)
     return _Begun(
         first,
         second,
+        begun.departs,
         until + waiting + service,
         max(begun.early, opens - until) - waiting,
         min(begun.late, closes - until),
@@ -189,7 +202,7 @@ def _too_long(fleet: FleetArrays, begun: _Begun, longest: float) -> bool:
     """Return whether a route exceeds a limit on its time, or on its length without a clock."""
     length = begun.first if fleet.limited == 0 else begun.second
     if fleet.limited == fleet.clock:
-        length = begun.time
+        length = _time(fleet, begun)
     return _is_over(length, longest, begun.early + begun.time)
 
 

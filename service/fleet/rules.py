@@ -9,17 +9,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
+from service.fleet.groups import NO_GROUPS, Groups, check_groups
 from service.fleet.rounding import is_over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
-Measure = Literal["vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"]
+Measure = Literal[
+    "vehicles",
+    "unassigned",
+    "overtime",
+    "lateness",
+    "imbalance",
+    "load_distance",
+    "earliness",
+    "weighted_arrival",
+]
+_OF_BEGINS = ("earliness", "weighted_arrival")  # measures of when each visit begins
+Leave = Literal["late", "early"]
 # The rules that a route can break by itself.
 Rule = Literal[
     "skills",
     "vehicle",
     "way",
+    "apart",
     "capacity",
     "max_stops",
     "max_trips",
@@ -27,6 +40,10 @@ Rule = Literal[
     "shift",
     "longest",
     "break",
+    "before",
+    "together",
+    "min_stops",
+    "shortest",
 ]
 
 
@@ -44,6 +61,9 @@ class Rules:
         layers: The number, 0 or 1, of the costs that each objective is of. Of the first it is 0,
             and of a measure it says nothing.
         clock: The number of the costs that are time. Service, windows and shifts are in its unit.
+        slack: How long before a window closes a vehicle must reach the stop.
+        leave: Whether a vehicle leaves as late as makes nothing later, or as early as it may.
+        groups: The groups of stops that share a vehicle, or must not, or have an order.
 
     Raises:
         Refusal: The rules contradict each other, or are not supported.
@@ -55,16 +75,23 @@ class Rules:
     over: tuple[Over | Measure, ...] = ("sum", "sum")
     layers: tuple[int, ...] = (0, 1)
     clock: int | None = None
+    slack: float = 0.0
+    leave: Leave = "late"
+    groups: Groups = NO_GROUPS
 
     def __post_init__(self) -> None:
         if len(self.layers) != len(self.over):
             raise ValueError(f"there are {len(self.over)} objectives, got layers {self.layers}")
         _check_objectives(self)
+        for name, given in (("slack", self.slack > 0), ("leave", self.leave != "late")):
+            if given and self.clock is None:
+                raise invalid(name, "untimed")
         for index, vehicle in enumerate(self.vehicles):
             _check_vehicle(self, vehicle, f"vehicles/{index}")
         for index, visit in enumerate(self.visits):
             _check_visit(self, visit, index)
         _check_shipments(self)
+        check_groups(self.groups, self.depots, self.shipped)
 
     @property
     def n(self) -> int:
@@ -124,12 +151,37 @@ class Rules:
         return tuple(dict.fromkeys(layer for layer, over in pairs if over == "sum"))
 
     @cached_property
+    def windows(self) -> tuple[tuple[Span, ...], ...]:
+        """The windows of each stop, in one of which a vehicle must reach it, with the slack.
+
+        A vehicle that reaches the stop before the begin of a window waits. A window that is shorter
+        than the slack ends before it begins.
+        """
+        if not self.slack:
+            return tuple(visit.windows for visit in self.visits)
+        slack = self.slack
+        return tuple(
+            tuple((opens, closes - slack) for opens, closes in visit.windows)
+            for visit in self.visits
+        )
+
+    @cached_property
+    def begin(self) -> float:
+        """The begin of the first shift: weighted arrivals count from then."""
+        return min(vehicle.shift[0] for vehicle in self.vehicles)
+
+    @property
+    def weighs_begins(self) -> bool:
+        """Whether an objective depends on when each visit begins, not only on late ones."""
+        return any(over in _OF_BEGINS for over in self.over)
+
+    @cached_property
     def spans(self) -> tuple[Span, ...]:
         """All windows, releases, due times and shifts that bound any time."""
         visits = self.visits
-        windows = (window for visit in visits for window in visit.windows)
+        windows = (window for each in self.windows for window in each)
         released = ((visit.release, inf) for visit in visits)
-        due = ((0.0, visit.due) for visit in visits)
+        due = ((visit.wanted, visit.due) for visit in visits)
         spans = (*windows, *released, *due, *(vehicle.way for vehicle in self.vehicles))
         return tuple(span for span in spans if span != ALWAYS)
 
@@ -141,7 +193,8 @@ class Rules:
     def servers(self, stop: int) -> frozenset[int]:
         """Return the types of vehicles that may visit a stop: by its skills, and if it names some.
 
-        For a stop of a shipment these are the types that may visit both of its stops.
+        For a stop of a shipment these are the types that may visit both of its stops, and for one
+        that rides with others those that may visit all.
         """
         return self._servers[stop]
 
@@ -151,6 +204,10 @@ class Rules:
         for each in self.shipments:
             both = alone[each.pickup] & alone[each.delivery]
             alone[each.pickup] = alone[each.delivery] = both
+        for mates in self.groups.mates.values():
+            shared = frozenset.intersection(*(alone[stop] for stop in mates))
+            for stop in mates:
+                alone[stop] = shared
         return tuple(alone)
 
     def _servers_alone(self, visit: Visit) -> frozenset[int]:
@@ -181,8 +238,13 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
     _check_breaks(rules, vehicle, part)
     if vehicle.fixed and rules.over[0] == "max":
         raise invalid(f"{part}/fixed", "unsummed")
-    if rules.limited is None and vehicle.longest != inf:
-        raise invalid(f"{part}/longest", "unlimited")
+    for name, given in (("longest", vehicle.longest != inf), ("shortest", vehicle.shortest > 0)):
+        if rules.limited is None and given:
+            raise invalid(f"{part}/{name}", "unlimited")
+    if vehicle.shortest > vehicle.longest:
+        raise invalid(f"{part}/shortest", "over-longest", limit=vehicle.longest)
+    if vehicle.max_stops is not None and vehicle.min_stops > vehicle.max_stops:
+        raise invalid(f"{part}/min_stops", "over-max-stops", limit=vehicle.max_stops)
 
 
 def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
@@ -242,15 +304,22 @@ def _check_objectives(rules: Rules) -> None:
 
 def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
     """Raise a refusal unless the data have what a measure is of."""
-    match measure:
-        case "unassigned" if all(visit.prize is None for visit in rules.visits):
-            raise invalid(part, "no-prizes", measure=measure)
-        case "overtime" if not any(vehicle.max_overtime for vehicle in rules.vehicles):
-            raise invalid(part, "no-overtime", measure=measure)
-        case "lateness" if all(visit.due == inf for visit in rules.visits):
-            raise invalid(part, "no-due", measure=measure)
-        case "load_distance" if not rules.dimensions:
-            raise invalid(part, "no-loads", measure=measure)
+    needed = {
+        "unassigned": ("no-prizes", any(visit.prize is not None for visit in rules.visits)),
+        "overtime": ("no-overtime", any(vehicle.max_overtime for vehicle in rules.vehicles)),
+        "lateness": ("no-due", any(visit.due < inf for visit in rules.visits)),
+        "earliness": ("no-due-from", any(visit.wanted for visit in rules.visits)),
+        "load_distance": ("no-loads", rules.dimensions > 0),
+    }
+    code, is_given = needed.get(measure, ("", True))
+    if not is_given:
+        raise invalid(part, code, measure=measure)
+    if measure == "weighted_arrival" and rules.clock is None:
+        raise invalid(part, "untimed")
+    for index, vehicle in enumerate(rules.vehicles):
+        if vehicle.breaks and measure in _OF_BEGINS:
+            where = f"vehicles/{index}/breaks"
+            raise invalid(where, "breaks-of-measure", measure=measure, other=f"/{part}")
 
 
 def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
@@ -259,11 +328,13 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
         _check_depot(visit, part)
     for name, timed in (
         ("service", visit.service),
-        ("due", visit.due < inf),
+        ("due", visit.due < inf or visit.wanted > 0),
         ("release", visit.release),
     ):
         if timed and rules.clock is None:
             raise invalid(f"{part}/{name}", "untimed")
+    if visit.wanted > visit.due:
+        raise invalid(f"{part}/due", "ends-early", begin=visit.wanted, end=visit.due)
     for number, window in enumerate(visit.windows):
         alone = len(visit.windows) == 1
         _check_span(rules, window, f"{part}/window" if alone else f"{part}/windows/{number}")
@@ -280,8 +351,9 @@ def _check_depot(visit: Visit, part: str) -> None:
         ("demand", any(visit.demand)),
         ("service", visit.service),
         ("prize", visit.prize is not None),
-        ("due", visit.due < inf),
+        ("due", visit.due < inf or visit.wanted > 0),
         ("release", visit.release),
+        ("urgency", visit.urgency != 1),
         ("skills", visit.skills),
         ("vehicle", visit.vehicles),
     )

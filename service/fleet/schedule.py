@@ -29,6 +29,7 @@ class Schedule:
         windows: The number of the window used at each stop of `path_of`.
         tightest: The place in `path_of` of the stop that limits the slack by a window that is not
             its last; -1 if something else does.
+        begins: When the visit at each stop of `path_of` begins.
         breaks: When each break on the way begins.
     """
 
@@ -40,6 +41,7 @@ class Schedule:
     lateness: float
     windows: tuple[int, ...]
     tightest: int
+    begins: tuple[float, ...]
     breaks: tuple[float, ...] = ()
 
     @property
@@ -57,7 +59,8 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
     """Return the times of a route whose vehicle is done as early as possible.
 
     Of the ways to be done then, it takes one of the least lateness. It leaves as late as neither
-    delays its end nor makes a visit later than due, and no later than it must.
+    delays its end nor makes a visit later than due, and no later than it must; or as early as it
+    may, if the rules say so.
 
     Raises:
         ValueError: The fleet has no clock.
@@ -69,26 +72,31 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
     trips = trips_of(fleet.rules, route)
     released = max(vehicle.way[0], _released(fleet.rules, trips[0]))
     stays = _stays(fleet.rules, route, trips)
+    early = fleet.rules.leave == "early"
     if vehicle.breaks:
-        return _with_breaks(stays, driven, released, vehicle)
-    return _timed(stays, driven, released, vehicle)
+        return _with_breaks(stays, driven, released, vehicle, early)
+    return _timed(stays, driven, released, vehicle, early)
 
 
 def _with_breaks(
-    stays: Sequence[Stay], driven: Sequence[float], released: float, vehicle: VehicleType
+    stays: Sequence[Stay],
+    driven: Sequence[float],
+    released: float,
+    vehicle: VehicleType,
+    early: bool,
 ) -> Schedule:
     """Return the times of a route with the breaks of its vehicle; late by inf if one fits nowhere.
 
     The vehicle leaves after breaks that it can take at its start.
     """
     span = (released, vehicle.way[1])
-    found = place_breaks(stays, driven, span, vehicle.leaves_by, vehicle.breaks)
+    found = place_breaks(stays, driven, span, vehicle, early)
     if found is None:
-        plain = _timed(stays, driven, released, vehicle)
+        plain = _timed(stays, driven, released, vehicle, early)
         return replace(plain, late=plain.late or inf)
     departure, placed = found
     extended, legs_between, begins, places = with_breaks(stays, driven, vehicle.breaks, placed)
-    times = _timed(extended, legs_between, departure, vehicle)
+    times = _timed(extended, legs_between, departure, vehicle, early)
     rests = [place for place in range(len(extended)) if place not in places]
     opens_of = [extended[place].windows[0][0] for place in rests]
     taken = zip([times.arrivals[place] for place in rests], opens_of, strict=True)
@@ -96,19 +104,25 @@ def _with_breaks(
         times,
         arrivals=tuple(times.arrivals[place] for place in begins),
         windows=tuple(times.windows[place] for place in places),
+        begins=tuple(times.begins[place] for place in places),
         breaks=tuple(max(arrival, opens) for arrival, opens in taken),
     )
 
 
 def _timed(
-    stays: Sequence[Stay], driven: Sequence[float], begin: float, vehicle: VehicleType
+    stays: Sequence[Stay],
+    driven: Sequence[float],
+    begin: float,
+    vehicle: VehicleType,
+    early: bool,
 ) -> Schedule:
     """Return the times of a route that may begin at a time, as in `schedule`."""
     drive = partial(_drive, stays, driven, last=vehicle.way[1])
-    best = drive([0] * len(stays), begin)
+    all_windows = [0] * len(stays)
+    first = best = drive(all_windows, begin)
     if is_over(begin, vehicle.leaves_by):
         return replace(best, late=max(best.late, begin - vehicle.leaves_by))
-    if best.late:
+    if best.late or early:
         return best
     # A later window at the stop that keeps the vehicle from leaving later may not delay the end.
     while best.slack <= best.waiting and best.tightest >= 0:
@@ -125,7 +139,7 @@ def _timed(
     # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
     # delay the end of the route.
     delay = min(best.waiting, best.slack, vehicle.leaves_by - begin)
-    return drive(best.windows, begin + delay, reach=best.end) if delay > 0 else best
+    return drive(all_windows, begin + delay, reach=best.end) if delay > 0 else first
 
 
 def _drive(
@@ -143,7 +157,7 @@ def _drive(
     computed.
     """
     time, waiting, slack, late, lateness, tightest = departure, 0.0, inf, 0.0, 0.0, -1
-    arrivals, used = [], []
+    arrivals, used, begins = [], [], []
     # Every solution of the search comes through here: branches cost less than calls of max().
     for place, ((windows, service, due), leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
         number = allowed[place]
@@ -156,6 +170,7 @@ def _drive(
         if opens > time:
             waiting += opens - time
             begin = opens
+        begins.append(begin)
         until = closes
         if due < inf:
             lateness += excess(begin, due, reach)
@@ -163,14 +178,15 @@ def _drive(
         if until - begin + waiting < slack:
             slack = until - begin + waiting
             tightest = place if until == closes and number + 1 < len(windows) else -1
-        if begin > closes:
-            late = max(late, excess(begin, closes, reach))
+        if time > closes:
+            late = max(late, excess(time, closes, reach))
         end = begin + service
         time = end + leg
     if last - end + waiting < slack:
         slack, tightest = last - end + waiting, -1
     late = max(late, excess(end, last, reach))
-    return Schedule(tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest)
+    found = tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest
+    return Schedule(*found, tuple(begins))
 
 
 def _open_window(windows: Sequence[Span], number: int, time: float, reach: float) -> int:
@@ -186,7 +202,8 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
     A trip begins when all that it brings is released.
     """
     vehicle, visits = rules.vehicles[route.vehicle], rules.visits
-    stays = [Stay(v.windows, v.service, v.due) for v in map(visits.__getitem__, route.stops)]
+    known = rules.windows
+    stays = [Stay(known[i], visits[i].service, visits[i].due) for i in route.stops]
     if len(trips) > 1:
         released = iter(trips[1:])
         for place, stop in enumerate(route.stops):

@@ -44,6 +44,7 @@ class Units:
                 service=_scaled(visit.service, time),
                 windows=tuple(_scaled_span(window, time) for window in visit.windows),
                 due=_scaled_bound(visit.due, time),
+                wanted=_scaled(visit.wanted, time),
                 release=_scaled(visit.release, time),
                 prize=None if visit.prize is None else _scaled(visit.prize, extra),
             )
@@ -54,6 +55,7 @@ class Units:
                 vehicle,
                 shift=_scaled_span(vehicle.shift, time),
                 longest=_scaled_bound(vehicle.longest, time),
+                shortest=_scaled(vehicle.shortest, time),
                 fixed=_scaled(vehicle.fixed, extra),
                 max_overtime=_scaled(vehicle.max_overtime, time),
                 leaves_by=_scaled_bound(vehicle.leaves_by, time),
@@ -64,14 +66,17 @@ class Units:
             )
             for vehicle in rules.vehicles
         )
-        scaled = replace(rules, visits=visits, vehicles=vehicles)
+        slack = _scaled(rules.slack, time)
+        scaled = replace(rules, visits=visits, vehicles=vehicles, slack=slack)
         return cls(fleet.scaled(scaled, shifts), shifts)
 
     def points(self, points: Array) -> Array:
         """Return points, shape (..., m), in these units; infinite where these are too small."""
         rules = self.fleet.rules
         numbers = {"vehicles": None, "unassigned": 0, "load_distance": 0}
-        timed = dict.fromkeys(("overtime", "lateness", "imbalance"), rules.limited)
+        timed = dict.fromkeys(
+            ("overtime", "lateness", "imbalance", "earliness", "weighted_arrival"), rules.limited
+        )
         layers = [
             {**numbers, **timed}.get(over, layer)
             for over, layer in zip(rules.over, rules.layers, strict=True)

@@ -23,6 +23,9 @@ class Visit:
         release: The earliest time at which a vehicle can load what it brings there.
         skills: The skills that its vehicle must have, all of them.
         vehicles: The types of vehicles that may visit it; empty for any.
+        wanted: The time before which the visit should not begin. If it does, the plan is early by
+            the difference.
+        urgency: What a unit of time until the visit begins counts in weighted arrivals.
     """
 
     demand: tuple[int, ...] = ()
@@ -33,6 +36,8 @@ class Visit:
     release: float = 0.0
     skills: tuple[str, ...] = ()
     vehicles: tuple[int, ...] = ()
+    wanted: float = 0.0
+    urgency: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,8 @@ class VehicleType:
         max_overtime: How much later than its shift a route may end.
         breaks: The breaks of a driver who is on the way then, by ascending time.
         leaves_by: The latest departure: of a vehicle on its way, the present time.
+        min_stops: The least stops of a route.
+        shortest: The least time of a route; without a clock, its least length, as of `longest`.
     """
 
     start: int | None = None
@@ -82,6 +89,13 @@ class VehicleType:
     max_overtime: float = 0.0
     leaves_by: float = inf
     breaks: tuple[Break, ...] = ()
+    min_stops: int = 0
+    shortest: float = 0.0
+
+    @property
+    def is_bounded_below(self) -> bool:
+        """Whether a route may have too few stops, or be too short."""
+        return self.min_stops > 1 or self.shortest > 0
 
     @property
     def way(self) -> Span:

@@ -33,7 +33,7 @@ from service.offers.slots import SlottedFleet, with_slots
 MOST_CHOICES = 5  # of an offer
 _ROUNDING = 1e-9  # of the scale: lengths that differ by less are equal
 _RULES: tuple[Rule, ...] = get_args(Rule)  # from those that never change to those that may
-_SAME_IN_ALL_SLOTS = ("skills", "vehicle", "way", "capacity", "max_stops", "max_trips")
+_SAME_IN_ALL_SLOTS = ("skills", "vehicle", "way", "capacity", "max_stops", "max_trips", "apart")
 
 
 @dataclass(frozen=True)
@@ -307,7 +307,7 @@ class _Search:
         """Return the least length of the route in an objective, shape (p, s)."""
         rules = self._fleet.rules
         match over:
-            case "vehicles" | "unassigned":
+            case "vehicles" | "unassigned" | "earliness" | "weighted_arrival":
                 return np.full(known.end.shape, 1.0 if over == "vehicles" else 0.0)
             case "lateness":
                 return known.lateness

@@ -85,7 +85,8 @@ class _Screen:
         self._order, self._visit = slotted.order, rules.visits[slotted.order]
         self._vehicle = rules.vehicles[places.vehicle]
         self._lenient = slotted.lenient
-        self._opens, self._closes = np.array(slotted.slots, np.float64).T
+        self._opens, closes = np.array(slotted.slots, np.float64).T
+        self._closes = closes - rules.slack
         self._path = self._known(places)
         self._places = np.array(places.places) + self._path.first
 
@@ -116,7 +117,7 @@ class _Screen:
         first = 0 if self._vehicle.start is None else 1
         legs = [self._leg(a, b) for a, b in pairwise(stops)]
         visits = [self._rules.visits[stop] for stop in stops]
-        windows = [visit.windows for visit in visits]
+        windows = [self._rules.windows[stop] for stop in stops]
         released = self._released(route)
         for place, stop in enumerate(places.stops):
             if stop in self._vehicle.reload:
@@ -155,7 +156,7 @@ class _Screen:
         found: tuple[list[float], list[float], list[float]] = ([], [], [])
         for visit, spans, leg in zip(visits, windows, [*legs, 0.0], strict=False):
             begin = next((max(time, a) for a, b in spans if time <= b + self._lenient), time)
-            late = max(late, begin - spans[-1][1])
+            late = max(late, time - spans[-1][1])
             lateness += max(0.0, begin - visit.due)
             for values, value in zip(found, (begin, late, lateness), strict=True):
                 values.append(value)
@@ -195,7 +196,7 @@ class _Screen:
         late = np.array([path.late[i] if i >= 0 else 0.0 for i in before])[:, np.newaxis]
         lateness = np.array([path.lateness[i] if i >= 0 else 0.0 for i in before])[:, np.newaxis]
         lateness = lateness + np.maximum(begin - self._visit.due, 0.0)
-        return begin, np.maximum(late, begin - self._closes), lateness
+        return begin, np.maximum(late, arrival - self._closes), lateness
 
     def _driven(
         self, time: Array, back: Array, late: Array, lateness: Array
@@ -208,8 +209,9 @@ class _Screen:
                 continue
             leg = path.legs[at - 1] if at else 0.0
             steps = np.where(places[:rows] == at, back[:rows], leg)[:, np.newaxis]
-            begin = _opened(time[:rows] + steps, path.windows[at], self._lenient)
-            late[:rows] = np.maximum(late[:rows], begin - path.windows[at][-1][1])
+            arrival = time[:rows] + steps
+            begin = _opened(arrival, path.windows[at], self._lenient)
+            late[:rows] = np.maximum(late[:rows], arrival - path.windows[at][-1][1])
             lateness[:rows] += np.maximum(begin - path.visits[at].due, 0.0)
             time[:rows] = begin + self._service(at)
         return time, np.maximum(late, time - self._vehicle.way[1]), lateness

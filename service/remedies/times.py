@@ -82,7 +82,7 @@ def _late_of(asked: AskedFleet, fleet: Fleet, plan: Plan, closing: Sequence[int]
             path_of(fleet.rules, route), schedule(fleet, route).arrivals, strict=True
         )
     }
-    closes = {stop: asked.rules.visits[stop].windows[-1][1] for stop in closing}
+    closes = {stop: asked.rules.windows[stop][-1][1] for stop in closing}
     return [stop for stop in closing if arrivals.get(stop, 0.0) > closes[stop]]
 
 

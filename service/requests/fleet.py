@@ -9,11 +9,13 @@ from pydantic_core import to_json
 from service.errors import invalid
 from service.errors.faults import show
 from service.fleet.fleet import LAYERS
-from service.fleet.rules import Rules
+from service.fleet.groups import Groups
+from service.fleet.rules import Leave, Rules
 from service.fleet.vehicles import VehicleType
 from service.objectives import Objective
 from service.requests.fields import (
     GEOMETRY,
+    Cost,
     Geometry,
     Items,
     OneEach,
@@ -21,16 +23,20 @@ from service.requests.fields import (
     SomeItems,
 )
 from service.requests.fleet_fields import (
+    ApartItem,
+    BeforeItem,
     Clock,
     ClockItem,
     FleetObjectiveItem,
     FleetStopItem,
+    References,
     ShipmentItem,
     VehicleItem,
 )
 from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
 from service.requests.stop_fields import (
     check_unique,
+    find_index,
     read_objectives,
     read_stops,
 )
@@ -39,6 +45,8 @@ from service.requests.task import UnmeasuredFleet, VehicleName, types_by_id
 from service.requests.validation import parse_json, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
+_MOST_GROUPS = 50
+_SOME_GROUPS = Field(max_length=_MOST_GROUPS, fail_fast=True)
 
 
 class FleetRequest(SearchFields):
@@ -55,11 +63,32 @@ class FleetRequest(SearchFields):
     shipments: Items[ShipmentItem] = Field(
         default_factory=list, description="pairs of stops that one vehicle visits, in order"
     )
+    together: Annotated[list[References], _SOME_GROUPS] = Field(
+        default_factory=list,
+        description="groups of stops, by index or id: one vehicle visits all of a group on one"
+        " route, or none of it if all may be left out",
+    )
+    apart: Annotated[list[ApartItem], _SOME_GROUPS] = Field(
+        default_factory=list, description="stops that must not be on one route"
+    )
+    before: Annotated[list[BeforeItem], _SOME_GROUPS] = Field(
+        default_factory=list, description="stops that come before others on one route"
+    )
     clock: Clock | None = Field(
         default=None,
         description="the name of the objective that is time; or, where the costs of all objectives"
         " are the same, the source of times that are not an objective. All times are in its unit;"
         " the length of a route in it includes service and waiting",
+    )
+    slack: Cost = Field(
+        default=0.0,
+        description="how long before a window closes a vehicle must reach the stop, in the clock's"
+        " unit; there it waits until the window opens. So delays up to this make nobody late",
+    )
+    leave: Leave = Field(
+        default="late",
+        description="whether a vehicle leaves as late as it can without being done later, or as"
+        " early as its shift and its load allow",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
@@ -102,9 +131,37 @@ class FleetRequest(SearchFields):
             over=tuple(item.of_plan or item.over for item in self.objectives),
             layers=layers,
             clock=self._clock(costs, layers),
+            slack=self.slack,
+            leave=self.leave,
+            groups=self._groups(ids),
         )
         stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops))
         return UnmeasuredFleet(rules, names, stops, clock=self._named_clock)
+
+    def _groups(self, ids: Mapping[str, int]) -> Groups:
+        """Return the groups of stops.
+
+        Raises:
+            Refusal: One of them is not a stop.
+        """
+
+        def found(references: Sequence[int | str], part: str) -> tuple[int, ...]:
+            return tuple(
+                find_index(reference, ids, f"{part}/{i}", len(ids))
+                for i, reference in enumerate(references)
+            )
+
+        return Groups(
+            together=tuple(found(each, f"together/{i}") for i, each in enumerate(self.together)),
+            apart=tuple(
+                (found(each.stops, f"apart/{i}/stops"), found(each.others, f"apart/{i}/others"))
+                for i, each in enumerate(self.apart)
+            ),
+            before=tuple(
+                (found(each.first, f"before/{i}/first"), found(each.then, f"before/{i}/then"))
+                for i, each in enumerate(self.before)
+            ),
+        )
 
     @property
     def _named_clock(self) -> Objective | None:

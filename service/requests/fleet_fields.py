@@ -39,11 +39,16 @@ _MOST_SHIFTS = 31
 _MOST_RELOADS = 20
 _MOST_SKILLS = 50
 _MOST_BREAKS = 10
+_MOST_IN_GROUP = 100
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
 Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
 Skills = Annotated[list[Text], Field(max_length=_MOST_SKILLS, fail_fast=True)]
 # A pair in JSON, and a list so that OpenAPI has its length.
 TimeSpan = Pair[Cost]
+Due = Annotated[
+    Annotated[Cost, Tag("[time]")] | Annotated[TimeSpan, Tag("[span]")],
+    Discriminator(lambda value: "[span]" if isinstance(value, list) else "[time]"),
+]
 
 
 class FleetStopItem(NamedStop):
@@ -60,8 +65,9 @@ class FleetStopItem(NamedStop):
         default_factory=list,
         description="when a visit may begin, from and to: in one of up to 20, by ascending time",
     )
-    due: Cost | None = optional(
-        "when the visit should begin at the latest; after that the plan has lateness"
+    due: Due | None = optional(
+        "when the visit should begin at the latest, after which the plan has lateness; or a pair:"
+        " from when on it should, before which the plan has earliness, and until when"
     )
     release: Cost = Field(
         default=0.0,
@@ -72,6 +78,11 @@ class FleetStopItem(NamedStop):
         default_factory=list, description="the skills that its vehicle must have, all of them"
     )
     vehicle: Text | None = optional("the id of the type of vehicles that must visit it")
+    urgency: Cost = Field(
+        default=1.0,
+        description="what a unit of time until the visit begins counts in the measure"
+        " weighted_arrival",
+    )
     prize: Cost | None = optional(
         "added to the first length if the stop is left out; a stop without a prize is"
         " always visited"
@@ -88,15 +99,18 @@ class FleetStopItem(NamedStop):
         if self.vehicle is not None and self.vehicle not in types:
             near = nearest(self.vehicle, types)
             raise invalid(f"{part}/vehicle", "not-a-vehicle", came=self.vehicle, near=near)
+        wanted, due = self.due if isinstance(self.due, list) else (0.0, self.due)
         return Visit(
             demand=tuple(self.demand),
             service=self.service,
             windows=tuple(_spans(self.window, self.windows, f"{part}/window")),
             prize=self.prize,
-            due=inf if self.due is None else self.due,
+            due=inf if due is None else due,
             release=self.release,
             skills=tuple(self.skills),
             vehicles=() if self.vehicle is None else types[self.vehicle],
+            wanted=wanted,
+            urgency=self.urgency,
         )
 
 
@@ -116,6 +130,33 @@ class ShipmentItem(StrictModel):
         """
         pickup = find_index(self.pickup, ids, f"{part}/pickup", len(ids))
         return Shipment(pickup, find_index(self.delivery, ids, f"{part}/delivery", len(ids)))
+
+
+References = Annotated[
+    list[StopReference], Field(min_length=1, max_length=_MOST_IN_GROUP, fail_fast=True)
+]
+
+
+class ApartItem(StrictModel):
+    """Stops that must not ride with each other, or with others."""
+
+    stops: References = Field(description="by index or id")
+    others: Annotated[list[StopReference], Field(max_length=_MOST_IN_GROUP, fail_fast=True)] = (
+        Field(
+            default_factory=list,
+            description="by index or id: no vehicle visits one of these and one of `stops`;"
+            " without any, no vehicle visits two of `stops`",
+        )
+    )
+
+
+class BeforeItem(StrictModel):
+    """Stops that come first on a route, and others that come then."""
+
+    first: References = Field(description="by index or id")
+    then: References = Field(
+        description="by index or id: on a route after all of `first` that are on it"
+    )
 
 
 class BreakItem(StrictModel):
@@ -156,6 +197,7 @@ class VehicleItem(StrictModel):
     )
     skills: Skills = Field(default_factory=list, description="what it is able to do")
     max_stops: PositiveInteger | None = optional("the most stops of a route")
+    min_stops: PositiveInteger | None = optional("the least stops of a route: else none leaves")
     reload: Annotated[list[StopReference], Field(max_length=_MOST_RELOADS, fail_fast=True)] = Field(
         default_factory=list,
         description="the stops, by index or id, at which one may load again on its way",
@@ -171,6 +213,9 @@ class VehicleItem(StrictModel):
     longest: PositiveNumber | None = optional(
         "the limit on each route: on its time if there is a clock, else on its length in"
         " the objective whose `over` is max"
+    )
+    shortest: Cost = Field(
+        default=0.0, description="the least time or length of a route, measured as `longest` is"
     )
     fixed: Cost = Field(default=0.0, description="added to the first length if one is used")
 
@@ -199,6 +244,8 @@ class VehicleItem(StrictModel):
                 fixed=self.fixed,
                 skills=tuple(self.skills),
                 max_stops=self.max_stops,
+                min_stops=self.min_stops or 0,
+                shortest=self.shortest,
                 reload=tuple(reload),
                 max_trips=self.max_trips,
                 initial_load=tuple(self.initial_load),
@@ -241,9 +288,10 @@ class FleetObjectiveItem(ObjectiveItem):
         alias="measure",
         description="in place of a source of costs, not for the first objective: the number of"
         " vehicles that are used, the prizes of the stops that are left out, the overtime beyond"
-        " shifts, the lateness after stops are due, each summed up over the plan; the imbalance,"
-        " by which the longest route is longer than the shortest; or the load distance, the first"
-        " costs of each leg times the load",
+        " shifts, the lateness after stops are due, the earliness before they are, the weighted"
+        " arrival, which is the time until each visit begins times its urgency, each summed up over"
+        " the plan; the imbalance, by which the longest route is longer than the shortest; or the"
+        " load distance, the first costs of each leg times the load",
     )
     over: Over = Field(
         default="sum",

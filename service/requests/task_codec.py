@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.coverage.coverage import Coverage, Robot
+from service.fleet.groups import Groups
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
@@ -47,7 +48,7 @@ _TYPES: Mapping[str, type[Any]] = {
         *(Task, PlanOptions, EarlierTours, Labels),
         *(Stops, Matrix, Plane, Measured, Changed),
         *(OverTheDay, Slices, Traffic, Hours),
-        *(Coverage, SharedCoverage, UnmeasuredFleet, Rules, Objective),
+        *(Coverage, SharedCoverage, UnmeasuredFleet, Rules, Groups, Objective),
     )
 }
 # A task may hold thousands of these. Their members are numbers, texts, and tuples of numbers.

@@ -8,7 +8,7 @@ from tests.guide.codes import PAGE as CODES_PAGE
 from tests.guide.codes import codes, faults, remedies
 from tests.guide.figures import figures
 from tests.guide.kinds import TABLE, kinds_file
-from tests.guide.members import JSON, TYPES, json_file, type_file
+from tests.guide.members import JSON, json_file, type_files
 from tests.guide.pages import with_part
 from tests.guide.tree import PAGE as TREE_PAGE
 from tests.guide.tree import tree
@@ -18,7 +18,8 @@ CODES_PAGE.write_text(with_part(CODES_PAGE, "codes", codes()))
 CODES_PAGE.write_text(with_part(CODES_PAGE, "faults", faults()))
 CODES_PAGE.write_text(with_part(CODES_PAGE, "remedies", remedies()))
 JSON.write_text(json_file())
-TYPES.write_text(type_file())
+for path, types in type_files().items():
+    path.write_text(types)
 TABLE.write_text(kinds_file())
 for name, (page, made) in figures().items():
     page.write_text(with_part(page, name, made))

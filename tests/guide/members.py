@@ -1,8 +1,10 @@
 """The members of requests for the client, the command and the page, made of the service's forms."""
 
 import json
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
@@ -21,6 +23,7 @@ from tests.guide.pages import ROOT
 
 JSON = ROOT / "service/client/paretour/members.json"
 TYPES = ROOT / "service/client/paretour/members.py"
+PARTS = ROOT / "service/client/paretour/member_parts.py"
 FORMS: Mapping[str, type[BaseModel]] = {
     "FrontRequest": FrontRequest,
     "FleetRequest": FleetRequest,
@@ -52,10 +55,22 @@ _PLAIN = {
 _SHORT = 3  # names in a Literal, which fit into a line
 _NUMBERS = {"int", "float", "ArrayLike", "Costs"}  # which an array of any library may hold
 _ROWS = "Sequence[Sequence[float | None] | ArrayLike] | ArrayLike"
+_HEAD_OF_PARTS = '''\
+"""The parts of requests, such as stops, as types of dictionaries: made of the service's forms.
+
+`python -m tests.guide` writes this module. Types are calls where a member is called `from`.
+"""
+
+from collections.abc import Sequence
+from typing import Literal, Required, TypedDict
+
+from numpy.typing import ArrayLike
+from paretour.frames import Costs
+'''
 _HEAD = f'''\
 """The members of requests, as types of dictionaries: made of the service's forms.
 
-`python -m tests.guide` writes this module. Types are calls where a member is called `from`.
+`python -m tests.guide` writes this module.
 """
 
 from collections.abc import Mapping, Sequence
@@ -63,6 +78,9 @@ from typing import Any, Literal, Required, TypedDict
 
 from numpy.typing import ArrayLike
 from paretour.frames import Costs, Frame
+from paretour.member_parts import (
+PARTS_USED
+)
 
 DEFAULT_TIME_LIMIT = {FrontRequest.model_fields["time_limit"].default}  # seconds
 BOUND_SECONDS = {BOUND_SECONDS}  # the most that the service takes to prove a bound
@@ -91,13 +109,21 @@ def json_file() -> str:
     return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
 
 
-def type_file() -> str:
-    """Return the module with the type of each request, and of all that is in it."""
+def type_files() -> dict[Path, str]:
+    """Return the modules with the type of each request, and of all that is in requests."""
     types: dict[str, str] = {}
     for request in ("SearchOptions", *_BASES, "OffersRequest"):
         schema = _form(request)
         _add(types, request, schema, schema.get("$defs", {}))
-    return "\n\n".join((_HEAD, *types.values()))
+    whole = {name: each for name, each in types.items() if name in {*_SHARED, *FORMS}}
+    requests = "\n\n".join(whole.values())
+    parts = {name: each for name, each in types.items() if name not in whole}
+    used = [name for name in sorted(parts) if re.search(rf"\b{name}\b", requests)]
+    head = _HEAD.replace("PARTS_USED", "\n".join(f"    {name}," for name in used))
+    return {
+        TYPES: "\n\n".join((head, requests)),
+        PARTS: "\n\n".join((_HEAD_OF_PARTS, *parts.values())),
+    }
 
 
 def _form(request: str) -> dict[str, Any]:
@@ -124,9 +150,12 @@ def _add(types: dict[str, str], name: str, form: Any, parts: Mapping[str, Any]) 
             continue
         choices = _choices(schema, parts)
         if len(schema.get("enum", _enumerated(schema))) > _SHORT:
-            types[member] = f"{member.title()} = {choices[0]}\n"
+            values = schema.get("enum", _enumerated(schema))
+            lines = [f"    {json.dumps(each)}," for each in values]
+            types[member] = "\n".join([f"{member.title()} = Literal[", *lines, "]\n"])
             choices[0] = member.title()
-        of = " | ".join([*choices, *(["Frame"] if member == "stops" else [])])
+        of_request = member == "stops" and name in FORMS
+        of = " | ".join([*choices, *(["Frame"] if of_request else [])])
         members[member] = f"Required[{of}]" if member in form.get("required", ()) else of
     types[name] = _typed_dict(name, base, form["description"].partition("\n")[0], members)
 

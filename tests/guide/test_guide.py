@@ -17,7 +17,7 @@ from service.settings import Settings
 from tests.guide.codes import codes, faults, remedies
 from tests.guide.figures import figures
 from tests.guide.kinds import TABLE, kinds_file
-from tests.guide.members import JSON, TYPES, json_file, type_file
+from tests.guide.members import JSON, json_file, type_files
 from tests.guide.pages import (
     GUIDE,
     PAGES,
@@ -275,7 +275,8 @@ def test_the_table_of_codes_is_that_of_the_service() -> None:
 
 
 def test_the_client_and_the_page_have_what_the_service_has() -> None:
-    assert TYPES.read_text() == type_file(), "run python -m tests.guide"
+    for path, types in type_files().items():
+        assert path.read_text() == types, "run python -m tests.guide"
     assert JSON.read_text() == json_file(), "run python -m tests.guide"
     assert TABLE.read_text() == kinds_file(), "run python -m tests.guide"
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from service.fleet.evaluation import plan_lengths, points_of, violations
 from service.fleet.fleet import Fleet
+from service.fleet.groups import Groups
 from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import ALWAYS, Break, Shipment, VehicleType, Visit
@@ -26,6 +27,9 @@ MIXED: Sequence[tuple[Objectives, tuple[int, ...]]] = (
     (("sum", "lateness", "vehicles"), (0, 0, 0)),
     (("sum", "overtime", "imbalance"), (0, 0, 0)),
     (("sum", "sum", "load_distance"), (0, 1, 0)),
+    (("sum", "earliness"), (0, 0)),
+    (("sum", "weighted_arrival"), (0, 0)),
+    (("sum", "lateness", "earliness"), (0, 0, 0)),
     (("sum", "max", "lateness", "vehicles"), (0, 1, 0, 0)),
     (("sum", "sum", "unassigned", "imbalance"), (0, 1, 0, 0)),
 )
@@ -119,6 +123,38 @@ def shipping_fleet(seed: int) -> Fleet:
     return Fleet(rules=shipped, costs=fleet.costs)
 
 
+def grouped_fleet(seed: int) -> Fleet:
+    """Return a fleet of three or four stops that ride together, apart or in order, or are many."""
+    fleet = _bounded(seed, *MIXED[seed % len(MIXED)], least=3)
+    random, rules = np.random.default_rng(seed), fleet.rules
+
+    def some(least: int) -> tuple[int, ...]:
+        count = int(random.integers(least, 3))
+        return tuple(random.permutation(rules.clients)[:count].tolist())
+
+    def likely() -> bool:
+        return bool(random.random() < 0.5)
+
+    together = some(2)
+    others = tuple(stop for stop in rules.clients if stop not in together)
+    groups = Groups(
+        together=(together,) if likely() else (),
+        apart=((together[:1], others[:1]),) if likely() else (),
+        before=((some(1), some(1)),) if likely() else (),
+    )
+    vehicles = tuple(
+        dataclasses.replace(
+            each,
+            max_stops=None,
+            min_stops=int(random.integers(0, 3)),
+            shortest=float(random.integers(5, 40)) if random.random() < 0.3 else 0.0,
+            longest=inf,
+        )
+        for each in rules.vehicles
+    )
+    return fleet.under(dataclasses.replace(rules, groups=groups, vehicles=vehicles))
+
+
 def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 2) -> Fleet:
     random = np.random.default_rng(seed)
     n = int(random.integers(least, least + 2))
@@ -181,7 +217,25 @@ def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 
     )
     depots = {end for each in types for end in (0, each.end, *each.reload) if end is not None}
     visits = tuple(Visit() if stop in depots else visit() for stop in range(n + 2))
-    rules = Rules(visits=visits, vehicles=types, over=over, layers=layers, clock=whole(0, 2))
+    if {"earliness", "weighted_arrival"} & {*over}:
+        types = tuple(dataclasses.replace(each, breaks=()) for each in types)
+        visits = tuple(
+            dataclasses.replace(
+                each, wanted=min(each.due, float(whole(1, 60))), urgency=float(whole(0, 4))
+            )
+            if stop not in depots
+            else each
+            for stop, each in enumerate(visits)
+        )
+    rules = Rules(
+        visits=visits,
+        vehicles=types,
+        over=over,
+        layers=layers,
+        clock=whole(0, 2),
+        slack=float(whole(1, 15)) if likely(0.25) else 0.0,
+        leave="early" if likely(0.2) else "late",
+    )
     return Fleet(rules=rules, costs=costs)
 
 
@@ -237,7 +291,9 @@ def hull_corners(points: list[Point]) -> list[Point]:
 
 
 def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
-    """Return the earliest end of a route, its least lateness then, and its latest departure then.
+    """Return the earliest end of a route, its least lateness then, and its departure then.
+
+    It is the latest, or the earliest where vehicles leave early.
 
     All departures are tried, and all windows. None where none of them is in time. All times must be
     whole.
@@ -250,16 +306,17 @@ def best_times(fleet: Fleet, route: Route) -> tuple[float, float, float] | None:
     breaks = fleet.rules.vehicles[route.vehicle].breaks
     latest = min(200.0, ends, fleet.rules.vehicles[route.vehicle].leaves_by)
     found = []
+    early = 1 if fleet.rules.leave == "early" else -1
     for departure in range(int(begins), int(latest) + 1):
         for windows in product(*numbers):
             for rests in product(slots, repeat=len(breaks)):
                 driven = _driven(fleet, route, windows, rests, float(departure))
                 if driven is not None and driven[0] <= ends:
-                    found.append((*driven, -departure))
+                    found.append((*driven, early * departure))
     if not found:
         return None
     end, lateness, departure = min(found)
-    return end, lateness, -float(departure)
+    return end, lateness, early * float(departure)
 
 
 def _driven(
@@ -287,9 +344,9 @@ def _driven(
         time = _rested(time, breaks, (place, 0))
         if stop in reload and 0 < place < len(path) - 1:
             time = max(time, _released(rules, path[place + 1 :], reload))
-        time = max(time, opens)
-        if time > closes or time == inf:
+        if time > closes - rules.slack or time == inf:
             return None
+        time = max(time, opens)
         lateness += max(0.0, time - visit.due)
         time = _rested(time + visit.service, breaks, (place, 1))
     free = [each for each, taken in breaks if taken is None]

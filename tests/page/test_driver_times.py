@@ -251,7 +251,7 @@ def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(
 
 
 def closing(arrives: str, closes: str, stop: str) -> dict[str, Any]:
-    return {**visit(arrives, arrives, stop=stop), "closes": at(closes)}
+    return {**visit(arrives, arrives, stop=stop), "closes": at(closes), "by": at(closes)}
 
 
 NOTE = """async (visits) => {
@@ -280,6 +280,14 @@ def visit(arrives: str, begins: str, opens: str = "", stop: str = "A") -> dict[s
             " for B, which closes at 8:15",
         ),
         ([closing("8:15", "8:40", "B"), visit("8:20", "9:01")], ""),
+        (  # with ten minutes in hand
+            [{**closing("8:15", "8:25", "B"), "by": at("8:15")}, visit("8:20", "9:01")],
+            " for B, which closes at 8:25 and must be reached by 8:15",
+        ),
+        (
+            [{**visit("8:15", "8:20", "8:20", "B"), "closes": at("8:22"), "by": at("8:15")}],
+            " for B, which closes at 8:22 and must be reached by 8:15",
+        ),
         ([visit("8:10", "8:15", "8:15")], ""),  # it waits there
         ([visit("8:10", "8:12"), visit("8:15", "8:15", "8:15", "B")], ""),  # or before
         ([{**visit("8:15", "8:15", "8:15"), "waiting": 20}], ""),  # for some seconds

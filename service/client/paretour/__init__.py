@@ -35,16 +35,14 @@ from paretour.library import (
     plan_robots,
     replan,
 )
+from paretour.member_parts import ObjectiveRequest, RobotRequest, StopRequest
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
     FrontRequest,
-    ObjectiveRequest,
     OffersRequest,
     ReplanRequest,
-    RobotRequest,
     RobotsRequest,
-    StopRequest,
 )
 from paretour.offers import Offer, OfferChoice, Offers
 from paretour.plans import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute

@@ -20,8 +20,8 @@ _OF_PROGRAMS = (",", "|", None)  # separators beside which a decimal sign is a p
 # Fields whose cells are numbers. Numbers of windows may be hours, as 8,30.
 _FIELDS = {
     *("longitude", "latitude", "x", "y", "demand", "service", "prize", "cost", "capacity", "count"),
-    *("longest_time", "longest_distance", "fixed", "max_stops", "max_trips", "max_overtime"),
-    *("initial_load", "per_km"),
+    *("longest_time", "longest_distance", "fixed", "max_stops", "min_stops", "max_trips"),
+    *("max_overtime", "initial_load", "per_km"),
 }
 
 

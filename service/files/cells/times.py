@@ -78,7 +78,7 @@ def _columns_of_times(columns: Columns) -> list[list[int]]:
     fields = [
         *([window] for window in (*WINDOWS, "shift")),
         *([f"{window}_from", f"{window}_to"] for window in (*WINDOWS, "shift")),
-        *(["due"], ["release"]),
+        *(["due_from", "due"], ["release"]),
     ]
     found = [[at for name in each if (at := columns.find(name)) is not None] for each in fields]
     return [
@@ -368,7 +368,7 @@ def read_calendar(tables: Sequence[Columns]) -> None:
         )
         for columns in tables
         for at, field in enumerate(columns.fields)
-        if field in ("due", "release") or str(field).startswith(("window", "shift"))
+        if field in ("due", "due_from", "release") or str(field).startswith(("window", "shift"))
     ]
     calendar = calendar_of(found)
     for columns in tables:

@@ -6,7 +6,7 @@ from service.fleet.rounding import is_over
 from service.fleet.search.changes import begin_iteration, measure_changed, restore
 from service.fleet.search.found import Found, offer
 from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_outside
-from service.fleet.search.route import values_of
+from service.fleet.search.route import lacking, values_of
 from service.fleet.search.rows import write_point
 from service.fleet.search.ruin import ruin, uniform
 from service.fleet.search.working_plan import (
@@ -75,8 +75,13 @@ def anneal(
 
 @inlined
 def keeps_rules(state: State) -> bool:
-    """Return whether no route is too long, or ends too late."""
+    """Return whether no route is too long or too short, or ends too late."""
     problem, plan, direction = state
+    if problem.bounded_below:
+        for number in range(plan.counts[USED]):
+            slot = plan.used[number]
+            if lacking(state, problem.kind[slot], plan.size[slot], values_of(plan, slot)) > 0:
+                return False
     if direction.beyond > 0:
         for number in range(plan.counts[USED]):
             slot = plan.used[number]

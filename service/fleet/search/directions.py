@@ -332,6 +332,8 @@ class Directions:
             overtime=by_measure.get("overtime", 0.0),
             lateness=by_measure.get("lateness", 0.0),
             load_distance=by_measure.get("load_distance", 0.0),
+            earliness=by_measure.get("earliness", 0.0),
+            arrival=by_measure.get("weighted_arrival", 0.0),
             longest=longest,
             penalty=penalty,
             beyond=0.0,

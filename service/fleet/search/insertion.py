@@ -3,6 +3,7 @@
 A vehicle that may load again may do so just before or just after the stop.
 """
 
+from service.fleet.search.companions import may_join, order_kept
 from service.fleet.search.problem import (
     Problem,
 )
@@ -102,6 +103,8 @@ def has_room(problem: Problem, plan: WorkingPlan, stop: int, slot: int) -> bool:
     """Return whether a vehicle may be able to carry one more stop's load."""
     kind = problem.kind[slot]
     fits = True
+    if problem.grouped and not may_join(problem, plan, stop, slot):
+        return False
     if problem.ships or plan.counts[MORE_TRIPS] > 0 or plan.trips[slot] > 1:
         for dimension in range(plan.load.shape[1]):
             fits &= problem.demand[stop, dimension] <= problem.whole[kind, dimension]
@@ -136,6 +139,8 @@ def _better(
         return best
     plan.tried[before] = plan.counts[TRY]
     if blinks(plan):
+        return best
+    if problem.ordered and not order_kept(problem, plan, stop, slot, before):
         return best
     if problem.reloads:
         return _with_reloads(state, stop, slot, before, best)

@@ -11,7 +11,6 @@ from service.fleet.rounding import is_over
 from service.fleet.search.insertion import blinks, new_slot
 from service.fleet.search.problem import (
     FIRST,
-    LATENESS,
     LOADED,
     RELEASED,
     SECOND,
@@ -20,12 +19,13 @@ from service.fleet.search.problem import (
 from service.fleet.search.route import (
     Span,
     Values,
+    grown_cost,
     head_at,
     joined,
     measure,
-    route_cost,
     stay,
     tail_at,
+    values_of,
 )
 from service.fleet.search.spots import Place, nowhere
 from service.fleet.search.working_plan import (
@@ -163,7 +163,7 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
         return best
     delivery, at, profile = problem.delivery[pickup], begun.at, problem.profile[slot]
     after = plan.next[begun.before if at == pickup else at]
-    b = problem.place[after]
+    b, known = problem.place[after], values_of(plan, slot)
     to, away = leg(problem, profile, at, delivery, 0), leg(problem, profile, delivery, b, 0)
     detour = to + away - leg(problem, profile, at, b, 0)
     first = begun.first + detour
@@ -186,9 +186,10 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
     kind = problem.kind[slot]
     if _is_over(first if problem.limited == 0 else second, problem.longest[kind], end):
         return best
-    overtime = max(0.0, end - problem.shift_end[kind])
-    values = Values(first, second, overtime, plan.value[slot, LATENESS], loaded)
-    cost = route_cost(state, kind, values) - plan.plain[slot]
+    late = max(0.0, end - problem.shift_end[kind])
+    # With a visit more, others may begin later: the earliness may fall.
+    values = Values(first, second, late, known.lateness, loaded, 0.0, known.arrival)
+    cost = grown_cost(state, slot, 2, values)
     if cost < best.cost and (problem.tried[kind] or problem.choice or direction.lateness > 0):
         cost = _tried(state, pickup, slot, begun.before, at)
     return Place(cost, slot, begun.before, -1, -1, at) if cost < best.cost else best
@@ -214,6 +215,9 @@ def _timed(
     end = departs + span.time
     if not kept or _is_over(departs, span.late, end):
         return np.inf, 0.0
+    if problem.early:
+        begin = max(problem.departs[problem.kind[slot]], plan.value[slot, RELEASED])
+        return end - begin, end
     return span.time, end
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Measure, Over, Rules
-from service.fleet.vehicles import VehicleType, Visit
+from service.fleet.vehicles import VehicleType
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -21,7 +21,7 @@ MAX, VEHICLES, UNASSIGNED, IMBALANCE = map(
     MEASURES.index, ("max", "vehicles", "unassigned", "imbalance")
 )
 # The columns of the values of a route.
-FIRST, SECOND, OVERTIME, LATENESS, LOADED, RELEASED = range(6)
+FIRST, SECOND, OVERTIME, LATENESS, LOADED, RELEASED, EARLINESS, ARRIVAL = range(8)
 _NEAR = 100  # stops that are near a stop, at most
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
@@ -44,12 +44,18 @@ class Problem(NamedTuple):
     forbidden: float  # legs of this cost must not be taken
     demand: Indices  # (n, d)
     service: Array  # (p, n), by profile
+    held: Array  # (n,), how long a vehicle waits at least that reaches the stop just in time
     release: Array  # (n,)
     windows: Array  # (n, w, 2), by ascending begin; the last is repeated
     choice: bool  # whether a stop has several windows
-    opens: Array  # (n,), the begin of the first
+    narrow: bool  # whether a window ends before it begins: see Rules.windows
+    opens: Array  # (n,), the begin of the first, or its end if that is before
     closes: Array  # (n,), the end of the last
     due: Array  # (n,)
+    timely: bool  # whether an objective depends on when each visit begins
+    wanted: Array  # (n,), before which a visit is early
+    urgency: Array  # (n,), 0 for depots
+    begin: float  # from when on weighted arrivals count
     prize: Array  # (n,), infinite where a stop must be visited
     near: Nodes  # (n, k), the nearest stops of each stop to visit, from the nearest on
     clients: Nodes  # (c,), the stops to visit
@@ -71,6 +77,7 @@ class Problem(NamedTuple):
     rests: Indices  # (v,), the number of breaks
     breaks: Array  # (v, b, 3), the earliest and the latest begin of each, and how long it takes
     initial: Indices  # (v,), the initial load in the first dimension
+    early: bool  # whether vehicles leave as early as they may
     departs: Array  # (v,)
     leaves_by: Array  # (v,)
     returns: Array  # (v,), with overtime
@@ -81,13 +88,22 @@ class Problem(NamedTuple):
     fixed: Array  # (v,)
     over: Indices  # (m,), by MEASURES
     column: Indices  # (m,), of the values of a route
+    grouped: bool  # whether stops ride together, or must not
+    mates: Nodes  # (n, x), the stops that ride with each; -1 after the last
+    rivals: Nodes  # (n, y), the stops that must not ride with each; -1 after the last
+    ordered: bool  # whether stops have an order
+    earlier: Flags  # (n, n), whether the first comes before the second; (1, 1) if none does
+    bounded_below: bool  # whether a route may have too few stops, or be too short
+    min_stops: Indices  # (v,)
+    shortest: Array  # (v,)
     tried: Flags  # (v,), whether only a trial says what a stop costs in a route
 
 
 def problem_of(fleet: Fleet) -> Problem:
     """Return the arrays of a fleet."""
     rules, loads = fleet.rules, loads_of(fleet.rules)
-    visits, vehicles = rules.visits, rules.vehicles
+    visits, vehicles, windows = rules.visits, rules.vehicles, _windows(rules)
+    opens, closes = windows[:, 0, 0], windows[:, -1, 1]
     clients = np.array(rules.clients, np.int32)
     delivery, pickup = _shipped(rules)
     counts = [min(vehicle.count, len(clients)) for vehicle in vehicles]
@@ -107,12 +123,18 @@ def problem_of(fleet: Fleet) -> Problem:
         forbidden=forbidden,
         demand=loads.demand,
         service=_floats([visit.service for visit in visits])[np.newaxis],
+        held=np.maximum(0.0, opens - closes),
         release=_floats([visit.release for visit in visits]),
-        windows=_windows(visits),
+        windows=windows,
         choice=any(len(visit.windows) > 1 for visit in visits),
-        opens=_floats([visit.windows[0][0] for visit in visits]),
-        closes=_floats([visit.windows[-1][1] for visit in visits]),
+        narrow=bool((windows[:, :, 1] < windows[:, :, 0]).any()),
+        opens=np.minimum(opens, closes),
+        closes=closes.copy(),
         due=_floats([visit.due for visit in visits]),
+        timely=rules.weighs_begins,
+        wanted=_floats([visit.wanted for visit in visits]),
+        urgency=_floats([visit.urgency for visit in visits]),
+        begin=rules.begin,
         prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
         near=_nearest(fleet, clients),
         clients=clients,
@@ -134,6 +156,7 @@ def problem_of(fleet: Fleet) -> Problem:
         rests=np.array([len(vehicle.breaks) for vehicle in vehicles]),
         breaks=_breaks(vehicles),
         initial=np.array([(each.initial_load or (0,))[0] for each in vehicles]),
+        early=rules.leave == "early",
         departs=_floats([vehicle.way[0] for vehicle in vehicles]),
         leaves_by=_floats([min(v.leaves_by, v.way[1]) for v in vehicles]),
         returns=_floats([vehicle.way[1] for vehicle in vehicles]),
@@ -144,6 +167,14 @@ def problem_of(fleet: Fleet) -> Problem:
         fixed=_floats([vehicle.fixed for vehicle in vehicles]),
         over=np.array([MEASURES.index(over) for over in rules.over]),
         column=np.array([_column(rules, index) for index in range(len(rules.over))]),
+        grouped=bool(rules.groups.mates or rules.groups.rivals),
+        mates=_mates(rules),
+        rivals=_rivals(rules),
+        ordered=bool(rules.groups.ordered),
+        earlier=_earlier(rules),
+        bounded_below=any(vehicle.is_bounded_below for vehicle in vehicles),
+        min_stops=np.array([vehicle.min_stops for vehicle in vehicles]),
+        shortest=_floats([vehicle.shortest for vehicle in vehicles]),
         tried=np.array([_is_tried(rules, vehicle) for vehicle in vehicles]),
     )
 
@@ -170,6 +201,30 @@ def _padded(rows: Sequence[Sequence[int]]) -> Indices:
     return padded
 
 
+def _mates(rules: Rules) -> Nodes:
+    """Return the stops that ride with each stop, shape (n, x)."""
+    mates = rules.groups.mates
+    return _padded([[*(mates.get(i, frozenset()) - {i})] for i in range(rules.n)]).astype(np.int32)
+
+
+def _rivals(rules: Rules) -> Nodes:
+    """Return the stops that must not ride with each stop or those that ride with it, (n, y)."""
+    rivals: list[set[int]] = [set() for _ in range(rules.n)]
+    for stop, other in rules.groups.rivals:
+        for mate in rules.groups.mates.get(stop, (stop,)):
+            rivals[mate].add(other)
+    return _padded([[*each] for each in rivals]).astype(np.int32)
+
+
+def _earlier(rules: Rules) -> Flags:
+    """Return which stops come before which others, shape (n, n)."""
+    size = rules.n if rules.groups.ordered else 1
+    earlier = np.zeros((size, size), np.bool_)
+    for first, then in rules.groups.ordered:
+        earlier[first, then] = True
+    return earlier
+
+
 def _breaks(vehicles: Sequence[VehicleType]) -> Array:
     """Return the breaks of each type of vehicles, shape (v, b, 3)."""
     found = np.zeros((len(vehicles), max(len(each.breaks) for each in vehicles), 3))
@@ -181,19 +236,21 @@ def _breaks(vehicles: Sequence[VehicleType]) -> Array:
 def _is_tried(rules: Rules, vehicle: VehicleType) -> bool:
     """Return whether a stop in a route may cost something else than what is known along it says.
 
-    It may where the vehicle has breaks, or where it loads again and times or loads on the way
-    depend on what all of a trip brings.
+    It may where the vehicle has breaks, where the begin of each visit counts, or where it loads
+    again and times or loads on the way depend on what all of a trip brings.
     """
+    if rules.weighs_begins:
+        return True
     if not vehicle.reload:
         return bool(vehicle.breaks)
     timed = any(v.release or v.due < np.inf or len(v.windows) > 1 for v in rules.visits)
     return bool(vehicle.breaks) or timed or "load_distance" in rules.over
 
 
-def _windows(visits: Sequence[Visit]) -> Array:
-    """Return the windows of all visits; where there are fewer than most have, the last again."""
-    most = max(len(visit.windows) for visit in visits)
-    padded = [visit.windows + visit.windows[-1:] * (most - len(visit.windows)) for visit in visits]
+def _windows(rules: Rules) -> Array:
+    """Return the windows of all stops; where there are fewer than most have, the last again."""
+    most = max(map(len, rules.windows))
+    padded = [windows + windows[-1:] * (most - len(windows)) for windows in rules.windows]
     return np.array(padded, np.float64)
 
 
@@ -204,7 +261,13 @@ def _floats(values: list[float]) -> Array:
 def _column(rules: Rules, objective: int) -> int:
     """Return the column of the values of a route that an objective is of."""
     over = rules.over[objective]
-    columns = {"overtime": OVERTIME, "lateness": LATENESS, "load_distance": LOADED}
+    columns = {
+        "overtime": OVERTIME,
+        "lateness": LATENESS,
+        "load_distance": LOADED,
+        "earliness": EARLINESS,
+        "weighted_arrival": ARRIVAL,
+    }
     if over == "imbalance":
         assert rules.swept is not None
         return rules.swept
@@ -226,9 +289,10 @@ def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
 class Direction(NamedTuple):
     """What the search minimises: a weighted sum over routes, with limits on routes and plans.
 
-    The weighted sum is that of legs or durations, vehicles, fixed costs, overtime, lateness and
-    load times distance, and of the prizes of stops outside. What exceeds a limit is multiplied by
-    `penalty`. A plan also pays for what its lengths exceed bounds by.
+    The weighted sum is that of legs or durations, vehicles, fixed costs, overtime, lateness, load
+    times distance, earliness and weighted arrivals, and of the prizes of stops outside. What
+    exceeds a limit is multiplied by `penalty`. A plan also pays for what its lengths exceed bounds
+    by.
     """
 
     costs: tuple[float, float]
@@ -238,6 +302,8 @@ class Direction(NamedTuple):
     overtime: float
     lateness: float
     load_distance: float
+    earliness: float
+    arrival: float
     longest: float  # the limit on the length of a route in the swept costs
     penalty: float
     beyond: float  # price of each unit by which a route is too long or ends too late, if it may

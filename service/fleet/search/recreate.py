@@ -3,6 +3,7 @@
 import numpy as np
 
 from service.fleet.search.changes import begin_iteration, save_slot
+from service.fleet.search.companions import drop_halves, want_mates
 from service.fleet.search.insertion import best_place
 from service.fleet.search.pairs import best_pair
 from service.fleet.search.problem import Problem
@@ -49,6 +50,8 @@ def recreate(state: State, order: int) -> None:
     often = random_below(plan.random, _OFTEN) == 0
     plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
     plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
+    if problem.grouped:
+        want_mates(problem, plan)
     _sort(problem, plan, order)
     for number in range(plan.counts[REMOVED]):
         stop = plan.removed[number]
@@ -60,6 +63,8 @@ def recreate(state: State, order: int) -> None:
         if place.slot >= 0:
             save_slot(problem, plan, place.slot)
             _insert(state, stop, place)
+    if problem.grouped:
+        drop_halves(state)
     if problem.reloads and random_below(plan.random, SELDOM) == 0:
         for number in range(plan.counts[SAVED]):
             load_anew(state, plan.saved[number])

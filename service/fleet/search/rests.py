@@ -70,7 +70,9 @@ def _depart(problem: Problem, plan: WorkingPlan, slot: int) -> None:
     for taken in range(problem.rests[kind] + 1):
         plan.states[taken] = 0
         if not _is_over(begin, problem.leaves_by[kind]):
-            _add(plan, taken, Way(begin, 0.0, 0.0, problem.leaves_by[kind], begin))
+            # Of vehicles that leave early, those that leave the earliest count as the latest.
+            latest = -begin if problem.early else problem.leaves_by[kind]
+            _add(plan, taken, Way(begin, 0.0, 0.0, latest, begin))
         if taken < problem.rests[kind]:
             opens, length = problem.breaks[kind, taken, 0], problem.breaks[kind, taken, 2]
             begin = max(begin, opens + length)
@@ -177,7 +179,10 @@ def _serve(problem: Problem, plan: WorkingPlan, profile: int, stop: int) -> None
 
 @inlined
 def _ended(problem: Problem, plan: WorkingPlan, kind: int) -> Times:
-    """Return the best of the states at the end: early, then least late, then leaving the latest."""
+    """Return the best of the states at the end: early, then least late, then leaving the latest.
+
+    Vehicles that leave as early as they may are best if they leave the earliest.
+    """
     best = Times(np.inf, np.inf, np.inf)
     for taken in range(problem.rests[kind] + 1):
         last = problem.returns[kind]
@@ -186,12 +191,12 @@ def _ended(problem: Problem, plan: WorkingPlan, kind: int) -> Times:
         for number in range(plan.states[taken]):
             way = _state(plan.state[taken], number)
             if not _is_over(way.time, last):
-                best = _better(best, way)
+                best = _better(best, way, problem.early)
     return best
 
 
 @inlined
-def _better(best: Times, way: Way) -> Times:
+def _better(best: Times, way: Way, early: bool) -> Times:
     """Return the better of the times of a route, and those of another way at its end."""
     leaves = max(way.departure, min(way.latest, way.time - way.work))
     times = Times(way.time, way.time - leaves, way.late)
@@ -201,6 +206,7 @@ def _better(best: Times, way: Way) -> Times:
         return best
     if _is_over(best.late, way.late, way.time):
         return times
-    if _is_over(way.late, best.late, way.time) or times.duration >= best.duration:
+    if _is_over(way.late, best.late, way.time):
         return best
-    return times
+    longer = times.duration >= best.duration
+    return times if longer == early else best

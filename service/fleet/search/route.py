@@ -5,8 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
+from service.fleet.search.begins import begin_at, weigh_begins
 from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
+    ARRIVAL,
+    EARLINESS,
     FIRST,
     LATENESS,
     LOADED,
@@ -26,7 +29,7 @@ from service.fleet.search.working_plan import (
     service_at,
     way,
 )
-from service.jit import inlined, standalone
+from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
 
@@ -64,7 +67,8 @@ def joined(a: Span, way: float, b: Span) -> tuple[Span, bool]:
 @inlined
 def stay(problem: Problem, profile: int, stop: int) -> Span:
     """Return the visit of a stop as a part of a route."""
-    return Span(service_at(problem, profile, stop), problem.opens[stop], problem.closes[stop])
+    service = service_at(problem, profile, stop) + problem.held[stop]
+    return Span(service, problem.opens[stop], problem.closes[stop])
 
 
 @inlined
@@ -92,6 +96,8 @@ class Values(NamedTuple):
     overtime: float
     lateness: float
     loaded: float  # loads times distances
+    early: float
+    arrival: float  # weighted
 
 
 @inlined
@@ -107,6 +113,8 @@ def route_cost(state: State, kind: int, values: Values) -> float:
         + direction.lateness * values.lateness
         + direction.load_distance * values.loaded
     )
+    if problem.timely:
+        cost += direction.earliness * values.early + direction.arrival * values.arrival
     if direction.beyond > 0:
         cost += direction.beyond * beyond_rules(problem, kind, values)
     length = values.first if problem.swept == 0 else values.second
@@ -122,10 +130,39 @@ def beyond_rules(problem: Problem, kind: int, values: Values) -> float:
 
 
 @inlined
+def grown_cost(state: State, slot: int, more: int, values: Values) -> float:
+    """Return what the cost of a route grows by with a number of stops more; without breaks."""
+    problem, plan, _ = state
+    kind = problem.kind[slot]
+    cost = route_cost(state, kind, values) - plan.plain[slot]
+    more += plan.size[slot]
+    return cost + (lacking(state, kind, more, values) if problem.bounded_below else 0.0)
+
+
+@compiled
+def lacking(state: State, kind: int, size: int, values: Values) -> float:
+    """Return what it costs that a route has too few stops, or is too short."""
+    problem, _, direction = state
+    length = values.first if problem.limited == 0 else values.second
+    cost = direction.required * max(0, problem.min_stops[kind] - size)
+    if problem.shortest[kind] > 0 and _is_over(problem.shortest[kind], length):
+        cost += direction.required * (2 - length / problem.shortest[kind])
+    return cost
+
+
+@inlined
 def values_of(plan: WorkingPlan, slot: int) -> Values:
     """Return the values of a route."""
     value = plan.value[slot]
-    return Values(value[FIRST], value[SECOND], value[OVERTIME], value[LATENESS], value[LOADED])
+    return Values(
+        value[FIRST],
+        value[SECOND],
+        value[OVERTIME],
+        value[LATENESS],
+        value[LOADED],
+        value[EARLINESS],
+        value[ARRIVAL],
+    )
 
 
 @standalone
@@ -148,6 +185,8 @@ def measure(state: State, slot: int) -> bool:
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     if problem.clock >= 0:
         plan.value[slot, problem.clock] = duration
+        if problem.timely and fits:
+            weigh_begins(problem, plan, start, plan.ready[start + 1] - duration)
     fits &= _set_cost(state, slot, start + 1)
     plan.plain[slot] = plan.cost[slot]
     if fits and problem.rests[problem.kind[slot]] > 0:
@@ -206,6 +245,8 @@ def _set_cost(state: State, slot: int, end: int) -> bool:
         overtime = max(0.0, reach - problem.shift_end[kind])
     plan.value[slot, OVERTIME], plan.value[slot, LATENESS] = overtime, plan.late[end]
     plan.cost[slot] = route_cost(state, kind, values_of(plan, slot))
+    if problem.bounded_below:
+        plan.cost[slot] += lacking(state, kind, plan.size[slot], values_of(plan, slot))
     length = plan.value[slot, FIRST] if problem.limited == 0 else plan.value[slot, SECOND]
     return not _is_over(length, problem.longest[kind], reach)
 
@@ -276,8 +317,8 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     """Write the times up to each node of a route.
 
     Returns:
-        The time from the departure to the end, where the vehicle leaves as late as makes neither
-        the end later nor a visit later than due; and whether the route keeps all windows.
+        The time from the departure, as early as it may be or as late as makes neither the end later
+        nor a visit later than due; and whether the route keeps all windows.
     """
     kind, profile, end = problem.kind[slot], problem.profile[slot], start + 1
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
@@ -306,17 +347,10 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     plan.ready[end], plan.late[end] = ready, late
     if not in_time or ready == np.inf or _is_over(ready, problem.returns[kind]):
         return ready - departs, False
+    if problem.early:
+        return ready - departs, True
     leaves = min(_latest_departure(problem, plan, start, profile), problem.leaves_by[kind])
     return ready - max(departs, leaves), True
-
-
-@inlined
-def begin_at(problem: Problem, stop: int, arrival: float) -> float:
-    """Return when a visit begins, in the first window that is not over; infinite after all."""
-    for number in range(problem.windows.shape[1]):
-        if not _is_over(arrival, problem.windows[stop, number, 1]):
-            return max(arrival, problem.windows[stop, number, 0])
-    return np.inf
 
 
 @inlined
@@ -328,13 +362,22 @@ def _latest_departure(problem: Problem, plan: WorkingPlan, start: int, profile: 
         service = service_at(problem, profile, node)
         begin = plan.ready[node] - service
         limit = min(time - service, max(problem.due[node], begin))
-        latest = begin
+        latest = _reached_by(problem, node, begin) if problem.narrow else begin
         for number in range(problem.windows.shape[1]):
             if problem.windows[node, number, 0] <= limit:
                 latest = max(latest, min(limit, problem.windows[node, number, 1]))
         time = latest - plan.step[node, problem.clock]
         node = plan.previous[node]
     return time
+
+
+@compiled
+def _reached_by(problem: Problem, stop: int, begin: float) -> float:
+    """Return the latest arrival at a stop for a visit that begins as its window opens, or later."""
+    for number in range(problem.windows.shape[1]):
+        if problem.windows[stop, number, 0] == begin:
+            return min(begin, problem.windows[stop, number, 1])
+    return begin
 
 
 @inlined

@@ -147,10 +147,20 @@ def _staying(plan: WorkingPlan, length: int, size: int) -> int:
 def remove(problem: Problem, plan: WorkingPlan, stop: int) -> None:
     """Take a stop out of its route, to be inserted later. The route is not measured.
 
-    Of a shipment both stops are taken out.
+    Of a shipment both stops are taken out, and all stops that ride together.
     """
     if problem.pickup[stop] >= 0:
         stop = problem.pickup[stop]
+    if problem.grouped:
+        for place in range(problem.mates.shape[1]):
+            other = problem.mates[stop, place]
+            if other >= 0 and plan.route[other] >= 0:
+                _remove_alone(problem, plan, other)
+    _remove_alone(problem, plan, stop)
+
+
+@inlined
+def _remove_alone(problem: Problem, plan: WorkingPlan, stop: int) -> None:
     if problem.delivery[stop] >= 0:
         unlink(plan, problem.delivery[stop])
     unlink(plan, stop)

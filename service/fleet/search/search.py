@@ -197,7 +197,7 @@ class RuinSearch:
                 write_row(self._problem, self._working, row)
                 best[:] = row
         load_row(state, best)
-        if self._working.counts[MISSING] == 0:
+        if self._working.counts[MISSING] == 0 and not self._problem.bounded_below:
             self._offer()
 
     def _offer(self) -> None:

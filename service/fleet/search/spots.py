@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
+from service.fleet.search.begins import begin_at, weighed_with
 from service.fleet.search.problem import (
     FIRST,
     LATENESS,
@@ -15,11 +16,10 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.route import (
     Values,
-    begin_at,
+    grown_cost,
     head_at,
     joined,
     measure,
-    route_cost,
     stay,
     tail_at,
 )
@@ -119,8 +119,9 @@ def _tried(state: State, stop: int, spot: Spot) -> float:
 def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
     """Return what the cost of a route grows by with a stop in a spot; inf if a rule forbids it.
 
-    What costs at least `most` may be told as more. If a visit is due, a route may turn out longer:
-    then its vehicle cannot leave as late as is assumed here. Breaks do not count.
+    What costs at least `most` may be told as more. Where the begin of each visit counts, it is an
+    estimate: as if the vehicle left as early as it may. If a visit is due, a route may turn out
+    longer: then its vehicle cannot leave as late as is assumed here. Breaks do not count.
     """
     problem, plan, direction = state
     slot, before, via, onward = spot
@@ -148,8 +149,9 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
         return np.inf
     overtime = max(0.0, end - problem.shift_end[kind])
     late = plan.value[slot, LATENESS]
-    cost = route_cost(state, kind, Values(first, second, overtime, late, loaded))
-    cost -= plan.plain[slot]
+    early, arrival = weighed_with(problem, plan, slot, stop, before)
+    values = Values(first, second, overtime, late, loaded, early, arrival)
+    cost = grown_cost(state, slot, 1, values)
     if cost < most and not problem.tried[kind] and (problem.choice or direction.lateness > 0):
         later = _lateness(problem, plan, slot, stop, before)
         return np.inf if later == np.inf else cost + direction.lateness * (later - late)
@@ -184,6 +186,11 @@ def _timed(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot) -> tuple[
     end = departs + span.time
     if not kept or _is_over(departs, span.late, end):
         return np.inf, 0.0
+    if problem.early:
+        begin = max(problem.departs[problem.kind[slot]], plan.value[slot, RELEASED])
+        if not problem.reloads:
+            begin = max(begin, problem.release[stop])
+        return end - begin, end
     return span.time, end
 
 

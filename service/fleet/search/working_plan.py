@@ -37,7 +37,8 @@ class WorkingPlan(NamedTuple):
     tried: Indices  # (n + 2 r,), by node: the latest stop that was tried after it
     size: Nodes  # (r,), by slot: stops
     load: Indices  # (r, d)
-    value: Array  # (r, 6): length in both costs, overtime, lateness, load times distance, release
+    value: Array  # (r, 8): length in both costs, overtime, lateness, load times distance, release,
+    # earliness and weighted arrivals
     cost: Array  # (r,), under the direction
     plain: Array  # (r,), the same without breaks
     trips: Indices  # (r,)
@@ -98,7 +99,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         tried=np.zeros(nodes, np.int64),
         size=np.zeros(r, np.int32),
         load=np.zeros((r, d), np.int64),
-        value=np.zeros((r, 6)),
+        value=np.zeros((r, 8)),
         cost=np.zeros(r),
         plain=np.zeros(r),
         trips=np.ones(r, np.int64),

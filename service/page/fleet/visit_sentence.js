@@ -54,16 +54,20 @@ function departure(visits, said) {
 
 /**
  * Why a vehicle leaves when it does: it leaves as late as it can without being done later. If it still waits somewhere, the
- * stop is why that closes as its visit begins, before it waits; if not, the first that opens then.
+ * stop is why that it must reach by then, before or where it waits; if not, the first that opens as its visit begins.
  */
 function reasonIn(visits, said) {
   const waits = visits.findIndex(({ waiting }) => waiting);
   const before = waits < 0 ? visits : visits.slice(0, waits);
-  const closing = before.find(({ begin, closes }) => closes !== undefined && said(begin) === said(closes));
-  if (closing && waits >= 0) return ` for ${called(closing)}, which closes at ${said(closing.closes)}`;
+  const isAt = (time, by) => Number.isFinite(by) && said(time) === said(by);
+  const closing = before.find(({ begin, by }) => isAt(begin, by)) ?? visits.slice(waits, waits + 1).find(({ arrival, by }) => isAt(arrival, by));
+  if (closing && waits >= 0) return ` for ${called(closing)}, which closes at ${said(closing.closes)}${inHand(closing, said)}`;
   const opening = before.find(({ opens }) => opens !== undefined);
   return opening ? `, to be at ${called(opening)} when it opens at ${said(opening.opens)}` : "";
 }
+
+/** That a stop must be reached before it closes, if it must. */
+const inHand = ({ closes, by }, said) => (by < closes ? ` and must be reached by ${said(by)}` : "");
 
 /**
  * When a vehicle arrives, when the visit begins if that is later, when the stop is open or the visit due, and how soon its

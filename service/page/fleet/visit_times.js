@@ -10,13 +10,13 @@ const NEAR = 1e-6; // times that differ by less, relative to them, are equal
  * `begin` and `end` are those of the visit, after the vehicle has arrived and waited; `waiting` is how long it waits before,
  * `rests` are breaks there, each `[from, to]`, and `leaves` is when it goes on; `due` is when a visit should begin, or a shift
  * ends, and `late` how much later that is; `windows` are those of the stop, and it `opens` when the visit begins, if it was
- * closed before, and `closes` after that; `released` is when the last load of the trip that begins there is released, 0
+ * closed before, and `closes` after that, and must be reached `by` then; `released` is when the last load of the trip that begins there is released, 0
  * without one; `shift` is when the shift of a vehicle that starts there begins.
  *
  * @param {{ vehicle: string, stops: string[], arrivals: number[], breaks?: number[], shift?: number }} route
- * @param {{ stops: Map<string, object>, types: Map<string, object> }} known the request, by `knownFleet`
+ * @param {{ stops: Map<string, object>, types: Map<string, object>, slack: number }} known the request, by `knownFleet`
  */
-export function visitTimes(route, { stops: asked, types }) {
+export function visitTimes(route, { stops: asked, types, slack }) {
   const { stops, arrivals, shift = 0 } = route;
   const type = types.get(route.vehicle) ?? UNKNOWN;
   const kinds = kindsOf(route, type);
@@ -28,10 +28,10 @@ export function visitTimes(route, { stops: asked, types }) {
     const released = kind === "start" || kind === "loading" ? releaseOf(at, stops, kinds, asked) : 0;
     const ready = (time) => (kind === "loading" ? Math.max(time, released) : opened(windows, time));
     const times = timesAt(arrivals[at], ready, service, breaks[at]);
-    const until = due ?? (kind === "end" ? to : undefined);
+    const until = [due].flat().at(-1) ?? (kind === "end" ? to : undefined);
     const opens = windows.find(([opening]) => Math.abs(times.begin - opening) <= NEAR * opening)?.[0];
     const closes = openIn(windows, times.begin)?.[1];
-    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, closes, released, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
+    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, closes, by: closes - slack, released, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
   });
 }
 

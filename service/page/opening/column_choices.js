@@ -8,6 +8,8 @@ const LABELS = {
   demand: "load",
   service: "time at the stop",
   due: "due, late from then on",
+  due_from: "wanted from, early before",
+  urgency: "urgency",
   release: "ready from",
   vehicle: "vehicle that serves it",
   cost: "cost by the metre",

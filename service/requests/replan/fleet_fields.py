@@ -56,6 +56,11 @@ class FleetChanges(StrictModel):
     now: Cost | None = Field(
         default=None, description="the present time, needed if the fleet has a clock"
     )
+    slack: Cost | None = Field(
+        default=None,
+        description="how long before a window closes a vehicle must reach the stop from now on; by"
+        " default as long as before. With 0, vehicles that are delayed may use it up",
+    )
     routes: Items[RouteOnTheWay] = Field(
         default_factory=list, description="the routes whose vehicles have left"
     )

@@ -140,6 +140,9 @@ class _Rest:
             over=self._rules.over,
             layers=self._rules.layers,
             clock=self._rules.clock,
+            slack=self._rules.slack if self._request.slack is None else self._request.slack,
+            leave=self._rules.leave,
+            groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
         )
         stops = Stops(locations_of(self.labels.stops), self._sources())
         driven = tuple(self._driven())
@@ -190,9 +193,7 @@ class _Rest:
         if position is None:
             position = self._all.n + list(self._all.new).index(f"{way.part}/position")
         timed = self._rules.clock is not None
-        longest = vehicle.longest
-        if way.departure is not None:
-            longest = max(0.0, longest - max(0.0, self._now - way.departure))
+        gone = 0.0 if way.departure is None else max(0.0, self._now - way.departure)
         visits, trips = vehicle.max_stops, vehicle.max_trips
         return replace(
             vehicle,
@@ -200,9 +201,11 @@ class _Rest:
             start=position,
             shift=(self._now, max(self._now, vehicle.shift[1])) if timed else vehicle.shift,
             leaves_by=self._now if timed and not way.is_back else inf,
-            longest=longest,
+            longest=max(0.0, vehicle.longest - gone),
             fixed=0.0,
             max_stops=None if visits is None else max(0, visits - len(way.done)),
+            min_stops=max(0, vehicle.min_stops - len(way.done)),
+            shortest=max(0.0, vehicle.shortest - gone),
             max_trips=None if trips is None else max(1, trips - way.trips),
             initial_load=() if way.trips or way.is_back else vehicle.initial_load,
         )
@@ -244,6 +247,7 @@ class _Rest:
             for index, old in enumerate(self._old)
             if not visit.vehicles or old in visit.vehicles
         ]
+        able = [i for i in able if self._may_ride(stop, i)]
         if self._must_be_loaded(stop, visit):
             out = [i for i, number in enumerate(working) if not self._day.ways[number].is_back]
             able = [i for i in able if i not in out or self._types[i].reload]
@@ -251,6 +255,19 @@ class _Rest:
             fault = Fault("no-vehicle-for-stop", values={"stop": self._all.stops[stop].id})
             raise Refusal("no-plan", errors=[fault])
         return () if len(able) == len(self._types) else tuple(able)
+
+    def _may_ride(self, stop: int, index: int) -> bool:
+        """Return whether a stop may ride with what vehicles of a type have visited by now.
+
+        What rode with it on a vehicle that is out of service does not matter.
+        """
+        groups, working = self._rules.groups, [w for w in self._day.ways if not w.broken_down]
+        rivals = {other for one, other in groups.rivals if one == stop}
+        mates = groups.mates.get(stop, frozenset())
+        before = [{*way.done} & mates for way in working]
+        if index >= len(working):
+            return not any(before)
+        return not rivals & {*working[index].done} and (bool(before[index]) or not any(before))
 
     def _must_be_loaded(self, stop: int, visit: Visit) -> bool:
         return any(visit.demand) and stop not in self._shipped and stop not in self._carried

@@ -81,8 +81,10 @@ class Judge:
             times = best[0]
         compared = self._compared(times, path)
         reach = 0.0 if times is None else 1e-9 * times.end
-        if is_later(compared - reach, vehicle.get("longest", inf)):
-            return "longest"
+        if wrong := _wrong_length(vehicle, compared, reach):
+            return wrong
+        if times is not None:  # visits begin as early as the departure allows
+            times = min(best, key=lambda each: sum(each.begins))
         lengths = [self._length(each, vehicle, stops, path, times) for each in self.objectives]
         return Judged(vehicle, stops, best, tuple(lengths), compared)
 
@@ -102,6 +104,9 @@ class Judge:
             for number in range(len(trips))
         ):
             yield "capacity"
+        if len(visited) < vehicle.get("min_stops", 0):
+            yield "min_stops"
+        yield from self._groups_broken(visited)
         for pickup, delivery in self.shipments:
             # Both or neither are visited, in this order.
             if [stop for stop in visited if stop in (pickup, delivery)] not in (
@@ -109,6 +114,21 @@ class Judge:
                 [pickup, delivery],
             ):
                 yield "shipment"
+
+    def _groups_broken(self, visited: list[int]) -> Iterator[str]:
+        """Yield the rules about groups of stops that a route breaks."""
+        inside = set(visited)
+        for group in self.request.get("together", ()):
+            if inside & set(group) and not set(group) <= inside:
+                yield "together"
+        for each in self.request.get("apart", ()):
+            stops, others = set(each["stops"]) & inside, set(each.get("others", ())) & inside
+            if (stops and others) or (not each.get("others") and len(stops) > 1):
+                yield "apart"
+        for each in self.request.get("before", ()):
+            last = max((visited.index(stop) for stop in each["first"] if stop in inside), default=0)
+            if any(visited.index(stop) < last for stop in each["then"] if stop in inside):
+                yield "before"
 
     def _may_visit(self, vehicle: Json, visit: Json) -> bool:
         able = set(visit.get("skills", ())) <= set(vehicle.get("skills", ()))
@@ -160,16 +180,27 @@ class Judge:
         match objective["measure"]:
             case "vehicles":
                 return 1.0
-            case "overtime" if times is not None:
-                ends = span_of({**vehicle, "max_overtime": 0.0})[1]
-                return times.end - ends if is_later(times.end, ends) else 0.0
-            case "lateness" if times is not None:
-                return times.lateness
+            case "overtime" | "lateness" | "earliness" | "weighted_arrival" as measure if times:
+                return self._of_times(measure, vehicle, path, times)
             case "load_distance":
                 return self._load_distance(vehicle, stops, path)
             case "imbalance":
                 return self._compared(times, path)
         return 0.0
+
+    def _of_times(self, measure: str, vehicle: Json, path: list[int], times: Timeline) -> float:
+        begins = zip(path, times.begins, strict=True)
+        visits = [(self.stops[stop], begin) for stop, begin in begins if stop not in self.depots]
+        if measure == "lateness":
+            return times.lateness
+        if measure == "overtime":
+            ends = span_of({**vehicle, "max_overtime": 0.0})[1]
+            return times.end - ends if is_later(times.end, ends) else 0.0
+        if measure == "weighted_arrival":
+            first = min(span_of(each)[0] for each in self.vehicles)
+            return float(sum(stop.get("urgency", 1.0) * (begin - first) for stop, begin in visits))
+        wanted = [(stop["due"][0], begin) for stop, begin in visits if _is_pair(stop.get("due"))]
+        return float(sum(due - begin for due, begin in wanted if is_later(due, begin)))
 
     def _load_distance(self, vehicle: Json, stops: tuple[int, ...], path: list[int]) -> float:
         trips = trips_of(vehicle, list(stops))
@@ -241,6 +272,17 @@ class Judge:
             for each in judged.best
         ):
             yield f"arrivals {route['arrivals']} are {best.arrivals}"
+
+
+def _wrong_length(vehicle: Json, length: float, reach: float) -> str:
+    """Return whether a route is too long or too short, as the rule that it breaks; else ""."""
+    if is_later(length - reach, vehicle.get("longest", inf)):
+        return "longest"
+    return "shortest" if is_later(vehicle.get("shortest", 0.0) - reach, length) else ""
+
+
+def _is_pair(due: Any) -> bool:
+    return isinstance(due, list)
 
 
 def _close(numbers: Any, others: Any, reach: float) -> bool:

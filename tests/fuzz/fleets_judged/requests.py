@@ -8,7 +8,11 @@ from typing import Any, NamedTuple
 
 from tests.fuzz.fleets_judged.timeline import Json
 
-_MEASURES = ("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance")
+_MEASURES = (
+    *("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"),
+    *("earliness", "weighted_arrival"),
+)
+_TIMED = ("overtime", "lateness", "earliness", "weighted_arrival")
 
 
 def random_fleet(rng: random.Random) -> Json:
@@ -38,7 +42,26 @@ def random_fleet(rng: random.Random) -> Json:
     ]
     if clients > 1 and rng.random() < 0.25:
         _add_shipment(request, n)
+    elif clients > 2 and rng.random() < 0.3:
+        _add_groups(rng, request, [*range(depots, n)])
     return request
+
+
+def _add_groups(rng: random.Random, request: Json, clients: list[int]) -> None:
+    """Let some stops ride together, some apart, and some in order; and routes be long."""
+    together = rng.sample(clients, 2)
+    other = rng.choice([stop for stop in clients if stop not in together])
+    groups: Json = {
+        "together": [together],
+        "apart": [rng.choice(({"stops": together[:1], "others": [other]}, {"stops": [other]}))],
+        "before": [{"first": rng.sample(clients, 1), "then": rng.sample(clients, 2)}],
+    }
+    request |= {name: each for name, each in groups.items() if rng.random() < 0.5}
+    for vehicle in request["vehicles"]:
+        if rng.random() < 0.3:
+            vehicle["min_stops"] = min(2, vehicle.get("max_stops", 2))
+        if "longest" in vehicle and rng.random() < 0.5:
+            vehicle["shortest"] = _number(rng, 5, 30, 1)
 
 
 def _matrix(rng: random.Random, n: int) -> list[list[float | None]]:
@@ -60,7 +83,7 @@ def _number(rng: random.Random, least: float, most: float, digits: int | None = 
 def _objectives(rng: random.Random, matrices: Sequence[Any], timed: bool) -> list[Json]:
     """Return two or three objectives, named a, b and c."""
     a, b = matrices
-    allowed = [m for m in _MEASURES if timed or m not in ("overtime", "lateness")]
+    allowed = [m for m in _MEASURES if timed or m not in _TIMED]
     kind = rng.random()
     if kind < 0.5:
         second: Json = {"measure": rng.choice(allowed)}
@@ -83,6 +106,10 @@ def _add_clock(rng: random.Random, request: Json, matrices: Sequence[Any]) -> No
     request["clock"] = rng.choice(named)
     if len(named) == 1 and rng.random() < 0.5:
         request["clock"] = {"matrix": matrices[1]}
+    if rng.random() < 0.2:
+        request["slack"] = _number(rng, 1, 20, 1)
+    if rng.random() < 0.2:
+        request["leave"] = "early"
 
 
 def _visit(rng: random.Random, timed: bool, dimensions: int, measures: set[Any]) -> Json:
@@ -90,7 +117,8 @@ def _visit(rng: random.Random, timed: bool, dimensions: int, measures: set[Any])
         "prize": 1.0 if "unassigned" in measures else 0.3,
         "skills": 0.15,
         "vehicle": 0.1,
-        "due": 0.9 if "lateness" in measures else 0.2,
+        "due": 0.9 if {"lateness", "earliness"} & measures else 0.2,
+        "urgency": 0.7 if "weighted_arrival" in measures else 0.0,
         "service": 0.4,
         "release": 0.15,
     }
@@ -100,7 +128,10 @@ def _visit(rng: random.Random, timed: bool, dimensions: int, measures: set[Any])
         "vehicle": "0",
     }
     if timed:
-        found["due"] = _number(rng, 5, 90, 2)
+        found["due"] = due = _number(rng, 5, 90, 2)
+        if "earliness" in measures or rng.random() < 0.2:
+            found["due"] = [_number(rng, 1, due, 2), due]
+        found["urgency"] = _number(rng, 0, 4, 1)
         found["service"] = _number(rng, 0, 8, 2)
         found["release"] = _number(rng, 0, 40, 2)
     visit = {name: value for name, value in found.items() if rng.random() < shares[name]}
@@ -158,7 +189,7 @@ def _add_times(rng: random.Random, vehicle: Json, measures: set[Any]) -> None:
         elif rng.random() < 0.15:
             end = vehicle["shift"][1]
             vehicle["shifts"] = [vehicle.pop("shift"), [end + 10, end + 150]]
-    if rng.random() < 0.35:
+    if rng.random() < 0.35 and not {"earliness", "weighted_arrival"} & measures:
         opens, wide, length = _number(rng, 5, 60, 2), _number(rng, 0, 15, 2), rng.randint(2, 30)
         rests = [{"window": [opens, opens + wide], "length": length}]
         if rng.random() < 0.3:

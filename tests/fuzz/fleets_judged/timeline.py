@@ -33,6 +33,7 @@ class Timeline(NamedTuple):
     waiting: float
     arrivals: tuple[float, ...]
     breaks: tuple[float, ...]
+    begins: tuple[float, ...]  # of the visits
 
 
 def is_later(a: float, b: float) -> bool:
@@ -60,7 +61,8 @@ def trips_of(vehicle: Json, stops: list[int]) -> list[list[int]]:
 def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -> list[Timeline]:
     """Return the best times of a route by the clock, or none where it cannot be in time.
 
-    They end as early as possible, then are the least late, then leave as late as possible.
+    They end as early as possible, then are the least late, then leave as late as possible, or as
+    early where the request says so.
 
     Args:
         request: The request, whose references to stops are numbers.
@@ -71,7 +73,7 @@ def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -
     begin, last = span_of(vehicle)
     trips = trips_of(vehicle, stops)
     begin = max(begin, _released(request, trips[0]))
-    rests = vehicle.get("breaks", [])
+    rests, early = vehicle.get("breaks", []), request.get("leave") == "early"
     found = []
     for first in range(len(rests) + 1):
         if first:
@@ -81,7 +83,7 @@ def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -
             until = min([last, *(each["window"][1] for each in rests[after:])])
             places = _places(request, times, vehicle, stops)
             for events in _ways(places, rests[first:after], [], begin):
-                timeline = _timed(events, begin, until)
+                timeline = _timed(events, begin, until, early)
                 if timeline is not None:
                     found.append(timeline)
     if not found:
@@ -91,8 +93,9 @@ def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -
     lateness = min(each.lateness for each in found)
     rounding = TOLERANCE * max(1.0, end)
     found = [each for each in found if each.lateness <= lateness + rounding]
-    departure = max(each.departure for each in found)
-    return [each for each in found if each.departure >= departure - rounding]
+    departures = [each.departure for each in found]
+    departure = min(departures) if early else max(departures)
+    return [each for each in found if abs(each.departure - departure) <= rounding]
 
 
 def _released(request: Json, trip: list[int]) -> float:
@@ -107,7 +110,9 @@ def _places(request: Json, times: Any, vehicle: Json, stops: list[int]) -> list[
     found = []
     for place, stop in enumerate(path):
         visit = request["stops"][stop]
-        rest = (visit.get("service", 0.0), visit.get("due", inf), legs[place], place)
+        due = visit.get("due", inf)
+        latest = due[1] if isinstance(due, list) else due
+        rest = (visit.get("service", 0.0), latest, legs[place], place)
         windows = _windows(request, vehicle, stops, path, place)
         found.append([Event(opens, closes, *rest) for opens, closes in windows])
     return found
@@ -159,9 +164,9 @@ def _windows(
     if stop in vehicle.get("reload", ()) and 0 <= place - first < len(stops):
         trip = trips_of(vehicle, stops[place - first + 1 :])[0]
         return [(_released(request, trip), inf)]
-    visit = request["stops"][stop]
+    visit, slack = request["stops"][stop], request.get("slack", 0.0)
     one = [visit["window"]] if visit.get("window") else []
-    return [(a, b) for a, b in visit.get("windows") or one] or [(0.0, inf)]
+    return [(a, b - slack) for a, b in visit.get("windows") or one] or [(0.0, inf)]
 
 
 def _ascending(count: int, places: int, least: int = 0) -> Iterator[tuple[int, ...]]:
@@ -173,8 +178,11 @@ def _ascending(count: int, places: int, least: int = 0) -> Iterator[tuple[int, .
             yield (place, *others)
 
 
-def _timed(events: list[Event], begin: float, last: float) -> Timeline | None:
-    """Return the times with the earliest end and then the latest departure, or None."""
+def _timed(events: list[Event], begin: float, last: float, early: bool) -> Timeline | None:
+    """Return the times with the earliest end and then the latest departure, or None.
+
+    If `early`, it is the first departure.
+    """
     earliest = _forward(events, begin)
     if earliest is None:
         return None
@@ -184,7 +192,7 @@ def _timed(events: list[Event], begin: float, last: float) -> Timeline | None:
     latest = end
     for event, started in zip(reversed(events), reversed(begins), strict=True):
         latest = min(latest - event.length, event.closes, max(event.due, started)) - event.leg
-    departure = max(begin, latest)
+    departure = begin if early else max(begin, latest)
     again = _forward(events, departure)
     assert again is not None
     begins, end = again
@@ -222,4 +230,6 @@ def _timeline(events: list[Event], begins: list[float], departure: float, end: f
             arrivals.append(here if arrived is None else arrived)
             arrived = None
         time = begin + event.length
-    return Timeline(departure, end, lateness, waiting, tuple(arrivals), tuple(rests))
+    pairs = zip(events, begins, strict=True)
+    of_visits = tuple(begin for event, begin in pairs if event.stop >= 0)
+    return Timeline(departure, end, lateness, waiting, tuple(arrivals), tuple(rests), of_visits)

@@ -1,0 +1,282 @@
+"""The parts of requests, such as stops, as types of dictionaries: made of the service's forms.
+
+`python -m tests.guide` writes this module. Types are calls where a member is called `from`.
+"""
+
+from collections.abc import Sequence
+from typing import Literal, Required, TypedDict
+
+from numpy.typing import ArrayLike
+from paretour.frames import Costs
+
+
+class DepartureRangeRequest(TypedDict, total=False):
+    """The times at which a tour may begin."""
+
+    earliest: Required[float]
+    latest: Required[float]
+
+
+class StopRequest(TypedDict, total=False):
+    """A stop, and how long a visit takes."""
+
+    id: Required[str]
+    location: ArrayLike | None
+    service: float
+
+
+# A slice of the day, and the costs in it.
+SliceRequest = TypedDict(
+    "SliceRequest",
+    {
+        "from": Required[float],
+        "matrix": Required[Costs],
+    },
+    total=False,
+)
+
+
+class TrafficRequest(TypedDict, total=False):
+    """Which times of travel a routing engine is asked for."""
+
+    date: Required[str]
+    at: Required[ArrayLike]
+
+
+# An objective, whose costs may change over the day.
+ObjectiveRequest = TypedDict(
+    "ObjectiveRequest",
+    {
+        "name": Required[str],
+        "unit": str | None,
+        "matrix": Costs,
+        "coordinates": ArrayLike,
+        "from": Literal["great_circle", "road_time", "road_distance"],
+        "speed": float | None,
+        "over_the_day": ArrayLike,
+        "slices": Sequence[SliceRequest],
+        "traffic": TrafficRequest | None,
+    },
+    total=False,
+)
+
+
+class FleetStopRequest(TypedDict, total=False):
+    """A stop, and its demands on the vehicle that visits it."""
+
+    id: Required[str]
+    location: ArrayLike | None
+    demand: ArrayLike
+    service: float
+    window: ArrayLike | None
+    windows: ArrayLike
+    due: float | ArrayLike | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
+    urgency: float
+    prize: float | None
+
+
+class BreakRequest(TypedDict, total=False):
+    """A break that a driver takes who is on the way then."""
+
+    window: Required[ArrayLike]
+    length: Required[float]
+
+
+class VehicleRequest(TypedDict, total=False):
+    """A type of vehicle, and how many of it there are."""
+
+    id: Required[str]
+    count: int
+    start: int | str | None
+    end: int | str | None
+    capacity: ArrayLike
+    shift: ArrayLike | None
+    shifts: ArrayLike
+    max_overtime: float
+    breaks: Sequence[BreakRequest]
+    skills: Sequence[str]
+    max_stops: int | None
+    min_stops: int | None
+    reload: Sequence[int | str] | ArrayLike
+    max_trips: int | None
+    initial_load: ArrayLike
+    longest: float | None
+    shortest: float
+    fixed: float
+
+
+Measure = Literal[
+    "vehicles",
+    "unassigned",
+    "overtime",
+    "lateness",
+    "imbalance",
+    "load_distance",
+    "earliness",
+    "weighted_arrival",
+]
+
+
+# An objective by its name: costs with their source, or another measure of plans.
+FleetObjectiveRequest = TypedDict(
+    "FleetObjectiveRequest",
+    {
+        "name": Required[str],
+        "unit": str | None,
+        "matrix": Costs,
+        "coordinates": ArrayLike,
+        "from": Literal["great_circle", "road_time", "road_distance"],
+        "speed": float | None,
+        "measure": Measure | None,
+        "over": Literal["sum", "max"],
+    },
+    total=False,
+)
+
+
+class ShipmentRequest(TypedDict, total=False):
+    """Two stops that one vehicle visits: the pick-up, and later the delivery."""
+
+    pickup: Required[int | str]
+    delivery: Required[int | str]
+
+
+class ApartRequest(TypedDict, total=False):
+    """Stops that must not ride with each other, or with others."""
+
+    stops: Required[Sequence[int | str] | ArrayLike]
+    others: Sequence[int | str] | ArrayLike
+
+
+class BeforeRequest(TypedDict, total=False):
+    """Stops that come first on a route, and others that come then."""
+
+    first: Required[Sequence[int | str] | ArrayLike]
+    then: Required[Sequence[int | str] | ArrayLike]
+
+
+# The source of travel times that are not an objective.
+ClockRequest = TypedDict(
+    "ClockRequest",
+    {
+        "name": str,
+        "unit": str | None,
+        "matrix": Costs,
+        "coordinates": ArrayLike,
+        "from": Literal["great_circle", "road_time", "road_distance"],
+        "speed": float | None,
+    },
+    total=False,
+)
+
+
+class LayerRequest(TypedDict, total=False):
+    """A cost layer with its name: an objective of its own."""
+
+    name: Required[str]
+    unit: str | None
+    layer: Required[ArrayLike]
+
+
+class RobotRequest(TypedDict, total=False):
+    """A robot: where it starts and, where robots do not return, maybe where it ends."""
+
+    id: Required[str]
+    start: int
+    start_pose: ArrayLike
+    end: int
+    end_pose: ArrayLike
+
+
+# The costs of one objective between a new stop and all others.
+StopCostsRequest = TypedDict(
+    "StopCostsRequest",
+    {
+        "to": Required[Sequence[float | None] | ArrayLike],
+        "from": Sequence[float | None] | ArrayLike,
+    },
+    total=False,
+)
+
+
+class NewStopRequest(TypedDict, total=False):
+    """A stop that the front does not have, and how to reach it under each objective."""
+
+    coordinates: Sequence[ArrayLike | None] | ArrayLike
+    costs: Sequence[StopCostsRequest | None]
+    id: Required[str]
+    location: ArrayLike | None
+    service: float | None
+
+
+# One cost that has changed, in one direction.
+CostEntryRequest = TypedDict(
+    "CostEntryRequest",
+    {
+        "objective": Required[int | str],
+        "from": Required[int | str],
+        "to": Required[int | str],
+        "cost": Required[float | None],
+    },
+    total=False,
+)
+
+
+class RouteOnTheWayRequest(TypedDict, total=False):
+    """A route of the plan that is driven, whose vehicle has left."""
+
+    route: Required[int]
+    done: Sequence[int | str] | ArrayLike
+    position: int | str | NewStopRequest | None
+    broken_down: bool
+
+
+class NewFleetStopRequest(TypedDict, total=False):
+    """A new stop of a fleet, with its demands, and how to reach it under each objective."""
+
+    coordinates: Sequence[ArrayLike | None] | ArrayLike
+    costs: Sequence[StopCostsRequest | None]
+    id: Required[str]
+    location: ArrayLike | None
+    demand: ArrayLike
+    service: float
+    window: ArrayLike | None
+    windows: ArrayLike
+    due: float | ArrayLike | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
+    urgency: float
+    prize: float | None
+
+
+class OfferedOrderRequest(TypedDict, total=False):
+    """An order whose time is not agreed yet: a stop without windows and without a prize."""
+
+    coordinates: Sequence[ArrayLike | None] | ArrayLike
+    costs: Sequence[StopCostsRequest | None]
+    id: Required[str]
+    location: ArrayLike | None
+    demand: ArrayLike
+    service: float
+    due: float | ArrayLike | None
+    release: float
+    skills: Sequence[str]
+    vehicle: str | None
+    urgency: float
+
+
+# Slots of equal length, one after another, in the unit of the clock.
+EverySlotRequest = TypedDict(
+    "EverySlotRequest",
+    {
+        "from": Required[float],
+        "to": Required[float],
+        "length": Required[float],
+        "step": float | None,
+    },
+    total=False,
+)

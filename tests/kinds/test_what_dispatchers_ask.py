@@ -1,0 +1,174 @@
+"""Requests for fleets that dispatchers asked for in public, each by the thread that asks."""
+
+import json
+from typing import Any
+
+import pytest
+
+from service.kinds.fleet import run_fleet
+from service.kinds.kind import Tools
+from service.kinds.parsing import parse_replan, parse_task
+from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.task import TaskSource
+from service.requests.task_codec import encode_task
+from service.watch import Watch
+from tests.helpers.fleet_requests import LIMITS
+
+Json = dict[str, Any]
+# Places on a line: the depot is at 0, and a unit of way takes a unit of time.
+WEST, NEAR, EAST, FAR = -10, 1, 10, 20
+
+
+def fleet(stops: dict[str, Json], vans: int = 1, **members: Any) -> Json:
+    """Return a request of stops at `at` on a line, and vans that start and end at 0."""
+    at = [0, *(stop["at"] for stop in stops.values())]
+    costs = [[abs(a - b) for b in at] for a in at]
+    named = [
+        {"id": name, **{key: value for key, value in stop.items() if key != "at"}}
+        for name, stop in stops.items()
+    ]
+    van = {"id": "van", "count": vans, "start": "depot", "end": "depot", **members.pop("van", {})}
+    against = members.pop("against", {"over": "max"})
+    costly = {} if "measure" in against else {"matrix": costs}
+    return {
+        "stops": [{"id": "depot"}, *named],
+        "vehicles": [van],
+        "objectives": [{"name": "time", "matrix": costs}, {"name": "other", **costly, **against}],
+        "clock": "time",
+        "time_limit": 0.2,
+        **members,
+    }
+
+
+def planned(request: Json) -> Json:
+    """Return the plan of a front with the least first length."""
+    task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
+    document = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
+    front: Json = json.loads(document.json(id="", status="done"))
+    plan: Json = front["front"][0]
+    return plan
+
+
+def routes(plan: Json) -> list[set[str]]:
+    return sorted(({*route["stops"]} - {"depot"} for route in plan["routes"]), key=sorted)
+
+
+SIDES = {"west": {"at": WEST}, "east": {"at": EAST}}
+ROUTES = {
+    # A driver takes the delivery in the north or the one in the south, not both.
+    "vroom#1343": (
+        fleet(SIDES, 2, apart=[{"stops": ["west", "east"]}]),
+        [{"east"}, {"west"}],
+    ),
+    # Passengers of two schools do not share a vehicle; those of one school may.
+    "vroom#1339": (
+        fleet(
+            {"a1": {"at": EAST}, "b1": {"at": EAST}, "a2": {"at": FAR}},
+            2,
+            apart=[{"stops": ["a1", "a2"], "others": ["b1"]}],
+        ),
+        [{"a1", "a2"}, {"b1"}],
+    ),
+    # Counterparts in two sets of places are visited by the same vehicle.
+    "vroom#540": (
+        fleet(
+            {"1": {"at": WEST}, "1_1": {"at": EAST}, "2": {"at": FAR}},
+            2,
+            together=[["1", "1_1"]],
+            van={"max_stops": 2},
+        ),
+        [{"1", "1_1"}, {"2"}],
+    ),
+    # No route is worth a driver for a single order.
+    "at least two stops": (
+        fleet({**SIDES, "far": {"at": FAR}, "near": {"at": NEAR}}, 4, van={"min_stops": 2}),
+        [{"east", "far", "near", "west"}],
+    ),
+}
+
+
+@pytest.mark.parametrize("thread", ROUTES)
+def test_stops_ride_with_those_that_were_asked_for(thread: str) -> None:
+    request, expected = ROUTES[thread]
+    assert routes(planned(request)) == expected
+
+
+URGENT = {"normal": {"at": NEAR}, "urgent": {"at": EAST}, "vip": {"at": FAR}}
+ORDERS = {
+    # On each route urgent stops come before normal ones; their own order is free.
+    "vroom#1269": (
+        fleet(URGENT, before=[{"first": ["vip", "urgent"], "then": ["normal"]}]),
+        ["depot", "urgent", "vip", "normal", "depot"],
+    ),
+    # One stop must come before another on the same vehicle.
+    "vroom#1325": (
+        fleet(
+            URGENT, before=[{"first": ["vip"], "then": ["urgent"]}], together=[["vip", "urgent"]]
+        ),
+        ["depot", "normal", "vip", "urgent", "depot"],
+    ),
+}
+
+
+@pytest.mark.parametrize("thread", ORDERS)
+def test_stops_come_in_the_order_that_was_asked_for(thread: str) -> None:
+    request, expected = ORDERS[thread]
+    plan = planned(request)
+    assert [route["stops"] for route in plan["routes"]] == [expected]
+
+
+def test_a_vehicle_leaves_early_and_waits_at_the_stops() -> None:
+    """vroom#1019: vehicles start at a given time and are at each stop as soon as they can."""
+    stops = {"job": {"at": EAST, "window": [60, 480]}}
+    late = planned(fleet(stops, van={"shift": [0, 480]}))
+    early = planned(fleet(stops, van={"shift": [0, 480]}, leave="early"))
+    assert late["routes"][0]["arrivals"] == [50, 60, 70]
+    assert early["routes"][0]["arrivals"] == [0, 10, 70]
+    assert (late["lengths"][0], early["lengths"][0]) == (20, 70)
+
+
+def test_a_vehicle_is_at_an_appointment_with_time_in_hand() -> None:
+    stops = {"appointment": {"at": EAST, "window": [60, 60]}}
+    for slack, arrival in ((0, 60), (8, 52)):
+        plan = planned(fleet(stops, slack=slack))
+        assert plan["routes"][0]["arrivals"] == [arrival - 10, arrival, 70]
+
+
+def test_early_visits_count_as_late_ones_do() -> None:
+    """PyVRP#631: a few minutes early or late are not desirable, but are possible."""
+    stops = {"near": {"at": NEAR, "due": [15, 30]}, "far": {"at": FAR}}
+    early = {"against": {"measure": "earliness"}}
+    plan = planned(fleet(stops, van={"shift": [0, 480]}, leave="early", **early))
+    assert plan["measures"]["earliness"] == plan["lengths"][1] == 0
+    assert plan["routes"][0]["stops"] == ["depot", "far", "near", "depot"]
+
+
+def test_the_urgent_are_visited_early() -> None:
+    """vroom#1120: the most urgent tasks first, and the less urgent ones then."""
+    stops = {"normal": {"at": WEST}, "urgent": {"at": EAST, "urgency": 50}}
+    weighed = fleet(stops, against={"measure": "weighted_arrival"})
+    plan = planned(weighed)
+    assert plan["routes"][0]["stops"][1:3] == ["urgent", "normal"]
+    assert plan["measures"]["weighted_arrival"] == 50 * 10 + 30
+
+
+def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> None:
+    """vroom#800: the day goes on, and the rest keeps what was asked for."""
+    stops = {"west": {"at": WEST}, "east": {"at": EAST}, "far": {"at": FAR}}
+    groups = {"together": [["west", "far"]], "apart": [{"stops": ["east", "west"]}]}
+    task = parse_task(
+        TaskSource("fleet", json.dumps(fleet(stops, 2, **groups)).encode()), LIMITS, {}
+    )
+    front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
+    plan = json.loads(front.json(id="", status="done"))["front"][0]
+    begun = next(i for i, route in enumerate(plan["routes"]) if "west" in route["stops"])
+    changes = {"plan": 0, "now": 30, "routes": [{"route": begun, "done": ["west"]}]}
+    source = ReplanSource(json.dumps(changes).encode(), StoredFront("", encode_task(task), front))
+    rest = parse_replan(source, LIMITS, {})
+    [after, *_] = json.loads(
+        run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch()).json(id="", status="done")
+    )["front"]
+    assert {route.get("route"): route["stops"][1:-1] for route in after["routes"]} == {
+        begun: ["far"],
+        None: ["east"],
+    }
