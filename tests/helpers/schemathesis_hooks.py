@@ -260,7 +260,7 @@ def _are_tours(value: Any) -> bool:
         isinstance(value, list)
         and value != []
         and all(isinstance(tour, list) for tour in value)
-        and all(_is_city(city) for tour in value for city in tour)
+        and all(_is_city(city) or isinstance(city, str) for tour in value for city in tour)
     )
 
 
