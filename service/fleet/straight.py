@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+_ALL = slice(None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +52,15 @@ class Line:
 
     def legs(self, a: int | Indices, b: int | Indices) -> Array:
         """Return what legs from stops to others cost, of shapes that broadcast."""
-        return self._costs(sum((axis[a] - axis[b]) ** 2 for axis in self.places.T))
+        return self._costs(self._squares(a, b))
 
     def legs_from(self, stop: int) -> Array:
         """Return what the legs from a stop to all stops cost, or from all to it, shape (n,)."""
-        return self._costs(sum((axis - axis[stop]) ** 2 for axis in self.places.T))
+        return self._costs(self._squares(_ALL, stop))
+
+    def _squares(self, a: int | slice | Indices, b: int | Indices) -> Array:
+        """Return the squares of the lines from stops to others."""
+        return sum((axis[a] - axis[b]) ** 2 for axis in self.places.T)
 
     def _costs(self, square: Array) -> Array:
         """Return what legs cost, of whose lines these are the squares."""
@@ -76,8 +81,7 @@ class Line:
         for stop in farthest.tolist():
             if radii[stop] + radii[farthest[0]] < most:
                 break
-            square = sum((axis - axis[stop]) ** 2 for axis in self.places.T)
-            most = max(most, float(np.sqrt(np.max(square))))
+            most = max(most, float(np.sqrt(np.max(self._squares(_ALL, stop)))))
         return float(self._costs(np.array(most**2)))
 
     def scaled(self, shift: int) -> "Line":

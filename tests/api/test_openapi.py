@@ -133,8 +133,8 @@ def without_fronts() -> Iterator[str]:
 
 
 def test_schemathesis_finds_nothing(without_fronts: str, tmp_path: Path) -> None:
-    address = without_fronts
-    command = [sys.executable, "-m", "schemathesis.cli", "run", f"{address}/openapi.json"]
+    document = f"{without_fronts}/openapi.json"
+    command = [sys.executable, "-m", "schemathesis.cli", "run", document]
     # Its phase "coverage", of 3,000 requests more, takes three minutes.
     phases = f"--phases=examples,fuzzing,stateful{',coverage' * IS_WHOLE}"
     most = f"--max-examples={tenth(20)}"
