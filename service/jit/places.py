@@ -27,7 +27,7 @@ PACKAGE = Path(__file__).parents[1]
 
 def _digest() -> str:
     """Return a digest of the modules whose functions and numbers are compiled."""
-    names = ("coverage", "fleet", "jit", "over_the_day", "replanning", "search")
+    names = ("coverage", "day", "fleet", "jit", "over_the_day", "replanning", "search")
     folders = (PACKAGE / name for name in names)
     modules = [*PACKAGE.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
     return sha256(b"".join(path.read_bytes() for path in sorted(modules))).hexdigest()

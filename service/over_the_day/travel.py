@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from service.day.driving import arrived, left_at, slice_at, slices_of
 from service.jit import compiled, inlined
 from service.over_the_day.day import Day
 
@@ -64,32 +65,16 @@ class Moment(NamedTuple):
 
 def traffic_of(day: Day) -> Traffic:
     """Return the day with common slices. O(k n^2) for k matrices."""
-    inner = np.unique(np.concatenate([each.begins[1:] for each in day.costs]))
-    firsts = np.append(-np.inf, inner)
-    factors = np.empty((len(firsts), len(day.costs)))
-    layers = np.empty((len(firsts), len(day.costs)), np.int64)
-    matrices: list[Array] = []
-    for index, each in enumerate(day.costs):
-        own = np.searchsorted(each.begins[1:], firsts, "right")
-        factors[:, index], layers[:, index] = each.factors[own], each.layers[own] + len(matrices)
-        matrices.extend(each.matrices)
+    begins, factors, layers, matrices = slices_of(day.costs)
     return Traffic(
-        begins=np.append(firsts, np.inf),
+        begins=begins,
         factors=factors,
         layers=layers,
-        matrices=_penalised(np.stack(matrices)),
+        matrices=_penalised(matrices),
         service=day.service,
         clock=day.clock,
         closed=day.ends.closed,
     )
-
-
-@compiled
-def slice_at(traffic: Traffic, time: float, known: int) -> int:
-    """Return the slice of a time that is not before a known slice."""
-    while known + 1 < len(traffic.factors) and traffic.begins[known + 1] <= time:
-        known += 1
-    return known
 
 
 @inlined
@@ -107,16 +92,8 @@ def driven(traffic: Traffic, i: int, j: int, at: Moment, weights: Array) -> Mome
             layer = traffic.layers[at.slice, objective]
             factor = traffic.factors[at.slice, objective] * weights[objective]
             cost += factor * traffic.matrices[layer, i, j]
-    time, known, left = at.time, at.slice, 1.0
-    while True:
-        layer = traffic.layers[known, traffic.clock]
-        seconds = traffic.factors[known, traffic.clock] * traffic.matrices[layer, i, j]
-        ends = traffic.begins[known + 1]
-        if time + left * seconds < ends or ends == np.inf:
-            return Moment(time + left * seconds, known, cost)
-        left = max(0.0, left - (ends - time) / seconds) if seconds > 0.0 else 0.0
-        time = ends
-        known += 1
+    time, known = arrived(traffic, i, j, at.time, at.slice, 1.0)
+    return Moment(time, known, cost)
 
 
 @compiled
@@ -144,28 +121,10 @@ def seconds_of(traffic: Traffic, tour: Cities, departure: float) -> float:
 
 
 @compiled
-def left_at(traffic: Traffic, i: int, j: int, arrival: float) -> float:
-    """Return when who arrives at j at a time has left i at the latest."""
-    known = len(traffic.factors) - 1
-    while known > 0 and traffic.begins[known] >= arrival:
-        known -= 1
-    time, left = arrival, 1.0
-    while True:
-        layer = traffic.layers[known, traffic.clock]
-        seconds = traffic.factors[known, traffic.clock] * traffic.matrices[layer, i, j]
-        begins = traffic.begins[known]
-        if time - left * seconds >= begins:
-            return time - left * seconds
-        left = max(0.0, left - (time - begins) / seconds)
-        time = begins
-        known -= 1
-
-
-@compiled
 def departure_for(traffic: Traffic, tour: Cities, place: int, time: float) -> float:
     """Return when a tour has to begin for the visit at a place to begin at a time. O(place)."""
     for at in range(place - 1, -1, -1):
-        time = left_at(traffic, tour[at], tour[(at + 1) % len(tour)], time)
+        time = left_at(traffic, tour[at], tour[(at + 1) % len(tour)], time, 1.0)
         time -= traffic.service[tour[at]]
     return time
 

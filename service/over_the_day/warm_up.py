@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from service.over_the_day.day import CostsOfDay, Day
+from service.day.costs import CostsOfDay
+from service.over_the_day.day import Day
 from service.over_the_day.search import DaySearch
 from service.watch import Watch
 

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
+from service.day.costs import CostsOfDay
 from service.errors import CityNames
 from service.fleet.straight import Line
 from service.instance import CLOSED, Instance, Kind, RouteEnds
 from service.objectives import Objective
-from service.over_the_day.day import CostsOfDay, Day
+from service.over_the_day.day import Day
 from service.roads.great_circle import EARTH_RADIUS, great_circle_matrix
 
 Array = NDArray[np.float64]

@@ -27,9 +27,10 @@ from numpy.typing import NDArray
 
 from models.data.generators import clustered, streets, uniform
 from service.actor import load_actors
+from service.day.costs import CostsOfDay
 from service.front import PlanOptions
 from service.instance import CLOSED, Instance
-from service.over_the_day.day import CostsOfDay, Day
+from service.over_the_day.day import Day
 from service.over_the_day.plan import plan_over_the_day
 from service.over_the_day.search import DaySearch
 from service.over_the_day.warm_up import warm_up

@@ -6,8 +6,9 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
+from service.day.costs import CostsOfDay
 from service.instance import RouteEnds
-from service.over_the_day.day import CostsOfDay, Day
+from service.over_the_day.day import Day
 
 Array = NDArray[np.float64]
 

@@ -125,7 +125,7 @@ def test_all_compiled_code_lies_where_a_change_is_noticed() -> None:
         path for path in package.rglob("*.py") if "from service.jit import" in path.read_text()
     ]
     folders = {path.relative_to(package).parts[0] for path in users}
-    assert folders <= {"coverage", "fleet", "over_the_day", "replanning", "search"}
+    assert folders <= {"coverage", "day", "fleet", "over_the_day", "replanning", "search"}
 
 
 def test_code_that_cannot_be_kept_is_used_all_the_same_and_said_once(tmp_path: Path) -> None:

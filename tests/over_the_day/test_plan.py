@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from service.day.costs import CostsOfDay
 from service.front import Front, PlanOptions
 from service.instance import CLOSED, RouteEnds
-from service.over_the_day.day import CostsOfDay, Day
+from service.over_the_day.day import Day
 from service.over_the_day.plan import plan_over_the_day
 from service.pareto import nondominated
 from service.planner import plan

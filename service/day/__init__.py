@@ -1,0 +1,1 @@
+"""Costs that change with the time of day, and how legs are driven under them."""
