@@ -49,6 +49,8 @@ def read(node: Node, table: str, title: str, text: str, second: int = 1) -> list
             "8:30-12:00; 14:00-16:00",
         ),
         ("stops", "Due", "28800", {"due": 28_800}, "8:00"),
+        ("stops", "Due", "10-10:30", {"due": [10 * HOUR, 10.5 * HOUR]}, "10:00-10:30"),
+        ("stops", "Urgency", "2,5", {"urgency": 2.5}, "2.5"),
         ("vehicles", "Count", "3", {"count": 3}, "3"),
         ("vehicles", "Shift", "8am-1pm", {"shift": [8 * HOUR, 13 * HOUR]}, "8:00-13:00"),
         ("vehicles", "Shift", "28800 to 12:00", {"shift": [8 * HOUR, 12 * HOUR]}, "8:00-12:00"),
@@ -89,6 +91,7 @@ def test_a_cell_is_read_as_people_write_it(
         ("stops", "Service", "300", "as 5 min, 0:05 or 300 s"),  # seconds, or five hours
         ("vehicles", "Longest route", "8", "as 8 h, 480 min or 8:00"),
         ("stops", "Due", "8.5", "a time, as 10:30"),
+        ("stops", "Due", "10:30-10:00", "or from when and until when"),
         ("vehicles", "Breaks", "12:00-13:00", "when it may begin and how long it takes"),
         ("vehicles", "Start", "yard", None),
         ("vehicles", "End", "yard", None),

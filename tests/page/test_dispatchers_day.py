@@ -181,6 +181,31 @@ def test_what_was_said_once_is_remembered_for_the_next_file(
     page.close()
 
 
+def test_vehicles_leave_early_with_time_in_hand_that_delays_may_use_up(
+    desk: Desk, tmp_path: Path
+) -> None:
+    page = desk.page
+    desk.open(tmp_path, {"orders.csv": ORDERS, "vans.csv": VANS})
+    desk.fill("#everyday-shift", "8:00-16:00")
+    desk.fill("#everyday-slack", "10")
+    expect(page.locator("#everyday-slack")).to_have_value("10 min")
+    page.get_by_label("Vehicles leave").select_option("as early as they can")
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    for row in page.locator("#fleet-legend tbody tr").all():
+        expect(row.locator("td").nth(2)).to_contain_text("8:00")
+    assert found_on_desk_and_phone(page, "#everyday") == []
+    page.locator("#today > summary").click()
+    desk.fill("#today-now", "8:05")
+    expect(page.locator("#today-done")).to_contain_text("done by then, as planned")
+    page.get_by_label("Vehicles that are late may use up the 10 min in hand").check()
+    assert found_on_desk_and_phone(page, "#today") == []
+    with page.expect_request("**/replan") as sent:
+        page.locator("#replan-fleet").click()
+    assert sent.value.post_data_json["slack"] == 0
+    expect(page.locator("#changes")).to_be_visible()
+
+
 def test_cells_of_a_spreadsheet_fill_a_column(desk: Desk, tmp_path: Path) -> None:
     page = desk.page
     desk.open(tmp_path, {"orders.csv": ORDERS, "vans.csv": VANS})

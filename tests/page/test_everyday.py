@@ -94,6 +94,16 @@ def test_a_fleet_without_times_has_some_once_they_are_asked_for(node: Node) -> N
     assert asked["clock"] == {"name": "time", "from": "great_circle", "speed": 30}
 
 
+def test_vehicles_leave_early_or_late_and_with_time_in_hand(node: Node) -> None:
+    minutes = {**FLEET, "clock": {"unit": "min", "from": "road_time"}}
+    asked, known, said = given(node, minutes, ("withLeave", "early"), ("withSlack", 900))
+    assert (asked["leave"], asked["slack"]) == ("early", 15)
+    assert (known["leave"], known["slack"]) == ("early", 900)
+    assert "vehicles leave at midnight." in said
+    assert given(node, asked, ("withLeave", "late"), ("withSlack", None))[0] == minutes
+    assert given(node, METRES, ("withSlack", 900))[0]["clock"] == "longest route"
+
+
 def test_a_depot_is_a_row_or_a_place_and_moves_with_its_vehicles(node: Node) -> None:
     rows = {**FLEET, "stops": [{"id": "yard", "location": YARD, "service": 60}, *ORDERS]}
     asked, *_ = given(node, rows, ("withDepotAt", "yard"))
@@ -126,12 +136,16 @@ REMEMBERED = {
     "shift": EIGHT_TO_FOUR,
     "speed": 25,
     "reload": True,
+    "leave": "early",
+    "slack": 600,
 }
 SAID = [
     "the depot",
     "vehicles load again there",
     "8 min at each stop",
     "shifts from 8:00 to 16:00",
+    "10 min in hand",
+    "vehicles leave as early as they can",
     "25 km/h",
 ]
 
@@ -142,6 +156,7 @@ SAID = [
         (FLEET, REMEMBERED, SAID),
         (FLEET, {"service": 480}, SAID[2:3]),
         (FLEET, {}, []),
+        ({**FLEET, "slack": 60, "leave": "early"}, {**REMEMBERED}, SAID[:4] + SAID[6:]),
         # What the file gives stays; and another city has another depot.
         (
             {**FLEET, "vehicles": [{"id": "Pekka", "shift": [0, 9]}]},

@@ -295,6 +295,7 @@ def order_three(page: Page, known: str) -> None:
     """Order by a click on the map, by rows that are pasted, and by one that is not taken."""
     page.get_by_role("button", name="Click where it is").click()
     page.locator("#plane-1").click(position={"x": 200, "y": 150})
+    expect(page.get_by_label("Service of new 1")).to_have_value("20 min")  # as the others
     said = "2 rows were read; 1 is a stop of the plan already."
     paste_orders(page, f"id,lon,lat\nB1,24.95,60.18\n{known},24.95,60.18\n", said)
     page.locator("#add-order").click()

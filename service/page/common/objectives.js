@@ -2,7 +2,7 @@
 
 import { SECONDS } from "./durations.js";
 
-const TIMES = ["driving", "service", "waiting", "lateness", "overtime", "longest", "shortest", "imbalance"]; // measures of plans
+const TIMES = ["driving", "service", "waiting", "lateness", "earliness", "weighted_arrival", "overtime", "longest", "shortest", "imbalance"]; // measures of plans
 const THINGS = ["people", "pedestrians", "accidents", "vehicles", "stops", "orders", "parcels", "customers", "visits", "turns", "crossings"];
 
 const SHORT = 16; // letters

@@ -32,6 +32,11 @@ const TYPES = {
   loads: { write: listed, read: (text) => all(text.split(/[\s;,]+/).filter(Boolean), load), hint: "a whole number such as 2, or one for each kind of load, such as 2, 5" },
   words: { write: listed, read: (text) => pieces(text, /[;,|]/) },
   time: { write: writtenTime, read: time, hint: "a time, as 10:30" },
+  due: {
+    write: (value, second) => spanText(value, second),
+    read: (text, second) => time(text, second) ?? span(text, second),
+    hint: "a time, as 10:30, or from when and until when, as 10:00-10:30",
+  },
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300 s" },
   long: { write: lastingText, read: (text, second) => (second && isPlain(text) ? undefined : lasting(text, second)), hint: "how long it is, as 8 h, 480 min or 8:00" },
   spans: {
@@ -75,7 +80,7 @@ export const unknownIn = (item, column) =>
   listOf(valueOf(item, column)).find((each) => typeof each === "string" && !(column.names?.includes(each) ?? ["text", "words"].includes(column.type)));
 
 /** What to write into a cell of a column. */
-export const hintOf = ({ type }, second) => (!second && ["time", "spans", "lasting", "long"].includes(type) ? COUNTED : TYPES[type].hint);
+export const hintOf = ({ type }, second) => (!second && ["time", "due", "spans", "lasting", "long"].includes(type) ? COUNTED : TYPES[type].hint);
 
 /** A stop or vehicle with another text in one of its cells; without text, its member goes. */
 export function withText(item, { member, several, part, type }, text, second) {

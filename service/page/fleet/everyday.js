@@ -1,4 +1,4 @@
-/** Read and write a depot, minutes at the stops, shifts and a speed as members of a request: what every dispatcher has. */
+/** Read and write a depot, minutes at the stops, shifts, time in hand and a speed as members of a request: what every dispatcher has. */
 
 import { duration, timeText } from "../common/durations.js";
 import { isMeasured, withAnother, without } from "../inputs/stops.js";
@@ -14,8 +14,8 @@ const ADDED = /^depot( \d+)?$| \(depot\)$/; // names of depots that are no rows 
 export const isAskable = (asked) => isMeasured(asked) && asked.stops?.length > 0 && asked.stops.every(({ location }) => location) && asked.vehicles.length > 0 && Boolean(secondsIn(asked));
 
 /**
- * What is given: `depot` is a name, `service` and `shift` are in seconds, `speed` is in km/h, and `reload` says whether vehicles load again at
- * the depot. Each is null if nothing is given,
+ * What is given: `depot` is a name, `service`, `shift` and `slack`, the time in hand, are in seconds, `speed` is in km/h, `leave` is early or
+ * late, and `reload` says whether vehicles load again at the depot. Each is null if nothing is given,
  * and undefined if it differs from row to row. `missing` counts the rows without.
  */
 export function everydayIn(asked) {
@@ -33,6 +33,8 @@ export function everydayIn(asked) {
     service: service && service * second,
     shift: shift?.length > 2 ? undefined : (shift?.map((time) => time * second) ?? shift),
     speed: speedIn(asked),
+    leave: asked.leave ?? "late",
+    slack: asked.slack ? asked.slack * second : null,
     reload: common(vehicles.map(({ start, reload = [] }) => Boolean(start) && reload.includes(start))),
     missing: { depot: vehicles.filter(isFree).length, service: lacking(services), shift: lacking(shifts) },
   };
@@ -48,13 +50,20 @@ function common(values) {
 const isFree = (vehicle) => vehicle.start === undefined && vehicle.end === undefined;
 
 /** Says what is missing, in one line; "" if nothing is. */
-export function missingSaid({ depot, service, shift, missing }) {
+export function missingSaid({ depot, service, shift, leave, missing }) {
   const said = [
     [depot, missing.depot, "No depot is given: vehicles", "start and end at any stop."],
     [service, missing.service, "No time at the stops is given:", "0 min.", "stops"],
-    [shift, missing.shift, "No shifts are given: vehicles", "leave at any time of the day."],
+    [shift, missing.shift, "No shifts are given: vehicles", leave === "early" ? "leave at midnight." : "leave at any time of the day."],
   ];
   return said.flatMap(([value, count, none, what, rows = "vehicles"]) => (count ? [`${value === null ? none : `${count} of the ${rows}:`} ${what}`] : [])).join(" ");
+}
+
+/** How long most stops take that say so, in the unit of the request; undefined if none does. */
+export function usualService(asked) {
+  const given = visitedIn(asked).flatMap(({ service }) => service ?? []);
+  const count = (value) => given.filter((each) => each === value).length;
+  return given.reduce((usual, value) => (count(value) > count(usual) ? value : usual), given[0]);
 }
 
 /** The stops at which no vehicle starts, ends or loads again. */
@@ -109,6 +118,15 @@ const speedIn = ({ objectives, clock }) => common([...objectives, typeof clock =
 export function withSpeed(asked, speed) {
   const faster = (source) => (source?.speed ? { ...source, speed } : source);
   return { ...asked, objectives: asked.objectives.map(faster), ...(asked.clock && { clock: faster(asked.clock) }) };
+}
+
+/** The request whose vehicles leave as `early` as they can, or as `late`. */
+export const withLeave = (asked, leave) => withMember(leave === "early" ? withClock(asked) : asked, "leave", leave === "early" ? leave : null);
+
+/** The request whose vehicles reach each stop so many seconds before its window closes; null takes that away. */
+export function withSlack(asked, seconds) {
+  const timed = withClock(asked);
+  return withMember(timed, "slack", seconds ? seconds / secondsIn(timed) : null);
 }
 
 /** The request whose vehicles load again where they start during the day, or nowhere. */
@@ -182,7 +200,7 @@ export function rememberedOf(asked) {
  * The request with what is remembered and not given, and what is said of that, in a few words each. A depot that is far from all
  * stops is one of another city.
  */
-export function recalled(asked, { depot, service, shift, speed, reload }) {
+export function recalled(asked, { depot, service, shift, speed, reload, leave, slack }) {
   if (!isAskable(asked)) return { asked, said: [] };
   const given = everydayIn(asked);
   const isHome = given.depot === null && depot && isNear(asked, depot.location);
@@ -191,6 +209,8 @@ export function recalled(asked, { depot, service, shift, speed, reload }) {
     [isHome && reload, withReload, true, "vehicles load again there"],
     [given.service === null && service > 0, withService, service, `${duration(service)} at each stop`],
     [given.shift === null && shift, withShift, shift, `shifts from ${shift?.map(timeText).join(" to ")}`],
+    [given.slack === null && slack > 0, withSlack, slack, `${duration(slack)} in hand`],
+    [given.leave !== leave && leave === "early", withLeave, leave, "vehicles leave as early as they can"],
     [given.speed && speed > 0 && given.speed !== speed, withSpeed, speed, `${speed} km/h`],
   ].filter(([isMeant]) => isMeant);
   return { asked: steps.reduce((changed, [, change, value]) => change(changed, value), asked), said: steps.map((step) => step.at(-1)) };

@@ -1,18 +1,19 @@
-/** Ask above the tables of a fleet what every dispatcher has: a depot, minutes at the stops, shifts, and a speed. */
+/** Ask above the tables of a fleet what every dispatcher has: a depot, minutes at the stops, shifts, time in hand, and a speed. */
 
 import { Placing } from "../inputs/placing.js";
 import { cellText, hintOf, withText } from "./cells.js";
-import { everydayIn, isAskable, missingSaid, recalled, rememberedOf, wholeShift, withDepot, withDepotAt, withReload, withService, withShift, withSpeed } from "./everyday.js";
+import { everydayIn, isAskable, missingSaid, recalled, rememberedOf, wholeShift, withDepot, withDepotAt, withLeave, withReload, withService, withShift, withSlack, withSpeed } from "./everyday.js";
 import { remember, remembered } from "./remembered.js";
 
 const element = (id) => document.getElementById(id);
 const COLUMNS = {
   service: { member: "service", type: "lasting" },
   shift: { member: "shift", type: "spans" },
+  slack: { member: "slack", type: "lasting" },
   time: { member: "time", type: "time" },
   speed: { member: "speed", type: "limit" },
 };
-const INPUTS = ["depot", "service", "shift", "speed"];
+const INPUTS = ["depot", "service", "shift", "slack", "speed"];
 
 export class EverydayForm {
   #onChange;
@@ -25,6 +26,7 @@ export class EverydayForm {
     this.#onChange = onChange;
     this.#placing = new Placing(element("place-depot"), element("everyday-help"), (location) => this.#take("depot", withDepot(this.#asked, { location })), () => {}, { once: true });
     element("everyday-reload").addEventListener("change", ({ target }) => this.#take("reload", withReload(this.#asked, target.checked)));
+    element("everyday-leave").addEventListener("change", ({ target }) => this.#take("leave", withLeave(this.#asked, target.value)));
     for (const name of INPUTS) element(`everyday-${name}`).addEventListener("change", ({ target }) => this.#typed(name, target));
   }
 
@@ -44,6 +46,8 @@ export class EverydayForm {
     element("everyday-depot").value = given.depot ?? "";
     element("everyday-service").value = cellText(given, COLUMNS.service, 1);
     element("everyday-shift").value = cellText(given, COLUMNS.shift, 1);
+    element("everyday-slack").value = cellText(given, COLUMNS.slack, 1);
+    element("everyday-leave").value = given.leave;
     element("everyday-speed").value = given.speed ?? "";
     Object.assign(element("everyday-reload"), { checked: Boolean(given.reload), indeterminate: given.reload === undefined, disabled: given.depot === null });
     element("everyday-speed").parentElement.hidden = given.speed === null;
@@ -86,7 +90,7 @@ export class EverydayForm {
     if (name === "depot") return text ? withDepotAt(this.#asked, text) : withoutDepot(this.#asked);
     const value = text ? read(name, text) : null;
     if (value === undefined || (name === "speed" && value === null)) return undefined;
-    return { service: withService, shift: withShift, speed: withSpeed }[name](this.#asked, value);
+    return { service: withService, shift: withShift, slack: withSlack, speed: withSpeed }[name](this.#asked, value);
   }
 
   /** Takes a request with something else in it, and remembers that. */

@@ -9,6 +9,8 @@ const NAMES = {
   service: "At stops in all",
   waiting: "Waiting in all",
   lateness: "Late in all",
+  earliness: "Early in all",
+  weighted_arrival: "Customer wait",
   overtime: "Overtime in all",
   longest: "Longest route",
   shortest: "Shortest route",
@@ -34,7 +36,7 @@ export function measuresOf({ measures = {}, lengths }, objectives, request) {
 
 function unitsOf(objectives, request) {
   const time = clockUnit(request);
-  const times = { driving: time, service: time, waiting: time, lateness: time, overtime: time };
+  const times = { driving: time, service: time, waiting: time, lateness: time, earliness: time, weighted_arrival: time, overtime: time };
   const route = unitOfRoutes(request);
   return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit, load_distance: loadUnit(objectives) };
 }

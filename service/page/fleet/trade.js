@@ -13,6 +13,8 @@ export const AGAINST = {
   unassigned: { title: "Orders left out", name: "orders left out", stops: "prize" },
   overtime: { title: "Overtime", name: "overtime", vehicles: "max_overtime" },
   lateness: { title: "Lateness", name: "lateness", stops: "due" },
+  earliness: { title: "Earliness", name: "earliness", stops: "due" },
+  weighted_arrival: { title: "Customer wait, by urgency", name: "customer wait", stops: "urgency" },
   imbalance: { title: "Longest minus shortest route", name: "imbalance" },
   load_distance: { title: "Load carried", name: "load carried", vehicles: "capacity" },
 };

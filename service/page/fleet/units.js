@@ -33,7 +33,7 @@ export function namesShown({ objectives: named, scale }, before, instance) {
 /** These objectives with units for those that are measures of plans of a request, or cost layers of its map. */
 export function withUnits(objectives, request) {
   const time = clockUnit(request ?? {});
-  const units = { lateness: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives) };
+  const units = { lateness: time, earliness: time, weighted_arrival: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives) };
   const unit = ({ name, measure }) => (measure ? (units[measure] ?? "") : request?.grid ? `${name} × m` : "");
   return objectives.map((each) => (each.unit ? each : { ...each, unit: unit(each) }));
 }

@@ -80,16 +80,23 @@ export function arrivalIn({ arrival, begin, rests, closing, ...visit }, said) {
 }
 
 /** When the stop of a visit is open, and when the visit is due, of those that are known. */
-export function limitsOf({ kind, windows, due }, said) {
+export function limitsOf({ windows, ...visit }, said) {
   const open = windows.length ? [`open ${spansIn(windows, said).join(" or ")}`] : [];
-  return kind === "visit" && due !== undefined ? [...open, `due ${said(due)}`] : open;
+  return [...open, ...dueIn(visit, said)];
+}
+
+/** When a visit is due, in words, such as "due 10:00 to 10:30", in a list; none where it is not due. */
+export function dueIn({ kind, wanted, due }, said) {
+  if (kind !== "visit" || due === undefined) return [];
+  return [`due ${wanted === undefined ? said(due) : spansIn([[wanted, due]], said)[0]}`];
 }
 
 /** Windows or breaks in words, such as "8:00 to 10:00". */
 export const spansIn = (spans, said) => spans.map(([from, to]) => `${said(from)} to ${said(to)}`);
 
-function punctual({ due, late }, lasting) {
+function punctual({ due, late, early }, lasting) {
   if (due === undefined) return "";
+  if (early) return `, ${lasting(early)} early`;
   return late ? `, ${lasting(late)} late` : ", on time";
 }
 

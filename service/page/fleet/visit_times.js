@@ -9,7 +9,7 @@ const NEAR = 1e-6; // times that differ by less, relative to them, are equal
  * What a vehicle does at each stop of a route: `kind` is start, visit, loading (again) or end;
  * `begin` and `end` are those of the visit, after the vehicle has arrived and waited; `waiting` is how long it waits before,
  * `rests` are breaks there, each `[from, to]`, and `leaves` is when it goes on; `due` is when a visit should begin, or a shift
- * ends, and `late` how much later that is; `windows` are those of the stop, and it `opens` when the visit begins, if it was
+ * ends, and `late` how much later that is; it is `wanted` from then on, if it is, and `early` says how much earlier that is; `windows` are those of the stop, and it `opens` when the visit begins, if it was
  * closed before, and `closes` after that, and must be reached `by` then; `released` is when the last load of the trip that begins there is released, 0
  * without one; `shift` is when the shift of a vehicle that starts there begins.
  *
@@ -28,10 +28,10 @@ export function visitTimes(route, { stops: asked, types, slack }) {
     const released = kind === "start" || kind === "loading" ? releaseOf(at, stops, kinds, asked) : 0;
     const ready = (time) => (kind === "loading" ? Math.max(time, released) : opened(windows, time));
     const times = timesAt(arrivals[at], ready, service, breaks[at]);
-    const until = [due].flat().at(-1) ?? (kind === "end" ? to : undefined);
+    const [wanted, until] = Array.isArray(due) ? due : [undefined, due ?? (kind === "end" ? to : undefined)];
     const opens = windows.find(([opening]) => Math.abs(times.begin - opening) <= NEAR * opening)?.[0];
     const closes = openIn(windows, times.begin)?.[1];
-    return { stop, kind, ...times, due: until, late: laterBy(times.begin, until), windows, opens, closes, by: closes - slack, released, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
+    return { stop, kind, ...times, wanted, early: laterBy(wanted ?? times.begin, times.begin), due: until, late: laterBy(times.begin, until), windows, opens, closes, by: closes - slack, released, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
   });
 }
 

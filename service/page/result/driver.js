@@ -5,7 +5,7 @@ import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { hoursOf } from "../fleet/times.js";
 import { hoursOfPlan } from "../fleet/timetable.js";
-import { routeNote, spansIn } from "../fleet/visit_sentence.js";
+import { dueIn, routeNote, spansIn } from "../fleet/visit_sentence.js";
 import { quoted } from "./exports.js";
 
 const TIMES = ["window", "arrives", "waits", "break", "leaves"];
@@ -52,8 +52,8 @@ function routesOfPlan(routes, movers, asked) {
 }
 
 /** The times of a visit in words: where a route starts it is only left, and where it ends only reached. */
-function inWords({ kind, arrival, waiting, rests, leaves, windows, due }, { said, lasting }) {
-  const until = kind === "visit" && due !== undefined ? [`due ${said(due)}`] : [];
+function inWords({ kind, arrival, waiting, rests, leaves, windows, wanted, due }, { said, lasting }) {
+  const until = dueIn({ kind, wanted, due }, said);
   return {
     window: [...(windows.length ? [spansIn(windows, said).join(" or ")] : []), ...until].join(", "),
     arrives: kind === "start" ? "" : said(arrival),

@@ -3,6 +3,7 @@
 import { counted } from "../common/numbers.js";
 import { cellText, headed, hintOf, isUnread, rowOf, secondsIn, withText } from "../fleet/cells.js";
 import { columnsOf, isShown } from "../fleet/columns.js";
+import { usualService } from "../fleet/everyday.js";
 import { detailColumns } from "../inputs/details.js";
 import { Placing } from "../inputs/placing.js";
 import { isMeasured } from "../inputs/stops.js";
@@ -33,9 +34,9 @@ export class Orders {
       onDelete: (row) => this.#take(this.#added.toSpliced(row, 1)),
     };
     this.#table = new EditableTable(element("orders"), told, "Order");
-    this.#placing = new Placing(element("place-order"), element("orders-help"), (location) => this.#take([...this.#added, { id: this.#freeName(), location }]), onWaiting);
+    this.#placing = new Placing(element("place-order"), element("orders-help"), (location) => this.#take([...this.#added, this.#timed({ id: this.#freeName(), location })]), onWaiting);
     element("add-order").addEventListener("click", () => {
-      this.#take([...this.#added, { id: this.#freeName() }]);
+      this.#take([...this.#added, this.#timed({ id: this.#freeName() })]);
       this.#table.focus(this.#added.length - 1);
     });
   }
@@ -90,11 +91,17 @@ export class Orders {
       const rows = (request.stops ?? []).map((stop, row) => ({ ...stop, told: textsOf(row) })).filter(({ location }) => location);
       const fresh = rows.filter(({ id }) => !this.#isKnown(id) && !this.#added.some((each) => each.id === id));
       help.textContent = saidOf(rows.length, fresh.length);
-      this.#take([...this.#added, ...fresh.map(({ id, location, demand, window, windows, service, told }) => JSON.parse(JSON.stringify({ id, location, demand, window, windows, service, told })))]);
+      this.#take([...this.#added, ...fresh.map(({ id, location, demand, window, windows, service, told }) => this.#timed(JSON.parse(JSON.stringify({ id, location, demand, window, windows, service, told }))))]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       help.textContent = `Not read: ${error.message}.`;
     }
+  }
+
+  /** An order that takes as long as most other stops, unless it says how long. */
+  #timed(order) {
+    const service = this.#asked.clock ? usualService(this.#asked) : undefined;
+    return service === undefined ? order : { service, ...order };
   }
 
   #isKnown(id) {

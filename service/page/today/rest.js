@@ -7,17 +7,18 @@ import { doneOf, leftOf } from "./progress.js";
  * What is asked of the service.
  *
  * @param {{ at: number, asked: object }} driven the number of the plan in its front, and the request that it is of
- * @param {{ vans: object[], now: number | null, out: Set<string>, removed: Set<string>, added: object[] }} day how far its
+ * @param {{ vans: object[], now: number | null, out: Set<string>, removed: Set<string>, added: object[], isHandFree: boolean }} day how far its
  *   vehicles have come, by `progressOf`, where each of them is in `tip`; the time, and in words; the vehicles that are out of
- *   service, by name; cancelled stops; and new ones
+ *   service, by name; cancelled stops; new ones; and whether the time in hand may be used up
  */
-export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, added }) {
+export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, added, isHandFree }) {
   const { time_limit: seconds, seed } = asked;
   const left = new Set(vans.flatMap(leftOf));
   const under = vans.flatMap((van, route) => (van.isOut || out.has(van.name) ? [{ route, ...wayOf(van, out.has(van.name), asked, nowSaid) }] : []));
   return {
     plan,
     ...(now !== null && { now }),
+    ...(isHandFree && { slack: 0 }),
     routes: under,
     add: added,
     remove: [...removed].filter((stop) => left.has(stop)),
@@ -47,14 +48,14 @@ export class FleetRest {
    * @param {object} body what was asked, by `bodyOf`
    * @param {object} day the day that the body is about
    */
-  constructor(driven, { routes, add }, day) {
+  constructor(driven, { routes, add, slack = driven.asked.slack }, day) {
     Object.assign(this, { driven, day });
     this.#under = new Set(routes.map(({ route }) => route));
     const { asked } = driven;
     const positions = routes.map(({ position }) => position).filter((position) => position?.id);
     const stops = [...asked.stops, ...add, ...positions];
     const details = asked.details?.map(({ column, texts }, at) => ({ column, texts: stops.map(({ id }, row) => texts[row] ?? day?.told?.get(id)?.[at] ?? "") }));
-    this.asked = this.instance = { ...asked, stops, details };
+    this.asked = this.instance = { ...asked, stops, details, slack };
     this.names = stops.map(({ id }) => id);
   }
 
@@ -63,16 +64,16 @@ export class FleetRest {
     const { routes, names } = this.driven;
     const vans = routes.map(({ vehicle, shift, place }, at) => ({ vehicle, shift, place: place ?? at, name: names[at] }));
     const details = this.asked.details?.map(({ texts }) => texts.slice(stops.length));
-    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under], details };
+    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under], details, slack: this.asked.slack };
   }
 
   /** The rest of a link; null if it says none of this request, as links come from anywhere. */
-  static of(request, { stops, vans, under, details }) {
+  static of(request, { stops, vans, under, details, slack }) {
     const isNamed = (each) => typeof each?.name === "string" && typeof each.vehicle === "string" && Number.isInteger(each.place);
     if (!areStops(stops) || !Array.isArray(vans) || !vans.every(isNamed) || !Array.isArray(under) || !under.every((at) => vans[at])) return null;
     const told = (at) => (Array.isArray(details?.[at]) ? details[at].map(String) : []);
     const asked = { ...request, details: request.details?.map(({ column, texts }, at) => ({ column, texts: [...texts, ...told(at)] })) };
-    return new FleetRest({ routes: vans, names: vans.map(({ name }) => name), asked }, { routes: under.map((route) => ({ route })), add: stops }, null);
+    return new FleetRest({ routes: vans, names: vans.map(({ name }) => name), asked }, { routes: under.map((route) => ({ route })), add: stops, ...(Number.isFinite(slack) && { slack }) }, null);
   }
 
   /** The answer of the service, whose vehicles have the names and the colours that they have in the plan that is driven. */

@@ -1,5 +1,6 @@
 /** A fleet's day while a plan of it is driven: what is done by now, what has changed, and the plan of what is left. */
 
+import { amount } from "../common/amounts.js";
 import { SECONDS, timeText } from "../common/durations.js";
 import { kindNamed } from "../common/kinds.js";
 import { withText } from "../fleet/cells.js";
@@ -88,6 +89,15 @@ export class Today {
     element("offer").hidden = !found.asked.clock || !this.#orders.canAdd;
     element("today-clock").hidden = !found.asked.clock;
     if (!found.asked.clock) this.#now = null;
+    this.#showHand(found.asked);
+  }
+
+  /** Asks whether vehicles that are late may use up the time in hand, if there is any. */
+  #showHand({ slack, ...asked }) {
+    const label = element("today-hand");
+    label.hidden = !slack;
+    label.control.checked = false;
+    label.lastChild.data = ` Vehicles that are late may use up the ${amount(slack ?? 0, { measure: "waiting", unit: clockUnit(asked) })} in hand`;
   }
 
   /** Takes the plan that is selected, and its number in the front: it is driven, unless it is proposed. */
@@ -105,7 +115,7 @@ export class Today {
   /** What is asked of the service: the `id` of the front, the `body`, and the `way` by which the rest is shown. Throws a Problem where something cannot be read. */
   get asked() {
     const added = this.#orders.added;
-    const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added, told: this.#orders.told };
+    const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added, told: this.#orders.told, isHandFree: !element("today-hand").hidden && element("today-hand").control.checked };
     const body = bodyOf(this.#driven, day);
     return { id: this.#found.state.answer.id, body, way: new FleetRest(this.#driven, body, day) };
   }
