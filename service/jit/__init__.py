@@ -5,6 +5,7 @@ import logging
 from service.jit.before_numba import IGNORED
 from service.jit.places import PRECOMPILED, folder, locked
 from service.jit.private_names import missing_name
+from service.jit.references import by_reference
 
 if (_missing := missing_name()) is None:
     from service.jit.kernels import allocating, compiled, inlined, standalone
@@ -22,6 +23,7 @@ __all__ = [
     "IGNORED",
     "PRECOMPILED",
     "allocating",
+    "by_reference",
     "compiled",
     "folder",
     "inlined",

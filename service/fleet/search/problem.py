@@ -10,6 +10,7 @@ from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.vehicles import VehicleType
+from service.jit import by_reference
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -26,6 +27,7 @@ _NEAR = 100  # stops that are near a stop, at most
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
 
+@by_reference
 class Problem(NamedTuple):
     """A fleet of n stops, v types of vehicles and d dimensions of loads, under m objectives.
 
@@ -93,6 +95,7 @@ class Problem(NamedTuple):
     rivals: Nodes  # (n, y), the stops that must not ride with each; -1 after the last
     ordered: bool  # whether stops have an order
     earlier: Flags  # (n, n), whether the first comes before the second; (1, 1) if none does
+    grows: bool  # whether a route with one more stop costs as much as its legs alone, at least
     bounded_below: bool  # whether a route may have too few stops, or be too short
     min_stops: Indices  # (v,)
     shortest: Array  # (v,)
@@ -172,6 +175,7 @@ def problem_of(fleet: Fleet) -> Problem:
         rivals=_rivals(rules),
         ordered=bool(rules.groups.ordered),
         earlier=_earlier(rules),
+        grows=not (rules.weighs_begins or any(vehicle.is_bounded_below for vehicle in vehicles)),
         bounded_below=any(vehicle.is_bounded_below for vehicle in vehicles),
         min_stops=np.array([vehicle.min_stops for vehicle in vehicles]),
         shortest=_floats([vehicle.shortest for vehicle in vehicles]),
@@ -286,6 +290,7 @@ def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
     return near
 
 
+@by_reference
 class Direction(NamedTuple):
     """What the search minimises: a weighted sum over routes, with limits on routes and plans.
 

@@ -35,6 +35,7 @@ from service.fleet.search.working_plan import (
 from service.jit import compiled, inlined
 
 _is_over = inlined(is_over)
+_ROUNDING = 1e-9  # more than the share of its cost by which that of a route is rounded
 
 
 class Place(NamedTuple):
@@ -134,6 +135,8 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
         return np.inf
     second = way(problem, profile, a, via, stop, 1) + way(problem, profile, stop, onward, b, 1)
     second -= plan.step[after, 1]
+    if _costs_too_much(state, slot, first, second, most):
+        return np.inf
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0 and not problem.reloads:
         loaded += _loaded(problem, plan, stop, spot, first)
@@ -156,6 +159,20 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
         later = _lateness(problem, plan, slot, stop, before)
         return np.inf if later == np.inf else cost + direction.lateness * (later - late)
     return cost
+
+
+@inlined
+def _costs_too_much(state: State, slot: int, first: float, second: float, most: float) -> bool:
+    """Return whether the legs alone cost at least `most`, by which a route grows with a stop.
+
+    Where legs grow, and nothing is better late than early, all that is measured grows.
+    """
+    problem, plan, direction = state
+    if not problem.grows or first < 0 or second < 0:
+        return False
+    cost = 0.0 if problem.clock == 0 else direction.costs[0] * first
+    cost += 0.0 if problem.clock == 1 else direction.costs[1] * second
+    return cost >= most + _ROUNDING * plan.plain[slot]
 
 
 @inlined

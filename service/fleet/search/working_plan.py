@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.search.problem import Array, Direction, Indices, Nodes, Problem
-from service.jit import compiled, inlined
+from service.jit import by_reference, compiled, inlined
 
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
 # what is saved; the number of the iteration; stops to insert; in how many places one is passed by,
@@ -17,6 +17,7 @@ BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS = 8, 9, 10, 11
 MOST_STATES = 24  # ways to have taken so many breaks up to a stop, of which none is always better
 
 
+@by_reference
 class WorkingPlan(NamedTuple):
     """Routes, the stops outside, and copies of what an iteration has changed."""
 
