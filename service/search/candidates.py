@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.jit import allocating, inlined
+from service.jit import by_reference, allocating, inlined
 from service.search.closing import NEVER_ADDED, is_closing
 from service.search.costs import Costs, make_costs, step_costs
 from service.search.kd_tree import (
@@ -33,6 +33,7 @@ POOL_BLOCK = 200_000  # costs computed between two checks of the deadline
 TREE_BLOCK = 500  # rows filled by a tree between two checks of the deadline
 
 
+@by_reference
 class CandidatePool(NamedTuple):
     """For each city, the union of its cheapest successors under a few weights, unordered."""
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.jit import compiled, inlined
+from service.jit import by_reference, compiled, inlined
 from service.objectives import OBJECTIVES
 from service.search.closing import (
     closing_cost,
@@ -24,6 +24,7 @@ SIDES = 4  # coordinates of a city in the first two planes
 LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
 
 
+@by_reference
 class Costs(NamedTuple):
     """The scaled costs of an instance, or its weighted sum: a matrix, or planes where it is empty.
 

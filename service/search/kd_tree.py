@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import allocating, compiled, inlined
+from service.jit import by_reference, allocating, compiled, inlined
 from service.search.costs import SIDES, Costs, step_costs
 from service.search.selection import select
 
@@ -23,6 +23,7 @@ LEAF = 8  # cities, at most, of a leaf
 WAITING = 64  # nodes that may wait while a tree is searched: one a level, and one more
 
 
+@by_reference
 class KdTrees(NamedTuple):
     """Trees of the same m cities, one for each of k weights."""
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from service.search.archive.layout import Archive
 from service.search.costs import Costs
 from service.search.working_tour import WorkingTour
+from service.jit import by_reference
 
 Array = NDArray[np.float64]
 
@@ -20,6 +21,7 @@ class WeightedCandidates(NamedTuple):
     candidate_costs: Array  # (k, n, candidates)
 
 
+@by_reference
 class SearchState(NamedTuple):
     """The costs, the weights, the tours found, and the tour that two-opt changes."""
 

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import by_reference, compiled, inlined
 
 Cities = NDArray[np.int32]
 
@@ -46,6 +46,7 @@ class QueuedTour(Protocol):
         """The place of the queue's head, and the number of cities in the queue."""
 
 
+@by_reference
 class WorkingTour(NamedTuple):
     """A tour, its inverse, both lengths, a saved copy of these, and a queue of cities."""
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import by_reference, compiled, inlined
 from service.objectives import OBJECTIVES
 
 Array = NDArray[np.float64]
@@ -17,6 +17,7 @@ ROUNDING = 2.0**-52  # relative: as much as two sums of the same steps may diffe
 WIDTH = 32  # points of a block at most, of more than two objectives
 
 
+@by_reference
 class Archive(NamedTuple):
     """Points with their tours by row, and blocks of rows whose points are neighbours.
 

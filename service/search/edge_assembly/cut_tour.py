@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import allocating, compiled, inlined
+from service.jit import by_reference, allocating, compiled, inlined
 from service.search.working_tour import wrap
 
 Cities = NDArray[np.int32]
@@ -21,6 +21,7 @@ MOST_CUTS = 400
 NONE = -1
 
 
+@by_reference
 class CutTour(NamedTuple):
     """A tour, its inverse, the cuts, and the circuits that its segments make."""
 

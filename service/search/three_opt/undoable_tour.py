@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import by_reference, compiled, inlined
 from service.search.working_tour import (
     dequeue,
     drop_queued,
@@ -21,6 +21,7 @@ Cities = NDArray[np.int32]
 MOST_CHANGES = 10_000  # that the log holds
 
 
+@by_reference
 class UndoableTour(NamedTuple):
     """A tour, its inverse, both lengths, the changes since it was saved, and a queue of cities.
 
