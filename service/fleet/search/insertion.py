@@ -26,7 +26,7 @@ _SELDOM = 3  # one time in so many, one trip more is tried where the stop fits w
 _FEW = 8  # of them that are in routes: then all routes are tried
 
 
-@inlined
+@compiled
 def best_place(state: State, stop: int, most: float) -> Place:
     """Return the cheapest place for a stop that costs less than `most`; slot -1 if there is none.
 
@@ -64,7 +64,7 @@ def new_slot(state: State, kind: int) -> int:
     return free_slot(problem, plan, kind) if plan.counts[USED] < direction.routes else -1
 
 
-@inlined
+@compiled
 def _anywhere(state: State, stop: int, best: Place) -> Place:
     """Return the cheapest place in all routes."""
     problem, plan, _ = state
