@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.jit import by_reference, allocating, inlined
+from service.jit import allocating, by_reference, inlined
 from service.search.closing import NEVER_ADDED, is_closing
 from service.search.costs import Costs, make_costs, step_costs
 from service.search.kd_tree import (

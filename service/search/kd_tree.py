@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import by_reference, allocating, compiled, inlined
+from service.jit import allocating, by_reference, compiled, inlined
 from service.search.costs import SIDES, Costs, step_costs
 from service.search.selection import select
 

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from service.jit import by_reference
 from service.search.archive.layout import Archive
 from service.search.costs import Costs
 from service.search.working_tour import WorkingTour
-from service.jit import by_reference
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import by_reference, allocating, compiled, inlined
+from service.jit import allocating, by_reference, compiled, inlined
 from service.search.working_tour import wrap
 
 Cities = NDArray[np.int32]
