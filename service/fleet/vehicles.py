@@ -72,6 +72,7 @@ class VehicleType:
         leaves_by: The latest departure: of a vehicle on its way, the present time.
         min_stops: The least stops of a route.
         shortest: The least time of a route; without a clock, its least length, as of `longest`.
+        home: Of a vehicle on its way, the stop where it started the day.
     """
 
     start: int | None = None
@@ -91,6 +92,7 @@ class VehicleType:
     breaks: tuple[Break, ...] = ()
     min_stops: int = 0
     shortest: float = 0.0
+    home: int | None = None
 
     @property
     def is_bounded_below(self) -> bool:

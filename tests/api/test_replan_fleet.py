@@ -71,7 +71,7 @@ def test_vans_go_on_with_what_they_carry_and_bring_nothing_new(
     visit = {"id": "visit", "location": [24.96, 60.18]}
     ways = [
         {"route": a, "done": first["stops"][1:2], "position": here},
-        {"route": b, "done": second["stops"][1:3]},
+        {"route": b, "done": second["stops"][1:3], "leaves": NOW + 45},
     ]
     removed = first["stops"][2]
     changes = {"plan": plan, "routes": ways, "add": [new, visit], "remove": [removed]}
@@ -87,9 +87,9 @@ def test_vans_go_on_with_what_they_carry_and_bring_nothing_new(
         everything = {f"order-{i}" for i in range(1, 13)} - done
         assert visited == everything | {"new", "visit"}
         on_the_way = {route["route"]: route for route in each["routes"] if "route" in route}
-        for number, start in ((a, "here"), (b, second["stops"][2])):
+        for number, start, leaves in ((a, "here", NOW), (b, second["stops"][2], NOW + 45)):
             route = on_the_way[number]
-            assert (route["stops"][0], route["arrivals"][0]) == (start, NOW)
+            assert (route["stops"][0], route["arrivals"][0]) == (start, leaves)
             assert set(visits_of(route)) - {"visit"} == carried[number]
         for route in each["routes"]:
             check_times(route, places)
@@ -144,8 +144,14 @@ def test_a_van_that_may_load_again_brings_a_new_order_after_it_has(client: httpx
         assert "route" not in route or "depot" in stops[: stops.index("new")]
 
 
-def test_a_van_that_is_back_brings_a_new_order_once_it_is_loaded(client: httpx.Client) -> None:
+@pytest.mark.parametrize("replanned", [False, True])
+def test_a_van_that_is_back_brings_a_new_order_once_it_is_loaded(
+    client: httpx.Client, replanned: bool
+) -> None:
     front = client.post("/fleet", json=request(count=1, capacity=[12], max_trips=None)).json()
+    if replanned:
+        way = {"route": 0, "done": front["front"][0]["routes"][0]["stops"][1:2]}
+        front = replan(client, front, now=500, plan=0, routes=[way]).json()
     (route,) = front["front"][0]["routes"]
     now = route["arrivals"][-1] + 60
     new = {"id": "new", "location": [24.93, 60.16], "demand": [1]}
@@ -158,8 +164,8 @@ def test_a_van_that_is_back_brings_a_new_order_once_it_is_loaded(client: httpx.C
     (again,) = answer["front"][0]["routes"]
     assert (again["stops"], again["route"]) == (["depot", "new", "depot"], 0)
     assert again["arrivals"][0] >= now
-    elsewhere = rest(route["stops"][-2])
-    assert elsewhere.json()["errors"][0]["code"] == "no-vehicle-for-stop"
+    for elsewhere in {route["stops"][0], route["stops"][-2]} - {"depot"}:
+        assert rest(elsewhere).json()["errors"][0]["code"] == "no-vehicle-for-stop"
 
 
 def test_the_rest_of_the_rest_is_replanned_too(client: httpx.Client, front: dict[str, Any]) -> None:

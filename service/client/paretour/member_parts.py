@@ -231,6 +231,7 @@ class RouteOnTheWayRequest(TypedDict, total=False):
     route: Required[int]
     done: Sequence[int | str] | ArrayLike
     position: int | str | NewStopRequest | None
+    leaves: float | None
     broken_down: bool
 
 

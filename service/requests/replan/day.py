@@ -28,9 +28,10 @@ class Way:
         done: The stops that it has visited.
         trips: The number of trips that have ended.
         departure: When it left; None without a clock.
+        leaves: When it leaves its position, if that is after the present time; else 0.
         broken_down: Whether it is out of service.
-        is_back: Whether all is done, and it stands where it started: it can load what it brings
-            next.
+        home: Where it loads before it leaves: where it started the day, if it did at a stop.
+        is_back: Whether all is done, and it stands where it loads: it can load what it brings next.
     """
 
     part: str
@@ -40,7 +41,9 @@ class Way:
     done: tuple[int, ...]
     trips: int
     departure: float | None
+    leaves: float
     broken_down: bool
+    home: int | None
     is_back: bool
 
 
@@ -89,7 +92,9 @@ def day_of(
             raise invalid(f"{part}/route", "given-twice", came=item.route)
         numbers.append(item.route)
         route, departure = routes[item.route], departures[item.route]
-        ways.append(_way(item, part, fleet.rules, route, departure, ids))
+        if item.leaves is not None and fleet.rules.clock is None:
+            raise invalid(f"{part}/leaves", "fleet-has-no-clock")
+        ways.append(_way(item, part, fleet, route, departure, ids))
     waiting = tuple(route for number, route in enumerate(routes) if number not in numbers)
     return DaySoFar(tuple(ways), tuple(numbers), waiting)
 
@@ -121,15 +126,18 @@ def _driven(
 def _way(
     item: RouteOnTheWay,
     part: str,
-    rules: Rules,
+    fleet: UnmeasuredFleet,
     route: Route,
     departure: float | None,
     ids: Mapping[str, int],
 ) -> Way:
+    rules = fleet.rules
     done = _done(item, part, rules, route, ids)
     after = max((route.stops.index(stop) for stop in done), default=-1) + 1
     vehicle = rules.vehicles[route.vehicle]
     reload = vehicle.reload
+    is_rest = fleet.vehicles[route.vehicle].route is not None
+    home = vehicle.home if is_rest else vehicle.start
     position = _position(item, part, rules, route, done, ids)
     skipped = [s for s in route.stops[:after] if s not in done and s not in reload]
     left = (*skipped, *route.stops[after:])
@@ -141,8 +149,10 @@ def _way(
         done=done,
         trips=sum(stop in reload for stop in route.stops[:after]),
         departure=departure,
+        leaves=item.leaves or 0.0,
         broken_down=item.broken_down,
-        is_back=position is not None and position == vehicle.start and set(left) <= {*reload},
+        home=home,
+        is_back=position is not None and position == home and set(left) <= {*reload},
     )
 
 

@@ -39,6 +39,11 @@ class RouteOnTheWay(StrictModel):
         description="where it goes on: a stop that is done or a depot, or a new place in the form"
         " of a stop; by default the last stop that is done, or its start",
     )
+    leaves: Cost | None = Field(
+        default=None,
+        description="when it leaves there, if that is after the present time: at the end of the"
+        " visit that has begun",
+    )
     broken_down: bool = Field(
         default=False,
         description="whether its vehicle is out of service: other vehicles bring what it carries,"

@@ -193,14 +193,16 @@ class _Rest:
         if position is None:
             position = self._all.n + list(self._all.new).index(f"{way.part}/position")
         timed = self._rules.clock is not None
-        gone = 0.0 if way.departure is None else max(0.0, self._now - way.departure)
+        leaves = max(self._now, way.leaves)
+        gone = 0.0 if way.departure is None else max(0.0, leaves - way.departure)
         visits, trips = vehicle.max_stops, vehicle.max_trips
         return replace(
             vehicle,
             count=1,
             start=position,
-            shift=(self._now, max(self._now, vehicle.shift[1])) if timed else vehicle.shift,
-            leaves_by=self._now if timed and not way.is_back else inf,
+            home=way.home,
+            shift=(leaves, max(leaves, vehicle.shift[1])) if timed else vehicle.shift,
+            leaves_by=leaves if timed and not way.is_back else inf,
             longest=max(0.0, vehicle.longest - gone),
             fixed=0.0,
             max_stops=None if visits is None else max(0, visits - len(way.done)),
@@ -298,7 +300,8 @@ class _Rest:
     def _placed(self, vehicle: VehicleType) -> VehicleType:
         start, end = (None if e is None else self._place[e] for e in (vehicle.start, vehicle.end))
         reload = tuple(self._place[stop] for stop in vehicle.reload)
-        return replace(vehicle, start=start, end=end, reload=reload)
+        home = None if vehicle.home is None else self._place.get(vehicle.home)
+        return replace(vehicle, start=start, end=end, reload=reload, home=home)
 
     def _sources(self) -> list[Source]:
         """Return the sources of both costs between the stops of the rest."""
