@@ -48,7 +48,7 @@ PROGRESS = """async ([driven, now, turned]) => {
     [
         (500, [], ["", False, 0, "leaves at 8:30"]),
         (525, [], ["", True, 0.5, "0 of 2 done, on the way to A; 4 on board"]),
-        (545, [], ["A", True, 0, "1 of 2 done, at A; 2 on board"]),
+        (545, [], ["A", True, 0, "1 of 2 done, at A until 9:10; 2 on board"]),
         (575, [], ["A", True, 0.5, "1 of 2 done, on the way to B; 2 on board"]),
         (635, [], ["AB", True, 0.5, "2 of 2 done, on the way to depot; 0 on board"]),
         (660, [], ["AB", True, 0, "all 2 done, back at depot"]),
@@ -133,7 +133,7 @@ def test_a_replanning_says_how_far_the_vehicles_are_and_what_has_changed(node: N
     broken, *_ = node.evaluate(BODY, [driven, 635, [[3, 4], [5, 6]], ["van 1"], [], []])
     assert broken["routes"] == [
         {"route": 0, "done": ["A", "B"], "broken_down": True},
-        {"route": 1, "done": ["C"]},
+        {"route": 1, "done": ["C"], "leaves": 640},
     ]
     by_costs, *_ = node.evaluate(BODY, [DRIVEN, 575, [[3, 4], None], [], [], []])
     assert by_costs["routes"] == [{"route": 0, "done": ["A"]}]

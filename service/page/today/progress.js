@@ -8,7 +8,8 @@ import { customersIn } from "../inputs/details.js";
 /**
  * Each route of a plan: its `name`, and its `visits`, each with the `stop`, the `customer` there, its `kind` as of `visitTimes`, whether it is
  * `done`, and with a clock `begin`, when it begins; `isOut`, whether its vehicle has left; `isBack`, whether all is done;
- * and where the vehicle is: `at` is the visit that it goes on from, and `share` how far it has come from there to the next.
+ * and where the vehicle is: `at` is the visit that it goes on from, `share` how far it has come from there to the next, and `leaves` when it
+ * leaves there, if that is later; null if it is not.
  * A visit that has begun is done. Once somebody has taken a stop back or added one, the vehicle is at the last that is done.
  *
  * @param {{ routes: object[], names: string[], asked: object }} driven the plan that is driven
@@ -35,6 +36,7 @@ function vanOf(name, visits, now, turned) {
     isOut: planned[0] || known.some(isDone),
     isBack: known.every(({ kind, done }) => kind !== "visit" || done) && (now === null || isTurned || planned.at(-1)),
     at: Math.max(last, 0),
+    leaves: !isTurned && visits[last]?.leaves > now ? visits[last].leaves : null,
     share: isTurned ? 0 : shareOf(visits[last], visits[last + 1], now),
   };
 }

@@ -30,7 +30,8 @@ export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, 
 /** A vehicle that has left: the service has it go on from the last stop done, unless it is somewhere else. */
 function wayOf(van, isBroken, asked, nowSaid) {
   const position = isBroken ? undefined : positionOf(van, asked, nowSaid);
-  return { done: doneOf(van), ...(position !== undefined && { position }), ...(isBroken && { broken_down: true }) };
+  const leaves = isBroken ? null : van.leaves;
+  return { done: doneOf(van), ...(leaves !== null && { leaves }), ...(position !== undefined && { position }), ...(isBroken && { broken_down: true }) };
 }
 
 function positionOf({ name, visits, at, share, tip }, asked, nowSaid) {

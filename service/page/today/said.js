@@ -1,5 +1,6 @@
 /** Say how far a vehicle has come, and what it has on board. */
 
+import { knownFleet } from "../fleet/known_fleet.js";
 import { doneOf, leftOf } from "./progress.js";
 
 /**
@@ -17,13 +18,13 @@ export function vanSaid(van, { isOutOfService, clock, known, vehicle }) {
 }
 
 function whereOf(van, clock) {
-  const { visits, at, share, isOut, isBack } = van;
+  const { visits, at, share, leaves, isOut, isBack } = van;
   const done = doneOf(van).length;
   const all = done + leftOf(van).length;
   if (!isOut) return clock ? `leaves at ${clock.said(visits[0].leaves)}` : "has not left";
   if (isBack) return `all ${all} done${visits[at].kind === "end" ? `, back at ${visits[at].stop}` : ""}`;
   const next = visits.slice(at + 1).find(({ done: isDone }) => !isDone);
-  const where = share >= 1 ? `waits at ${next.stop}` : share > 0 ? `on the way to ${next.stop}` : `at ${visits[at].stop}`;
+  const where = share >= 1 ? `waits at ${next.stop}` : share > 0 ? `on the way to ${next.stop}` : `at ${visits[at].stop}${leaves === null ? "" : ` until ${clock.said(leaves)}`}`;
   return `${done} of ${all} done, ${where}`;
 }
 
@@ -52,9 +53,10 @@ const NO_LOADING =
 export function loadingSaid(vans, routes, { vehicles, stops }, out) {
   if (!stops.some(({ demand }) => demand?.some((amount) => amount > 0))) return "";
   const loads = (id) => vehicles.some((each) => each.id === id && each.reload?.length);
-  const isHome = ({ isBack, visits, at }) => isBack && visits[at].kind === "end" && visits[at].stop === visits[0].stop;
+  const { types } = knownFleet({ stops, vehicles });
+  const isHome = ({ isBack, visits, at }, { vehicle }) => isBack && visits[at].kind === "end" && visits[at].stop === types.get(vehicle)?.start;
   const isSpare = ({ id, count = 1 }) => routes.filter(({ vehicle }) => vehicle === id).length < count;
-  const canLoad = vans.some((van, at) => !out.has(van.name) && (!van.isOut || isHome(van) || loads(routes[at].vehicle))) || vehicles.some(isSpare);
+  const canLoad = vans.some((van, at) => !out.has(van.name) && (!van.isOut || isHome(van, routes[at]) || loads(routes[at].vehicle))) || vehicles.some(isSpare);
   return canLoad ? "" : NO_LOADING;
 }
 
