@@ -28,6 +28,7 @@ _STRICT = 100.0  # what a unit over a limit costs, in units of the first objecti
 _DEAR = 10.0  # what a stop outside that must be visited costs at first, in the same
 _HOTTEST, _COLDEST = 0.1, 0.001  # temperatures, in the largest leg of each direction
 _HEAT, _POWER = 0.0008, 0.65  # the first temperature after one ruin per stop, and how it grows
+_HOT_STOPS = 250  # stops; with more, searches are as hot as with so many
 _UNLIMITED = 0.25  # share of the directions under three objectives that leave out a limit
 _BOUNDED = 0.5  # share of the further directions with bounds on sums
 _UNLIMITED_AGAIN = 0.1  # share of the further directions under two objectives without a limit
@@ -91,7 +92,7 @@ class Directions:
         self._random = random
         self._points = points
         self._left = left
-        self._per_stop = ruins / max(1, len(fleet.rules.clients))
+        self._per_stop = ruins / max(1, min(len(fleet.rules.clients), _HOT_STOPS))
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
         self._bound = _least_longest(fleet)
         optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
