@@ -23,12 +23,17 @@ from service.fleet.schedule import REMEMBERED, Schedule, legs, schedule, trips_o
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
     """Return the lengths of a route, before prizes and fixed costs.
 
-    By the clock's costs that is its duration, by others the sum of its legs. The imbalance of a
-    plan is that of the lengths that routes have here.
+    By the clock's costs that is its duration, by others the sum of its legs; the first one is at
+    the prices of its vehicle. The imbalance of a plan is that of the lengths that routes have here.
     """
     times = None if fleet.rules.clock is None else schedule(fleet, route)
     pairs = zip(fleet.rules.over, fleet.rules.layers, strict=True)
-    return tuple(_length(fleet, route, times, over, layer) for over, layer in pairs)
+    first, *others = (_length(fleet, route, times, over, layer) for over, layer in pairs)
+    vehicle = fleet.rules.vehicles[route.vehicle]
+    first *= vehicle.per_distance
+    if times is not None and vehicle.per_time:
+        first += vehicle.per_time * times.duration
+    return (first, *others)
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, ...]:
@@ -113,7 +118,9 @@ def _times(fleet: Fleet, plan: Plan, schedules: list[Schedule]) -> dict[str, flo
     assert rules.clock is not None
     found = {
         "driving": sum(sum(legs(fleet, route, rules.clock)) for route in plan.routes),
-        "service": sum(rules.visits[stop].service for stop in plan.visited()),
+        "service": sum(
+            rules.service(each.vehicle, stop) for each in plan.routes for stop in each.stops
+        ),
         "waiting": sum(times.waiting for times in schedules),
     }
     allowed = {

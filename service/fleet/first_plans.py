@@ -11,7 +11,7 @@ from service.construction.first_tours import MIN_CONSTRUCTED, Constructor, const
 from service.errors import Refusal
 from service.fleet.conflicts import FEW_STOPS
 from service.fleet.evaluation import plan_lengths
-from service.fleet.fleet import LAYERS, Array, Fleet
+from service.fleet.fleet import LAYERS, Array, Fleet, prices_of
 from service.fleet.left_out import with_all_stops
 from service.fleet.optimal_split import (
     FleetArrays,
@@ -129,7 +129,7 @@ class Cutter:
             raise Refusal("no-plan", reason=reason)
         self._stock = stock_of(fleet.rules)
         self._sequences = sequences[: _MOST_ROUTES // routes]
-        self._tables = [route_table(arrays, sequence, most) for sequence in self._sequences]
+        self._tables = [_table(fleet.rules, arrays, each, most) for each in self._sequences]
         steps = len(self._sequences) * routes * self._stock.states
         self._begins = most if steps * most <= _CYCLIC_STEPS else 1
         self._cuts = max(_FEWEST, int(_ALL_STEPS / (steps * self._begins)))  # there is time for
@@ -231,8 +231,10 @@ class Cutter:
         """
         rules = self._fleet.rules
         by_layer = np.zeros(LAYERS)
-        for over, layer, weight in zip(rules.over, rules.layers, weights, strict=True):
-            by_layer[layer] += weight if over == "sum" else 0.0
+        for index, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
+            if over == "sum" and not (index == 0 and rules.priced):
+                by_layer[layer] += weights[index]
+        prices = weights[0] * prices_of(rules)[:, np.newaxis, np.newaxis]
         each_vehicle = weights[rules.over.index("vehicles")] if "vehicles" in rules.over else 0.0
         lost = weights[rules.over.index("unassigned") if "unassigned" in rules.over else 0]
         fixed = np.array([vehicle.fixed for vehicle in rules.vehicles])[:, np.newaxis, np.newaxis]
@@ -244,10 +246,32 @@ class Cutter:
             skipping = [inf if prize is None else lost * prize for prize in prizes]
             bounded = np.zeros(feasible.shape) if limited is None else lengths[..., limited]
             extra = weights[0] * fixed + each_vehicle
-            cost = np.where(feasible, lengths @ by_layer + extra, inf)
+            summed = lengths @ by_layer
+            if rules.priced:
+                summed += (lengths * prices).sum(axis=-1)
+            cost = np.where(feasible, summed + extra, inf)
             # The compiled code expects this layout.
             found.append(RouteCosts(cost, np.ascontiguousarray(bounded), np.array(skipping)))
         return found
+
+
+def _table(rules: Rules, arrays: FleetArrays, sequence: Indices, most: int) -> Array:
+    """Return the lengths of all routes along a sequence, as `route_table` does.
+
+    Each type of vehicles drives and serves at its own speed.
+    """
+    paces = list(map(rules.pace, range(len(rules.vehicles))))
+    if len(set(paces)) == 1 and paces[0].speed == 1:
+        return route_table(arrays._replace(service=np.array(paces[0].services)), sequence, most)
+    tables = []
+    for kind, (speed, services) in enumerate(paces):
+        names = ("ends", "capacity", "shift", "leaves_by", "longest")
+        own = {name: getattr(arrays, name)[kind : kind + 1] for name in names}
+        costs = arrays.costs.copy()
+        costs[arrays.clock] /= speed
+        driven = arrays._replace(costs=costs, service=np.array(services), **own)
+        tables.append(route_table(driven, sequence, most))
+    return np.concatenate(tables)
 
 
 def plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
@@ -318,6 +342,6 @@ def _begin(rules: Rules, leg: float) -> float:
     """Return a time before which no vehicle needs to leave, if legs are at most this long."""
     if rules.leave == "early":
         return min(vehicle.shift[0] for vehicle in rules.vehicles)
-    route = rules.n * leg + sum(visit.service for visit in rules.visits)
+    route = rules.n * leg + sum(visit.longest_service for visit in rules.visits)
     first = min((time for span in rules.spans for time in span if 0 < time < inf), default=0.0)
     return max(0.0, first - route, min(vehicle.shift[0] for vehicle in rules.vehicles))

@@ -219,13 +219,28 @@ class Fleet:
         It is the largest leg, of lateness and earliness by the clock and of imbalance in the costs
         by which routes are compared; otherwise one vehicle, the largest prize, the most overtime of
         a vehicle, the largest leg with the largest capacity, or with the sum of all urgencies.
+        Times are those of the slowest vehicle, and the first unit is at the highest prices.
         """
-        pairs = zip(self.rules.over, self.rules.layers, strict=True)
+        rules = self.rules
+        pairs = zip(rules.over, rules.layers, strict=True)
         units = np.array([self._unit(over, layer) for over, layer in pairs])
+        if rules.priced:
+            units[0] *= max(vehicle.per_distance for vehicle in rules.vehicles)
+        if rules.clock is not None:
+            highest = max(vehicle.per_time for vehicle in rules.vehicles)
+            units[0] += highest * self._slowest_legs[rules.clock]
         return np.where(units > 0, units, 1.0)
 
+    @cached_property
+    def _slowest_legs(self) -> Array:
+        """The largest of each cost of a leg, as the slowest vehicle drives it, shape (2,)."""
+        kinds = range(len(self.rules.vehicles))
+        slowest = [min(self.rules.speed(kind, layer) for kind in kinds) for layer in range(LAYERS)]
+        legs: Array = self.largest_legs / slowest
+        return legs
+
     def _unit(self, over: Over | Measure, layer: int) -> float:
-        legs, rules = self.largest_legs, self.rules
+        legs, rules = self._slowest_legs, self.rules
         match over:
             case "vehicles":
                 return 1.0
@@ -277,6 +292,16 @@ def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:
     return [0]
 
 
+def prices_of(rules: Rules) -> Array:
+    """Return what a unit of both costs adds to a first length that is a sum, shape (v, 2)."""
+    prices = np.zeros((len(rules.vehicles), LAYERS))
+    if rules.over[0] == "sum":
+        prices[:, 0] = [vehicle.per_distance for vehicle in rules.vehicles]
+        if rules.clock is not None:
+            prices[:, rules.clock] += [vehicle.per_time for vehicle in rules.vehicles]
+    return prices
+
+
 def default_reference_point(fleet: Fleet) -> Array:
     """Return lengths above those of sensible plans under m objectives, shape (m,).
 
@@ -284,7 +309,8 @@ def default_reference_point(fleet: Fleet) -> Array:
     objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
     imbalance by the clock they are all services, and the time from the first shift or window to the
     end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of
-    weighted arrivals each may be as late.
+    weighted arrivals each may be as late. The first one is at the highest prices, and visits take
+    as long as by the slowest vehicles.
     """
     rules = fleet.rules
     point = rules.n * fleet.scale
@@ -292,16 +318,21 @@ def default_reference_point(fleet: Fleet) -> Array:
     point[0] += 0.0 if "unassigned" in rules.over else prizes
     point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
     vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+    slowest = max(vehicle.service_factor for vehicle in rules.vehicles)
+    services = slowest * sum(visit.longest_service for visit in rules.visits)
     for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
         timed = {"lateness": True, "earliness": True, "imbalance": rules.clock is not None}
         costs = over in ("sum", "max") and layer == rules.clock
-        if costs or timed.get(over, False):
-            point[objective] += sum(visit.service for visit in rules.visits)
+        price = float(costs or timed.get(over, False))
+        if objective == 0:
+            price *= max(vehicle.per_distance for vehicle in rules.vehicles)
+            price += max(vehicle.per_time for vehicle in rules.vehicles)
+        if price:
+            point[objective] += price * services
             once = over in ("max", "imbalance")
-            point[objective] += _waiting(rules) * (1 if once else vehicles)
+            point[objective] += price * _waiting(rules) * (1 if once else vehicles)
         elif over == "weighted_arrival":
-            latest = sum(visit.service for visit in rules.visits) + _waiting(rules)
-            point[objective] += latest * _urgency(rules)
+            point[objective] += (services + _waiting(rules)) * _urgency(rules)
     return point
 
 

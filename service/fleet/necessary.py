@@ -63,7 +63,10 @@ def least_lengths(fleet: Fleet) -> Array:
             total = np.where(longest, of_stops.max(axis=1), of_stops.sum(axis=1))
             least = np.maximum(least, total)
     least[[over not in ("sum", "max") for over in rules.over]] = 0.0
-    return least
+    least[0] *= min(vehicle.per_distance for vehicle in rules.vehicles)
+    kinds = range(len(rules.vehicles))
+    fastest = [max(rules.speed(kind, layer) for kind in kinds) for layer in rules.layers]
+    return least / fastest
 
 
 def _required(rules: Rules) -> list[int]:
@@ -195,7 +198,8 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
     for each in rules.shipments:
         pickup = rules.visits[each.pickup]
         opens, closes = pickup.windows[0][0], rules.windows[each.delivery][0][1]
-        if pickup.prize is None and is_over(opens + pickup.service, closes):
+        soonest = opens + min(rules.service(k, each.pickup) for k in range(len(rules.vehicles)))
+        if pickup.prize is None and is_over(soonest, closes):
             yield Obstacle("delivered-too-early", (each.delivery,), (each.pickup,))
 
 

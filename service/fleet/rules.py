@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,18 @@ Rule = Literal[
     "min_stops",
     "shortest",
 ]
+
+
+class Pace(NamedTuple):
+    """How a type of vehicles drives and serves.
+
+    Attributes:
+        speed: What the times of legs are divided by.
+        services: How long each visit takes.
+    """
+
+    speed: float
+    services: tuple[float, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,6 +202,24 @@ class Rules:
         """Whether some vehicles may load again on their way."""
         return any(vehicle.reload for vehicle in self.vehicles)
 
+    @cached_property
+    def priced(self) -> bool:
+        """Whether the first length of some route is not just that of its first costs."""
+        return any((each.per_distance, each.per_time) != (1.0, 0.0) for each in self.vehicles)
+
+    def service(self, vehicle: int, stop: int) -> float:
+        """Return how long a type of vehicles takes to visit a stop."""
+        return self.visits[stop].service_by(vehicle) * self.vehicles[vehicle].service_factor
+
+    def speed(self, vehicle: int, layer: int) -> float:
+        """Return what a type of vehicles divides a cost of its legs by: 1 unless it is the time."""
+        return self.vehicles[vehicle].speed_factor if layer == self.clock else 1.0
+
+    def pace(self, vehicle: int) -> Pace:
+        """Return how a type of vehicles drives and serves."""
+        services = tuple(self.service(vehicle, stop) for stop in range(self.n))
+        return Pace(self.vehicles[vehicle].speed_factor, services)
+
     def servers(self, stop: int) -> frozenset[int]:
         """Return the types of vehicles that may visit a stop: by its skills, and if it names some.
 
@@ -236,8 +266,7 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
     _check_initial_load(rules, vehicle, part)
     _check_trips(rules, vehicle, part)
     _check_breaks(rules, vehicle, part)
-    if vehicle.fixed and rules.over[0] == "max":
-        raise invalid(f"{part}/fixed", "unsummed")
+    _check_prices(rules, vehicle, part)
     for name, given in (("longest", vehicle.longest != inf), ("shortest", vehicle.shortest > 0)):
         if rules.limited is None and given:
             raise invalid(f"{part}/{name}", "unlimited")
@@ -245,6 +274,26 @@ def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
         raise invalid(f"{part}/shortest", "over-longest", limit=vehicle.longest)
     if vehicle.max_stops is not None and vehicle.min_stops > vehicle.max_stops:
         raise invalid(f"{part}/min_stops", "over-max-stops", limit=vehicle.max_stops)
+
+
+def _check_prices(rules: Rules, vehicle: VehicleType, part: str) -> None:
+    """Raise a refusal of prices and factors that count in nothing."""
+    prices = {
+        "fixed": vehicle.fixed > 0,
+        "per_distance": vehicle.per_distance != 1,
+        "per_time": vehicle.per_time > 0,
+    }
+    for name, given in prices.items():
+        if given and rules.over[0] == "max":
+            raise invalid(f"{part}/{name}", "unsummed")
+    timed = {
+        "per_time": vehicle.per_time > 0,
+        "speed_factor": vehicle.speed_factor != 1,
+        "service_factor": vehicle.service_factor != 1,
+    }
+    for name, given in timed.items():
+        if given and rules.clock is None:
+            raise invalid(f"{part}/{name}", "untimed")
 
 
 def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
@@ -328,6 +377,7 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
         _check_depot(visit, part)
     for name, timed in (
         ("service", visit.service),
+        ("services", visit.services),
         ("due", visit.due < inf or visit.wanted > 0),
         ("release", visit.release),
     ):
@@ -350,6 +400,7 @@ def _check_depot(visit: Visit, part: str) -> None:
         ("window", visit.windows != (ALWAYS,)),
         ("demand", any(visit.demand)),
         ("service", visit.service),
+        ("services", visit.services),
         ("prize", visit.prize is not None),
         ("due", visit.due < inf or visit.wanted > 0),
         ("release", visit.release),

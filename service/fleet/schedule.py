@@ -202,8 +202,10 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
     A trip begins when all that it brings is released.
     """
     vehicle, visits = rules.vehicles[route.vehicle], rules.visits
-    known = rules.windows
-    stays = [Stay(known[i], visits[i].service, visits[i].due) for i in route.stops]
+    stays = [
+        Stay(rules.windows[stop], rules.service(route.vehicle, stop), visits[stop].due)
+        for stop in route.stops
+    ]
     if len(trips) > 1:
         released = iter(trips[1:])
         for place, stop in enumerate(route.stops):
@@ -232,5 +234,6 @@ def trips_of(rules: Rules, route: Route) -> list[list[int]]:
 
 
 def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
-    """Return the costs of the legs of a route in one objective."""
-    return fleet.legs_along(objective, path_of(fleet.rules, route))
+    """Return what the legs of a route cost its vehicle in one objective."""
+    speed = fleet.rules.speed(route.vehicle, objective)
+    return [leg / speed for leg in fleet.legs_along(objective, path_of(fleet.rules, route))]

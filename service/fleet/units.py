@@ -42,6 +42,7 @@ class Units:
             replace(
                 visit,
                 service=_scaled(visit.service, time),
+                services=tuple(_scaled(each, time) for each in visit.services),
                 windows=tuple(_scaled_span(window, time) for window in visit.windows),
                 due=_scaled_bound(visit.due, time),
                 wanted=_scaled(visit.wanted, time),
@@ -59,6 +60,7 @@ class Units:
                 fixed=_scaled(vehicle.fixed, extra),
                 max_overtime=_scaled(vehicle.max_overtime, time),
                 leaves_by=_scaled_bound(vehicle.leaves_by, time),
+                per_time=_scaled(vehicle.per_time, extra - time),
                 breaks=tuple(
                     (_scaled(opens, time), _scaled(closes, time), _scaled(length, time))
                     for opens, closes, length in vehicle.breaks

@@ -26,6 +26,7 @@ class Visit:
         wanted: The time before which the visit should not begin. If it does, the plan is early by
             the difference.
         urgency: What a unit of time until the visit begins counts in weighted arrivals.
+        services: How long the visit takes by each type of vehicles; empty where all take `service`.
     """
 
     demand: tuple[int, ...] = ()
@@ -38,6 +39,16 @@ class Visit:
     vehicles: tuple[int, ...] = ()
     wanted: float = 0.0
     urgency: float = 1.0
+    services: tuple[float, ...] = ()
+
+    def service_by(self, vehicle: int) -> float:
+        """Return how long the visit takes by a type of vehicles, before its factor."""
+        return self.services[vehicle] if self.services else self.service
+
+    @property
+    def longest_service(self) -> float:
+        """How long the visit takes by the slowest type of vehicles, before its factor."""
+        return max(self.services, default=self.service)
 
 
 @dataclass(frozen=True)
@@ -73,6 +84,10 @@ class VehicleType:
         min_stops: The least stops of a route.
         shortest: The least time of a route; without a clock, its least length, as of `longest`.
         home: Of a vehicle on its way, the stop where it started the day.
+        speed_factor: By how much they are faster than the clock's costs say.
+        service_factor: By what the service of a stop is multiplied.
+        per_distance: The price of each unit of the first costs of their legs.
+        per_time: The price of each unit of the time of their routes.
     """
 
     start: int | None = None
@@ -93,6 +108,10 @@ class VehicleType:
     min_stops: int = 0
     shortest: float = 0.0
     home: int | None = None
+    speed_factor: float = 1.0
+    service_factor: float = 1.0
+    per_distance: float = 1.0
+    per_time: float = 0.0
 
     @property
     def is_bounded_below(self) -> bool:

@@ -282,8 +282,12 @@ class _Search:
         rules = self._fleet.rules
         others = [each for n, each in enumerate(self._of_routes) if n != places.number]
         found = []
+        vehicle = rules.vehicles[places.vehicle]
         for m, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
             own = self._least_length(places, known, over, layer)
+            if m == 0:
+                own = vehicle.per_distance * own
+                own = own + vehicle.per_time * known.duration if vehicle.per_time else own
             lengths = [each[m] for each in others]
             match over:
                 case "max":
@@ -293,7 +297,7 @@ class _Search:
                 case _:
                     total = own + sum(lengths)
             added = places.number == len(self._of_routes) and m == 0
-            fixed = rules.vehicles[places.vehicle].fixed if added else 0.0
+            fixed = vehicle.fixed if added else 0.0
             found.append(total + fixed + self._constants[m] - self._base[m])
         return np.stack(found, axis=-1)
 

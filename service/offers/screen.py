@@ -83,7 +83,7 @@ class _Screen:
         assert rules.clock is not None
         self._fleet, self._rules = slotted.fleet, rules
         self._order, self._visit = slotted.order, rules.visits[slotted.order]
-        self._vehicle = rules.vehicles[places.vehicle]
+        self._kind, self._vehicle = places.vehicle, rules.vehicles[places.vehicle]
         self._lenient = slotted.lenient
         self._opens, closes = np.array(slotted.slots, np.float64).T
         self._closes = closes - rules.slack
@@ -96,10 +96,10 @@ class _Screen:
         to, back = self._legs_to(places - 1), self._legs_from(places)
         begin, late, lateness = self._visited(to)
         reached = self._reached(places) + to
-        arrival = begin + self._visit.service
+        arrival = begin + self._serving(self._visit)
         end, late, lateness = self._driven(arrival, back, late, lateness)
         replaced = np.array([path.legs[i - 1] if 0 < i < len(path.stops) else 0.0 for i in places])
-        longer = to + back + self._visit.service - replaced
+        longer = to + back + self._serving(self._visit) - replaced
         own = path.reached[-1] + self._service(-1) if path.stops else 0.0
         total = own + longer
         departure = self._departures(places, longer, reached, total)
@@ -122,7 +122,7 @@ class _Screen:
         for place, stop in enumerate(places.stops):
             if stop in self._vehicle.reload:
                 windows[first + place] = ((released[place], inf),)
-        spent = [visit.service + leg for visit, leg in zip(visits, legs, strict=False)]
+        spent = [self._serving(visit) + leg for visit, leg in zip(visits, legs, strict=False)]
         reached = list(accumulate(spent, initial=0.0))[: len(stops)]
         closing = (each[-1][1] - at for each, at in zip(windows, reached, strict=True))
         departures = list(accumulate(closing, min))
@@ -160,12 +160,13 @@ class _Screen:
             lateness += max(0.0, begin - visit.due)
             for values, value in zip(found, (begin, late, lateness), strict=True):
                 values.append(value)
-            time = begin + visit.service + leg
+            time = begin + self._serving(visit) + leg
         return found
 
     def _leg(self, a: int, b: int) -> float:
         assert self._rules.clock is not None
         leg = self._fleet.leg(self._rules.clock, a, b)
+        leg /= self._vehicle.speed_factor
         return leg if isfinite(leg) else 0.0
 
     def _legs_to(self, before: NDArray[np.int64]) -> Array:
@@ -179,7 +180,11 @@ class _Screen:
         return np.array([self._leg(self._order, stops[i]) if i < n else 0.0 for i in after])
 
     def _service(self, at: int) -> float:
-        return self._path.visits[at].service
+        return self._serving(self._path.visits[at])
+
+    def _serving(self, visit: Visit) -> float:
+        """Return how long the vehicle takes for a visit."""
+        return visit.service_by(self._kind) * self._vehicle.service_factor
 
     def _reached(self, places: NDArray[np.int64]) -> Array:
         """Return the time of legs and visits before the leg to the order, shape (p,)."""

@@ -29,11 +29,16 @@ def leave_out(asked: AskedFleet, tried: Try) -> Remedy | None:
 def _more_than_a_visit(asked: AskedFleet) -> float:
     """Return more than any visit adds to the first length, with its way there and back."""
     rules = asked.rules
-    prize = _DETOURS * float(asked.fleet.largest_legs[0])
+    prize = _DETOURS * float(asked.fleet.scale[0])
     prize += max(vehicle.fixed for vehicle in rules.vehicles)
+    price = max(vehicle.per_time for vehicle in rules.vehicles)
     if rules.clock == rules.layers[0]:
+        price += max(vehicle.per_distance for vehicle in rules.vehicles)
+    if price:
         ends = [end for span in rules.spans for end in span if end < float("inf")]
-        prize += max(visit.service for visit in rules.visits) + max(ends, default=0.0)
+        slowest = max(vehicle.service_factor for vehicle in rules.vehicles)
+        service = slowest * max(visit.longest_service for visit in rules.visits)
+        prize += price * (service + max(ends, default=0.0))
     return rounded_up(prize)
 
 

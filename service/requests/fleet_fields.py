@@ -40,15 +40,25 @@ _MOST_RELOADS = 20
 _MOST_SKILLS = 50
 _MOST_BREAKS = 10
 _MOST_IN_GROUP = 100
+_MOST_SERVICES = 100
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
 Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
 Skills = Annotated[list[Text], Field(max_length=_MOST_SKILLS, fail_fast=True)]
+SpeedFactor = Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)]
+ServiceFactor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 # A pair in JSON, and a list so that OpenAPI has its length.
 TimeSpan = Pair[Cost]
 Due = Annotated[
     Annotated[Cost, Tag("[time]")] | Annotated[TimeSpan, Tag("[span]")],
     Discriminator(lambda value: "[span]" if isinstance(value, list) else "[time]"),
 ]
+
+
+class ServiceItem(StrictModel):
+    """How long the visit of a stop takes by a type of vehicles."""
+
+    vehicle: Text = Field(description="the id of the type")
+    service: Cost = Field(description="how long the visit takes, in the clock's unit")
 
 
 class FleetStopItem(NamedStop):
@@ -60,6 +70,12 @@ class FleetStopItem(NamedStop):
         " delivers, or what it takes on where the stop is the pick-up of a shipment",
     )
     service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
+    services: Annotated[list[ServiceItem], Field(max_length=_MOST_SERVICES, fail_fast=True)] = (
+        Field(
+            default_factory=list,
+            description="how long a visit takes by some types of vehicles, in place of `service`",
+        )
+    )
     window: TimeSpan | None = optional("when a visit may begin, from and to")
     windows: Annotated[list[TimeSpan], Field(max_length=_MOST_WINDOWS, fail_fast=True)] = Field(
         default_factory=list,
@@ -111,7 +127,20 @@ class FleetStopItem(NamedStop):
             vehicles=() if self.vehicle is None else types[self.vehicle],
             wanted=wanted,
             urgency=self.urgency,
+            services=self._services(part, types),
         )
+
+    def _services(self, part: str, types: Mapping[str, tuple[int, ...]]) -> tuple[float, ...]:
+        """Return how long the visit takes by each type of vehicles; nothing if all are alike."""
+        own: dict[int, float] = {}
+        for index, each in enumerate(self.services):
+            if each.vehicle not in types:
+                near = nearest(each.vehicle, types)
+                where = f"{part}/services/{index}/vehicle"
+                raise invalid(where, "not-a-vehicle", came=each.vehicle, near=near)
+            own |= dict.fromkeys(types[each.vehicle], each.service)
+        count = sum(map(len, types.values()))
+        return tuple(own.get(kind, self.service) for kind in range(count)) if own else ()
 
 
 class ShipmentItem(StrictModel):
@@ -218,6 +247,23 @@ class VehicleItem(StrictModel):
         default=0.0, description="the least time or length of a route, measured as `longest` is"
     )
     fixed: Cost = Field(default=0.0, description="added to the first length if one is used")
+    per_distance: Cost = Field(
+        default=1.0,
+        description="what each unit of the first objective's costs adds to the first length, such"
+        " as the price of a metre",
+    )
+    per_time: Cost = Field(
+        default=0.0,
+        description="what each unit of a route's time, with service and waiting, adds to the first"
+        " length, such as the price of a second",
+    )
+    speed_factor: SpeedFactor = Field(
+        default=1.0,
+        description="how much faster one drives than the clock's costs say: they are divided by it",
+    )
+    service_factor: ServiceFactor = Field(
+        default=1.0, description="by what the service of each stop that one visits is multiplied"
+    )
 
     def vehicle_types(self, part: str, ids: Mapping[str, int]) -> list[VehicleType]:
         """Return the type of vehicles, whose part of the request is `part`: once for each shift.
@@ -242,6 +288,10 @@ class VehicleItem(StrictModel):
                 shift=shift,
                 longest=inf if self.longest is None else self.longest,
                 fixed=self.fixed,
+                per_distance=self.per_distance,
+                per_time=self.per_time,
+                speed_factor=self.speed_factor,
+                service_factor=self.service_factor,
                 skills=tuple(self.skills),
                 max_stops=self.max_stops,
                 min_stops=self.min_stops or 0,

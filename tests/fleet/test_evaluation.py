@@ -42,6 +42,21 @@ def test_a_sum_adds_routes_and_a_maximum_takes_the_longest() -> None:
     assert plan_lengths(fleet_of(over=("max", "sum")), plan) == (8, 120)
 
 
+def test_vehicles_have_speeds_times_at_stops_and_prices_of_their_own() -> None:
+    van = VehicleType(start=0, end=0, fixed=100, per_distance=3.0, per_time=2.0)
+    bike = VehicleType(
+        start=0, end=0, speed_factor=0.5, service_factor=2.0, per_distance=0.0, per_time=1.0
+    )
+    visits = (Visit(), *(Visit(service=5),) * 4)
+    fleet = fleet_of(vehicles=(van, bike), visits=visits, clock=1)
+    plan = Plan((Route(0, (1, 2)), Route(1, (3, 4))))
+    assert route_lengths(fleet, plan.routes[0]) == (3 * 4 + 2 * 50, 50)
+    assert route_lengths(fleet, plan.routes[1]) == (160 + 20, 160 + 20)
+    assert plan_lengths(fleet, plan) == (112 + 180 + 100, 230)
+    found = measures(fleet, plan)
+    assert (found["driving"], found["service"], found["longest"]) == (200, 30, 180)
+
+
 def test_an_open_route_ends_at_its_last_visit() -> None:
     vehicles = (VehicleType(start=0, count=2),)
     assert route_lengths(fleet_of(vehicles=vehicles), Route(0, (1, 4))) == (4, 40)

@@ -155,6 +155,40 @@ def grouped_fleet(seed: int) -> Fleet:
     return fleet.under(dataclasses.replace(rules, groups=groups, vehicles=vehicles))
 
 
+def varied_fleet(seed: int) -> Fleet:
+    """Return one of the others with vehicles of different speeds, times at stops and prices."""
+    makers = (random_fleet, bounded_fleet, mixed_fleet, shipping_fleet)
+    fleet, random = makers[seed % len(makers)](seed), np.random.default_rng([seed, 1])
+    rules = fleet.rules
+    timed, summed = rules.clock is not None, rules.over[0] == "sum"
+
+    def varied(vehicle: VehicleType) -> VehicleType:
+        numbers = random.choice([0.25, 0.5, 1.0, 2.0, 3.0], 4).tolist()
+        return dataclasses.replace(
+            vehicle,
+            speed_factor=numbers[0] if timed else 1.0,
+            service_factor=numbers[1] if timed else 1.0,
+            per_distance=numbers[2] if summed else 1.0,
+            per_time=numbers[3] - 0.25 if timed and summed else 0.0,
+        )
+
+    def served(visit: Visit) -> Visit:
+        if not timed or visit == Visit() or random.random() < 0.5:
+            return visit
+        return dataclasses.replace(visit, services=tuple(map(float, random.integers(0, 6, 2))))
+
+    pinned = any(visit.vehicles for visit in rules.visits)
+    types = [
+        dataclasses.replace(each, count=each.count if pinned else 1)
+        for each in rules.vehicles
+        for _ in range(1 if pinned else each.count)
+    ]
+    vehicles = tuple(map(varied, types))
+    visits = tuple(map(served, rules.visits)) if len(vehicles) == 2 else rules.visits
+    varied_rules = dataclasses.replace(rules, visits=visits, vehicles=vehicles)
+    return Fleet(rules=varied_rules, costs=fleet.costs)
+
+
 def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 2) -> Fleet:
     random = np.random.default_rng(seed)
     n = int(random.integers(least, least + 2))
@@ -340,7 +374,8 @@ def _driven(
     for place, stop in enumerate(path):
         visit, (opens, closes) = rules.visits[stop], rules.visits[stop].windows[windows[place]]
         if place:
-            time += fleet.costs[rules.clock, path[place - 1], stop]
+            leg = fleet.costs[rules.clock, path[place - 1], stop]
+            time += leg / rules.vehicles[route.vehicle].speed_factor
         time = _rested(time, breaks, (place, 0))
         if stop in reload and 0 < place < len(path) - 1:
             time = max(time, _released(rules, path[place + 1 :], reload))
@@ -348,7 +383,8 @@ def _driven(
             return None
         time = max(time, opens)
         lateness += max(0.0, time - visit.due)
-        time = _rested(time + visit.service, breaks, (place, 1))
+        service = rules.service(route.vehicle, stop)
+        time = _rested(time + service, breaks, (place, 1))
     free = [each for each, taken in breaks if taken is None]
     missed = any(departure < each[0] + each[2] and time > each[1] for each in free)
     return None if missed or time == inf else (float(time), float(lateness))

@@ -174,6 +174,33 @@ def test_a_prize_or_a_fixed_cost_needs_a_first_objective_that_is_a_sum() -> None
         fleet_of(request)
 
 
+def test_some_types_of_vehicles_take_longer_at_a_stop() -> None:
+    request = changed(
+        "stops/1/services", [{"vehicle": fleet_request()["vehicles"][1]["id"], "service": 9}]
+    )
+    assert fleet_of(request).rules.visits[1].services == (3, 9)
+    request["stops"][1]["services"][0]["vehicle"] = "tram"
+    with pytest.raises(Refusal, match="stops/1/services/0/vehicle"):
+        fleet_of(request)
+
+
+@pytest.mark.parametrize("member", ["fixed", "per_distance", "per_time"])
+def test_prices_need_a_first_objective_that_is_a_sum(member: str) -> None:
+    request = changed("objectives/1/over", "sum")
+    request["objectives"][0]["over"] = "max"
+    request["vehicles"] = [{"id": "van", "start": 0, "end": 0, member: 2}]
+    with pytest.raises(Refusal, match=f"vehicles/0/{member} is added to the first objective"):
+        fleet_of(request)
+
+
+@pytest.mark.parametrize("member", ["speed_factor", "service_factor", "per_time"])
+def test_factors_of_times_need_a_clock(member: str) -> None:
+    request = changed("clock", None)
+    request["vehicles"] = [{"id": "van", "start": 0, "end": 0, member: 2}]
+    with pytest.raises(Refusal, match=f"vehicles/0/{member} needs the name of the objective"):
+        fleet_of(request)
+
+
 def test_times_are_refused_without_a_clock() -> None:
     request = changed("clock", None)
     for vehicle in request["vehicles"]:
@@ -190,6 +217,7 @@ def test_schemas_have_names_and_limits() -> None:
         "BreakItem",
         "ApartItem",
         "BeforeItem",
+        "ServiceItem",
         "VehicleItem",
         "FleetObjectiveItem",
         "ClockItem",

@@ -61,6 +61,13 @@ ObjectiveRequest = TypedDict(
 )
 
 
+class ServiceRequest(TypedDict, total=False):
+    """How long the visit of a stop takes by a type of vehicles."""
+
+    vehicle: Required[str]
+    service: Required[float]
+
+
 class FleetStopRequest(TypedDict, total=False):
     """A stop, and its demands on the vehicle that visits it."""
 
@@ -68,6 +75,7 @@ class FleetStopRequest(TypedDict, total=False):
     location: ArrayLike | None
     demand: ArrayLike
     service: float
+    services: Sequence[ServiceRequest]
     window: ArrayLike | None
     windows: ArrayLike
     due: float | ArrayLike | None
@@ -106,6 +114,10 @@ class VehicleRequest(TypedDict, total=False):
     longest: float | None
     shortest: float
     fixed: float
+    per_distance: float
+    per_time: float
+    speed_factor: float
+    service_factor: float
 
 
 Measure = Literal[
@@ -244,6 +256,7 @@ class NewFleetStopRequest(TypedDict, total=False):
     location: ArrayLike | None
     demand: ArrayLike
     service: float
+    services: Sequence[ServiceRequest]
     window: ArrayLike | None
     windows: ArrayLike
     due: float | ArrayLike | None
@@ -263,6 +276,7 @@ class OfferedOrderRequest(TypedDict, total=False):
     location: ArrayLike | None
     demand: ArrayLike
     service: float
+    services: Sequence[ServiceRequest]
     due: float | ArrayLike | None
     release: float
     skills: Sequence[str]

@@ -14,7 +14,7 @@ from math import inf
 
 import numpy as np
 
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import Array, Fleet, prices_of
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -96,6 +96,7 @@ class Directions:
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
         self._bound = _least_longest(fleet)
         optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
+        self._prices = prices_of(fleet.rules)
         self._by_limit = [over in _LIMITED for over in self._over]
         two = len(self._over) == OBJECTIVES and sum(self._by_limit) == 1
         self._counts_vehicles = two and "vehicles" in self._over and not optional
@@ -314,7 +315,7 @@ class Directions:
         by_measure = dict.fromkeys(self._over, 0.0)
         longest, routes, penalty = inf, 2**31, 0.0
         for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
-            if over == "sum":
+            if over == "sum" and index > 0:
                 costs[layer] += weights[index]
             elif over == "max":
                 # Where only the longest route counts, a plan of short routes is a good start.
@@ -326,7 +327,7 @@ class Directions:
             by_measure[over] = float(weights[index])
         paid = self._over.index("unassigned") if "unassigned" in self._over else 0
         return Direction(
-            costs=(float(costs[0]), float(costs[1])),
+            costs=costs + weights[0] * self._prices,
             vehicle=by_measure.get("vehicles", 0.0),
             fixed=float(weights[0]),
             prize=float(weights[paid]),
@@ -357,8 +358,11 @@ def _least_longest(fleet: Fleet) -> float:
             there[vehicle.start] = fleet.least_paths(rules.swept, [vehicle.start])
         if vehicle.end is not None and vehicle.end not in back:
             back[vehicle.end] = fleet.least_paths(rules.swept, [vehicle.end], back=True)
-    ways = [there[vehicle.start] + back[vehicle.end] for vehicle in rules.vehicles]
     required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
-    served = np.array([rules.visits[stop].service for stop in required])
-    alone = np.min(ways, axis=0)[required] + (served if rules.swept == rules.clock else 0.0)
+    ways = []
+    for kind, vehicle in enumerate(rules.vehicles):
+        way = (there[vehicle.start] + back[vehicle.end]) / rules.speed(kind, rules.swept)
+        served = [rules.service(kind, stop) for stop in required]
+        ways.append(way[required] + (np.array(served) if rules.swept == rules.clock else 0.0))
+    alone = np.min(ways, axis=0)
     return float(alone.max(initial=0.0, where=np.isfinite(alone)))

@@ -88,6 +88,10 @@ class Problem(NamedTuple):
     most_length: Array  # (v,), the same, where a loose search may exceed it: see loosened()
     most_overtime: Array  # (v,)
     fixed: Array  # (v,)
+    mixed: bool  # whether types of vehicles differ in what they hold, cost or take
+    priced: bool  # whether the first length is at prices
+    per_distance: Array  # (v,), the price of a unit of the first costs
+    per_time: Array  # (v,), and of the time of a route
     over: Indices  # (m,), by MEASURES
     column: Indices  # (m,), of the values of a route
     grouped: bool  # whether stops ride together, or must not
@@ -113,19 +117,23 @@ def problem_of(fleet: Fleet) -> Problem:
     kind = np.repeat(np.arange(len(vehicles)), counts)
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in vehicles]
     forbidden = _FORBIDDEN * max(1.0, float(fleet.greatest_legs.max())) * (rules.n + 1)
-    costs = np.moveaxis(np.where(np.isinf(fleet.costs), forbidden, fleet.costs), 0, -1)
+    paces = list(map(rules.pace, range(len(vehicles))))
+    profiles = list(dict.fromkeys(paces))
+    forbidden *= max(1.0, *(1.0 / each.speed for each in profiles))
+    costs = np.moveaxis(fleet.costs, 0, -1)
     places = [line.places for line in fleet.lines] or np.empty((2, 0, 3))
+    factors = _floats([line.factor for line in fleet.lines])
     return Problem(
-        costs=np.ascontiguousarray(costs)[np.newaxis],
+        costs=np.array([_driven(rules, costs, each.speed, forbidden) for each in profiles]),
         places=np.ascontiguousarray(np.moveaxis(np.array(places), 0, 1)),
         curved=np.array([line.curved for line in fleet.lines], np.bool_),
-        factors=np.array([[line.factor for line in fleet.lines]]),
+        factors=np.array([_driven(rules, factors, each.speed, forbidden) for each in profiles]),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
         swept=-1 if rules.swept is None else rules.swept,
         forbidden=forbidden,
         demand=loads.demand,
-        service=_floats([visit.service for visit in visits])[np.newaxis],
+        service=np.array([each.services for each in profiles]),
         held=np.maximum(0.0, opens - closes),
         release=_floats([visit.release for visit in visits]),
         windows=windows,
@@ -149,7 +157,7 @@ def problem_of(fleet: Fleet) -> Problem:
         pickup=pickup,
         place=np.concatenate((np.arange(rules.n), np.array(ends)[kind].ravel())).astype(np.int32),
         kind=kind,
-        profile=np.zeros_like(kind),
+        profile=np.array([profiles.index(each) for each in paces])[kind],
         slots=np.concatenate(([0], np.cumsum(counts))),
         capacity=loads.capacity - loads.initial,
         whole=loads.capacity,
@@ -168,6 +176,10 @@ def problem_of(fleet: Fleet) -> Problem:
         most_length=_floats([vehicle.longest for vehicle in vehicles]),
         most_overtime=_floats([vehicle.max_overtime for vehicle in vehicles]),
         fixed=_floats([vehicle.fixed for vehicle in vehicles]),
+        mixed=len({_worth(vehicle) for vehicle in vehicles}) > 1 or len(profiles) > 1,
+        priced=rules.priced,
+        per_distance=_floats([vehicle.per_distance for vehicle in vehicles]),
+        per_time=_floats([vehicle.per_time for vehicle in vehicles]),
         over=np.array([MEASURES.index(over) for over in rules.over]),
         column=np.array([_column(rules, index) for index in range(len(rules.over))]),
         grouped=bool(rules.groups.mates or rules.groups.rivals),
@@ -181,6 +193,19 @@ def problem_of(fleet: Fleet) -> Problem:
         shortest=_floats([vehicle.shortest for vehicle in vehicles]),
         tried=np.array([_is_tried(rules, vehicle) for vehicle in vehicles]),
     )
+
+
+def _driven(rules: Rules, costs: Array, speed: float, forbidden: float) -> Array:
+    """Return costs at a speed, shape (..., 2); of forbidden legs a finite cost."""
+    driven = costs.copy()
+    if rules.clock is not None and costs.size:
+        driven[..., rules.clock] /= speed
+    return np.where(np.isinf(driven), forbidden, driven)
+
+
+def _worth(vehicle: VehicleType) -> tuple[float, ...]:
+    """Return what a type of vehicles holds and costs."""
+    return (*vehicle.capacity, vehicle.fixed, vehicle.per_distance, vehicle.per_time)
 
 
 def loosened(problem: Problem) -> Problem:
@@ -300,7 +325,7 @@ class Direction(NamedTuple):
     by.
     """
 
-    costs: tuple[float, float]
+    costs: Array  # (v, 2), by type of vehicles: at its prices
     vehicle: float
     fixed: float
     prize: float

@@ -87,7 +87,7 @@ def _loading(state: State, slot: int, place: int) -> tuple[int, float]:
         for layer in range(plan.step.shape[1]):
             longer = way(problem, profile, before, via, stop, layer)
             longer -= leg(problem, profile, before, stop, layer)
-            detour += direction.costs[layer] * longer
+            detour += direction.costs[kind, layer] * longer
         if detour < least:
             best, least = via, detour
     return best, least

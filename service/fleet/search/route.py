@@ -105,8 +105,8 @@ def route_cost(state: State, kind: int, values: Values) -> float:
     """Return the cost of a route that visits a stop, by a type of vehicles."""
     problem, _, direction = state
     cost = (
-        direction.costs[0] * values.first
-        + direction.costs[1] * values.second
+        direction.costs[kind, 0] * values.first
+        + direction.costs[kind, 1] * values.second
         + direction.vehicle
         + direction.fixed * problem.fixed[kind]
         + direction.overtime * values.overtime
@@ -119,6 +119,13 @@ def route_cost(state: State, kind: int, values: Values) -> float:
         cost += direction.beyond * beyond_rules(problem, kind, values)
     length = values.first if problem.swept == 0 else values.second
     return cost + direction.penalty * max(0.0, length - direction.longest)
+
+
+@inlined
+def at_prices(problem: Problem, kind: int, first: float, second: float) -> float:
+    """Return the first length of a route of both lengths, at the prices of its vehicle."""
+    time = first if problem.clock == 0 else second
+    return float(problem.per_distance[kind] * first + problem.per_time[kind] * time)
 
 
 @inlined

@@ -3,15 +3,17 @@
 import numpy as np
 
 from service.fleet.search.problem import (
+    FIRST,
     IMBALANCE,
     MAX,
+    SECOND,
     UNASSIGNED,
     VEHICLES,
     Array,
     Nodes,
     Problem,
 )
-from service.fleet.search.route import measure
+from service.fleet.search.route import at_prices, measure
 from service.fleet.search.working_plan import (
     OUTSIDE,
     USED,
@@ -119,7 +121,11 @@ def _joined_value(problem: Problem, plan: WorkingPlan, over: int, objective: int
     column = problem.column[objective]
     total, longest, shortest = 0.0, 0.0, np.inf
     for number in range(used):
-        value = float(plan.value[plan.used[number], column])
+        slot = plan.used[number]
+        value = float(plan.value[slot, column])
+        if objective == 0 and problem.priced:
+            first, second = plan.value[slot, FIRST], plan.value[slot, SECOND]
+            value = at_prices(problem, problem.kind[slot], first, second)
         total += value
         longest, shortest = max(longest, value), min(shortest, value)
     if over == MAX:

@@ -11,9 +11,10 @@ from service.jit import by_reference, compiled, inlined
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
 # what is saved; the number of the iteration; stops to insert; in how many places one is passed by,
 # and how many come before the next; and the number of the stop that is inserted, of all so far;
-# whether vehicles may begin one trip more.
+# whether vehicles may begin one trip more; and the type of vehicles that may begin routes, -1 for
+# all.
 USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
-BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS = 8, 9, 10, 11
+BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS, ONE_TYPE = 8, 9, 10, 11, 12
 MOST_STATES = 24  # ways to have taken so many breaks up to a stop, of which none is always better
 
 
@@ -66,7 +67,7 @@ class WorkingPlan(NamedTuple):
     saved_outside: Nodes  # (n,)
     touched: Indices  # (r,), by slot: the iteration that changed it last
     ruined: Indices  # (n,), by stop: the iteration that last took stops out of its trip
-    counts: Indices  # (12,)
+    counts: Indices  # (13,)
     random: Indices  # (1,)
 
 
@@ -127,7 +128,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved_outside=_nothing(n),
         touched=np.zeros(r, np.int64),
         ruined=np.zeros(n, np.int64),
-        counts=np.zeros(12, np.int64),
+        counts=np.zeros(13, np.int64),
         random=np.array([_mixed(seed)], np.int64),
     )
     for stop in problem.tasks.tolist():

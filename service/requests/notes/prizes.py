@@ -47,7 +47,8 @@ def _alone(rules: Rules, costs: Array, number: int) -> Array:
     vehicle, clients = rules.vehicles[number], [*rules.clients]
     there = 0.0 if vehicle.start is None else costs[vehicle.start, clients]
     back = 0.0 if vehicle.end is None else costs[clients, vehicle.end]
-    least: Array = np.full(len(clients), vehicle.fixed) + there + back
+    legs = vehicle.per_distance * (there + back) / rules.speed(number, rules.layers[0])
+    least: Array = np.full(len(clients), vehicle.fixed) + legs
     return np.where(np.isnan(least), inf, least)
 
 

@@ -222,9 +222,9 @@ class _Rest:
             visit = self._request.add[index].visit(f"add/{index}", types)
         else:
             visit = self._known_visit(stop)
-        return replace(
-            visit, vehicles=self._servers(stop, visit), release=self._release(stop, visit)
-        )
+        services = visit.services and tuple(visit.services[old] for old in self._old)
+        servers, release = self._servers(stop, visit), self._release(stop, visit)
+        return replace(visit, vehicles=servers, release=release, services=services)
 
     def _known_visit(self, stop: int) -> Visit:
         """Return what a stop of the front asks for, also of shipments on board."""

@@ -86,6 +86,9 @@ class Judge:
         if times is not None:  # visits begin as early as the departure allows
             times = min(best, key=lambda each: sum(each.begins))
         lengths = [self._length(each, vehicle, stops, path, times) for each in self.objectives]
+        duration = 0.0 if times is None else times.end - times.departure
+        lengths[0] *= vehicle.get("per_distance", 1.0)
+        lengths[0] += vehicle.get("per_time", 0.0) * duration
         return Judged(vehicle, stops, best, tuple(lengths), compared)
 
     def _broken(self, vehicle: Json, stops: list[int]) -> Iterator[str]:
@@ -176,7 +179,7 @@ class Judge:
         if "matrix" in objective:
             if times is not None and self._is_clock(objective):
                 return times.end - times.departure
-            return float(sum(objective["matrix"][a][b] for a, b in pairwise(path)))
+            return self._driven(objective, vehicle, path)
         match objective["measure"]:
             case "vehicles":
                 return 1.0
@@ -202,6 +205,15 @@ class Judge:
         wanted = [(stop["due"][0], begin) for stop, begin in visits if _is_pair(stop.get("due"))]
         return float(sum(due - begin for due, begin in wanted if is_later(due, begin)))
 
+
+    def _driven(self, objective: Json, vehicle: Json, path: list[int]) -> float:
+        """Return what the legs of a path cost a vehicle."""
+        return float(sum(self._leg(objective, vehicle, a, b) for a, b in pairwise(path)))
+
+    def _leg(self, objective: Json, vehicle: Json, a: int, b: int) -> float:
+        speed = vehicle.get("speed_factor", 1.0) if self._is_clock(objective) else 1.0
+        return float(objective["matrix"][a][b] / speed)
+
     def _load_distance(self, vehicle: Json, stops: tuple[int, ...], path: list[int]) -> float:
         trips = trips_of(vehicle, list(stops))
         loads = [x for i in range(len(trips)) for x in self._loads(vehicle, trips, i, 0)]
@@ -209,8 +221,9 @@ class Judge:
             del loads[0]
         if vehicle.get("end") is None:
             del loads[-1]
-        matrix = self.objectives[0]["matrix"]
-        return float(sum(matrix[a][b] * x for (a, b), x in zip(pairwise(path), loads, strict=True)))
+        legs = zip(pairwise(path), loads, strict=True)
+        first = self.objectives[0]
+        return sum(self._leg(first, vehicle, a, b) * x for (a, b), x in legs)
 
     def lengths(self, routes: list[Judged]) -> tuple[float, ...]:
         """Return the lengths of a plan of these routes."""

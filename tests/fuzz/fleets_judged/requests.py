@@ -44,6 +44,8 @@ def random_fleet(rng: random.Random) -> Json:
         _add_shipment(request, n)
     elif clients > 2 and rng.random() < 0.3:
         _add_groups(rng, request, [*range(depots, n)])
+    if rng.random() < 0.4:
+        _add_differences(rng, request, depots, timed)
     return request
 
 
@@ -177,6 +179,23 @@ def _vehicle(rng: random.Random, name: str, form: _Form, measures: set[Any]) -> 
     if form.timed:
         _add_times(rng, vehicle, measures)
     return vehicle
+
+
+def _add_differences(rng: random.Random, request: Json, depots: int, timed: bool) -> None:
+    for vehicle in request["vehicles"]:
+        vehicle |= _differences(rng, timed)
+    for stop in request["stops"][depots:] if timed else ():
+        if rng.random() < 0.3:
+            stop["services"] = [{"vehicle": "0", "service": _number(rng, 0, 8, 1)}]
+
+
+def _differences(rng: random.Random, timed: bool) -> Json:
+    """Return in what a type of vehicles may differ from others: speeds and prices."""
+    found = {"per_distance": _number(rng, 0, 3, 1)}
+    if timed:
+        found |= {name: _number(rng, 0.3, 3, 1) for name in ("speed_factor", "service_factor")}
+        found["per_time"] = _number(rng, 0, 2, 1)
+    return {name: value for name, value in found.items() if rng.random() < 0.4}
 
 
 def _add_times(rng: random.Random, vehicle: Json, measures: set[Any]) -> None:

@@ -106,16 +106,24 @@ def _places(request: Json, times: Any, vehicle: Json, stops: list[int]) -> list[
     """Return the visit at each place of a route, once for each window."""
     start, end = vehicle.get("start"), vehicle.get("end")
     path = [*([] if start is None else [start]), *stops, *([] if end is None else [end])]
-    legs = [0.0, *(times[a][b] for a, b in pairwise(path))]
+    speed = vehicle.get("speed_factor", 1.0)
+    legs = [0.0, *(times[a][b] / speed for a, b in pairwise(path))]
     found = []
     for place, stop in enumerate(path):
         visit = request["stops"][stop]
         due = visit.get("due", inf)
         latest = due[1] if isinstance(due, list) else due
-        rest = (visit.get("service", 0.0), latest, legs[place], place)
+        rest = (_service(visit, vehicle), latest, legs[place], place)
         windows = _windows(request, vehicle, stops, path, place)
         found.append([Event(opens, closes, *rest) for opens, closes in windows])
     return found
+
+
+def _service(visit: Json, vehicle: Json) -> float:
+    """Return how long a vehicle takes to visit a stop."""
+    own = {each["vehicle"]: each["service"] for each in visit.get("services", ())}
+    service = own.get(vehicle["id"], visit.get("service", 0.0))
+    return float(service * vehicle.get("service_factor", 1.0))
 
 
 def _ways(
