@@ -11,6 +11,7 @@ from service.fleet.search.spots import Place, Spot, better_at, nowhere
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
+    ONE_TYPE,
     TRY,
     UNTIL_BLINK,
     USED,
@@ -61,6 +62,8 @@ def best_place(state: State, stop: int, most: float) -> Place:
 def new_slot(state: State, kind: int) -> int:
     """Return the slot of a vehicle of a type for one more route; -1 if there may be none."""
     problem, plan, direction = state
+    if plan.counts[ONE_TYPE] >= 0 and kind != plan.counts[ONE_TYPE]:
+        return -1
     return free_slot(problem, plan, kind) if plan.counts[USED] < direction.routes else -1
 
 

@@ -14,6 +14,7 @@ from service.fleet.search.spots import Place, Spot, put, take_back
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
+    ONE_TYPE,
     OUTSIDE,
     REMOVED,
     SAVED,
@@ -185,5 +186,5 @@ def insert_all(state: State, order: int) -> None:
     for place in range(plan.counts[OUTSIDE]):
         plan.removed[place] = plan.outside[place]
     plan.counts[REMOVED] = plan.counts[OUTSIDE]
-    plan.counts[MORE_TRIPS] = problem.reloads
+    plan.counts[MORE_TRIPS], plan.counts[ONE_TYPE] = problem.reloads, -1
     recreate(state, order)
