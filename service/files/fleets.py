@@ -12,7 +12,7 @@ Stop = dict[str, Any]
 Vehicle = dict[str, Any]
 _SPEED, _SPEED_BETWEEN_TOWNS = 30, 50  # km/h, along straight lines: a van in a city, and outside
 _CITY = 10_000.0  # metres from the middle of a city, for half of all stops
-_TIMES = ("service", "window", "windows", "due", "release")
+_TIMES = ("service", "services", "window", "windows", "due", "release")
 _MOST_NAMED = 3
 
 
@@ -69,7 +69,8 @@ def in_shifts(vehicles: Sequence[Vehicle]) -> bool:
 
 def have_times(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> bool:
     """Return whether stops or vehicles have times, which need a clock."""
-    return timed(stops) or in_shifts(vehicles) or any("breaks" in each for each in vehicles)
+    members = {"breaks", "speed_factor", "per_time"}
+    return timed(stops) or in_shifts(vehicles) or any(each.keys() & members for each in vehicles)
 
 
 def spans(name: str, found: Sequence[list[float]]) -> dict[str, Any]:
@@ -112,6 +113,8 @@ def fleet_of_tables(
         objectives = planar({"coordinates": plane})
     else:
         objectives = measured(source, have_times(stops, vehicles), stops)
+        if any("per_distance" in vehicle for vehicle in vehicles):
+            objectives[0]["name"] = "cost"
     return with_measure(source, fleet_request(stops, vehicles, objectives))
 
 

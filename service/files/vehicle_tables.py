@@ -63,7 +63,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     add_bounds(columns, vehicles)
     clock = have_times(stops, vehicles)
     _add_limits(columns, vehicles, clock)
-    _add_fixed(columns, vehicles, located=plane is None)
+    _add_costs(columns, vehicles, located=plane is None)
     columns.report()
     request = fleet_of_tables(source, stops, vehicles, plane)
     return reading_of_several("fleet", request, (source, other))
@@ -195,29 +195,39 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
             )
 
 
-def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
-    """Add the cost of using a vehicle, converted to a length that costs the same."""
+def _add_costs(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
+    """Add what vehicles cost by the kilometre, if that differs, and by the use."""
     rates = _rates(columns)
-    if (at := columns.find("fixed")) is not None:
-        metre, means = 1.0, "added to the length for each vehicle used"
-        if located:
-            unit = "as metres: if it is money, name a cost per km as well"
-            means = f"added to the distance for each vehicle used, {unit}"
-        if len(rates) == 1 and located:
-            metre, means = rates.pop() / _KILOMETRE, "converted to the metres that cost the same"
-        columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
-        for row, vehicle in enumerate(vehicles):
-            if columns.text(row, at):
-                vehicle["fixed"] = columns.tried(0.0, columns.amount, row, at) / metre
+    differ = len(set(rates)) > 1
+    if located and differ:
+        for vehicle, rate in zip(vehicles, rates, strict=True):
+            vehicle["per_distance"] = rate / _KILOMETRE
+        return _add_fixed(columns, vehicles, 1.0, "added to the cost for each vehicle used")
+    if differ or 0.0 in rates:
+        columns.leave_out("per_km", ", which is 0 or differs by vehicle,")
+        rates = []
+    if not located:
+        return _add_fixed(columns, vehicles, 1.0, "added to the length for each vehicle used")
+    if rates:
+        means = "converted to the metres that cost the same"
+        return _add_fixed(columns, vehicles, rates[0] / _KILOMETRE, means)
+    unit = "as metres: if it is money, name a cost per km as well"
+    means = f"added to the distance for each vehicle used, {unit}"
+    return _add_fixed(columns, vehicles, 1.0, means)
 
 
-def _rates(columns: Columns) -> set[float]:
-    """Return the costs per kilometre; note if they differ by vehicle, which is not supported."""
+def _add_fixed(columns: Columns, vehicles: list[Vehicle], unit: float, means: str) -> None:
+    """Add the cost of using a vehicle, in units of the first length, and note what it means."""
+    if (at := columns.find("fixed")) is None:
+        return
+    columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
+    for row, vehicle in enumerate(vehicles):
+        if columns.text(row, at):
+            vehicle["fixed"] = columns.tried(0.0, columns.amount, row, at) / unit
+
+
+def _rates(columns: Columns) -> list[float]:
+    """Return the cost per kilometre of each vehicle; nothing without a column."""
     at = columns.find("per_km")
-    if at is None:
-        return set()
-    rows = range(len(columns.table.rows))
-    rates = {columns.tried(0.0, columns.amount, row, at) for row in rows}
-    if len(rates) > 1 or 0.0 in rates:
-        columns.leave_out("per_km", ", which differs by vehicle,")
-    return rates - {0.0}
+    rows = range(0 if at is None else len(columns.table.rows))
+    return [columns.tried(0.0, columns.amount, row, at) for row in rows]

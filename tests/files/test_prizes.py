@@ -65,6 +65,7 @@ def test_a_prize_must_not_be_negative() -> None:
     [
         ("van,fixed cost\nv,40\n", 40, "as metres: if it is money, name a cost per km as well."),
         ("van,fixed cost,cost per km\nv,40,0.5\n", 80_000, "converted to the metres"),
+        ("van,fixed cost,cost per km\nv,40,0.5\nw,9,0\n", 40, "added to the cost"),
     ],
 )
 def test_a_fixed_cost_in_money_is_converted_or_noted(vans: str, fixed: float, note: str) -> None:
@@ -72,3 +73,9 @@ def test_a_fixed_cost_in_money_is_converted_or_noted(vans: str, fixed: float, no
     assert reading.request["vehicles"][0]["fixed"] == fixed
     [text] = [each.text for each in reading.notes if each.code == "fixed"]
     assert note in text
+
+
+def test_vehicles_that_differ_by_the_kilometre_have_their_own_prices() -> None:
+    request = read("prize", "", "100", "80", vans="van,cost per km\nv,0.5\nw,0\n").request
+    assert [each["per_distance"] for each in request["vehicles"]] == [0.0005, 0]
+    assert request["objectives"][0]["name"] == "cost"

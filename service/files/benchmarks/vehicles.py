@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from service.files.tsplib import TsplibFile
 Array = NDArray[np.float64]
 _MOST_SKILLS = 50  # of a vehicle
 _DISTANCE = "VEHICLES_MAX_DISTANCE"
+_UNIT_COST = "VEHICLES_UNIT_DISTANCE_COST"
 _LIMITS = ("DISTANCE", "VEHICLES_MAX_DURATION", _DISTANCE)
 
 
@@ -152,6 +154,13 @@ class _Rows:
         """How many vehicles there are that may differ; 1 if all are equal."""
         return (self.count or 1) if self.differ else 1
 
+    @cached_property
+    def unit_costs(self) -> frozenset[float]:
+        """What a unit of distance costs different vehicles."""
+        if not self.has(_UNIT_COST):
+            return frozenset((1.0,))
+        return frozenset(self.number(_UNIT_COST, at) or 0.0 for at in range(self.several))
+
     def check(self) -> None:
         """Raise UnreadableFile if there are more vehicles than rows of their sections."""
         for section in _sections(self.file):
@@ -226,6 +235,8 @@ def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at
         made["longest"] = longest
     if fixed := rows.number("VEHICLES_FIXED_COST", at):
         made["fixed"] = _plain(fixed / unit)
+    if len(rows.unit_costs) > 1:
+        made["per_distance"] = _plain(rows.number(_UNIT_COST, at) or 0.0)
     return made | _reload(rows, depots, at)
 
 
@@ -276,19 +287,15 @@ def _start(rows: _Rows, depots: Depots, at: int) -> int:
 
 
 def _unit_cost(rows: _Rows) -> float:
-    """Return the cost of a unit of distance, the same for all vehicles.
+    """Return the cost of a unit of distance if it is the same for all vehicles, else 1.
 
     Raises:
-        UnreadableFile: They differ, which no objective can say.
+        UnreadableFile: It is negative, or all are 0.
     """
-    name = "VEHICLES_UNIT_DISTANCE_COST"
-    if not rows.has(name):
-        return 1.0
-    units = {rows.number(name, at) for at in range(rows.several)}
-    [unit, *others] = [each or 0.0 for each in units]
-    if others or unit <= 0:
-        came = ", ".join(sorted(f"{each or 0:g}" for each in units))
-        raise rows.file.source.refusal("units-differ", name, came=came)
+    units = rows.unit_costs
+    if min(units) < 0 or max(units) <= 0:
+        raise rows.file.source.refusal("not-over-0", _UNIT_COST, came=min(units))
+    unit = min(units) if len(units) == 1 else 1.0
     if unit != 1:
         text = f"Fixed costs and prizes were divided by {unit:g}, the cost of a unit of distance."
         rows.file.source.note("fixed", text)

@@ -83,7 +83,9 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
         _shipment(problem, each, where) for each, where in _items(source, value, "shipments")
     ]
     source.check_count("stops", source.bounds.cities, len(problem.stops))
-    add_services(source, value["vehicles"], problem.tasks, set(problem.depots))
+    types = [str(each.get("type", "")) for each in value["vehicles"]]
+    named = list(zip((each["id"] for each in vehicles), types, strict=True))
+    add_services(source, named, problem.tasks, set(problem.depots))
     _add_descriptions(problem)
     timed = have_times(problem.stops, vehicles)
     stops, indexes = problem.stops, problem.indexes

@@ -2,7 +2,8 @@
 
 In VROOM the cost of a route is `fixed`, and `per_hour` for its travel time, and `per_km` for its
 distance: by default one for each second. It is the first objective wherever a vehicle says more
-than these defaults; the second objective is the longest route.
+than these defaults; the second objective is the longest route. Vehicles that differ have prices and
+speeds of their own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,10 +13,16 @@ from typing import Any
 from service.files.fleets import Stop, Vehicle, measured, speed_between
 from service.files.places import note_places
 from service.files.planners.vroom_members import note_others, note_unused
+from service.files.planners.vroom_mixed import (
+    PER_HOUR,
+    PER_KM,
+    Layers,
+    is_cost,
+    mixed_objectives,
+    rides_of,
+)
 from service.files.reading import Source, quoted
 
-_PER_HOUR, _PER_KM = 3600, 0  # the defaults of VROOM
-_DIFFER = "vehicles differ in it, and objectives hold for all of them"
 _OF = "costs of vehicles"
 _SAME = "all vehicles have the same one, and the objectives are metres and seconds"
 _LIMITS = ("max_travel_time", "max_distance")
@@ -30,33 +37,6 @@ class VroomRates:
     per_hour: float
     per_km: float
     fixed: bool
-
-
-def rates_of(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> VroomRates:
-    """Return the rates of all vehicles. Where they differ, they are noted, and are the defaults.
-
-    Raises:
-        UnreadableFile: A cost is not a number from 0.
-    """
-    costs = [each.get("costs") or {} for each in vehicles]
-    for at, each in enumerate(costs):
-        if not isinstance(each, dict):
-            raise source.refusal("not-an-object", f"vehicles/{at}/costs", came=each)
-        for name in ("fixed", "per_hour", "per_km"):
-            if not _is_cost(each.get(name, 0)):
-                raise source.refusal("not-from-0", f"vehicles/{at}/costs/{name}", came=each[name])
-    note_others(source, costs, _OF)
-    hours = {each.get("per_hour", _PER_HOUR) for each in costs}
-    kilometres = {each.get("per_km", _PER_KM) for each in costs}
-    differing = [
-        name for name, found in (("per_hour", hours), ("per_km", kilometres)) if len(found) > 1
-    ]
-    for name in differing:
-        note_unused(source, name, _OF, _DIFFER)
-    fixed = any(each.get("fixed") for each in costs)
-    if differing or not costs:
-        return VroomRates(_PER_HOUR, _PER_KM, fixed)
-    return VroomRates(hours.pop(), kilometres.pop(), fixed)
 
 
 def objectives_of(
@@ -78,27 +58,47 @@ def objectives_of(
     Raises:
         UnreadableFile: Places or matrices are missing or do not fit.
     """
-    (stops, indexes), items = located, problem["vehicles"]
-    rates = rates_of(source, items)
-    factor = _speed_factor(source, items)
+    items = problem["vehicles"]
+    rides = rides_of(source, items)
+    costs = [each.get("costs") or {} for each in items]
+    note_others(source, costs, _OF)
+    rates = VroomRates(rides[0].per_hour, rides[0].per_km, any(each.get("fixed") for each in costs))
     limited = _limit(source, items, timed)
     matrices = _matrices(source, problem)
     if matrices is None:
-        if any("location" not in stop for stop in stops):
-            raise source.refusal("task-without-location", "each task")
-        note_places(source, stops)
-        if any(each.get("profile", "car") != "car" for each in items):
-            why = "without matrices all vehicles drive as cars do"
-            note_unused(source, "profile", "vehicles", why)
-        found = _by_places(source, stops, rates, factor, timed or limited == "max_travel_time")
+        _check_places(source, located[0], items)
+    cut = None if matrices is None else _Cut(source, *located, *matrices)
+    if len(set(rides)) > 1:
+        layers = _measured(source, located[0]) if cut is None else _layers(cut)
+        found = mixed_objectives(source, rides, vehicles, layers), 1.0
+    elif cut is None:
+        by_time = timed or limited == "max_travel_time"
+        found = _by_places(source, located[0], rates, rides[0].speed, by_time)
     else:
-        found = _by_matrices(source, _Cut(source, stops, indexes, *matrices), rates, factor)
+        found = _by_matrices(source, cut, rates, rides[0].speed)
     objectives, unit = found
     for vehicle in vehicles:
         if "fixed" in vehicle and unit != 1:
             vehicle["fixed"] = round(vehicle["fixed"] / unit, 6)
     _add_limits(source, items, vehicles, limited, objectives[1])
     return objectives
+
+
+def _check_places(
+    source: Source, stops: Sequence[Stop], items: Sequence[Mapping[str, Any]]
+) -> None:
+    """Raise UnreadableFile if a stop has no place on the earth, and note what cannot be used."""
+    if any("location" not in stop for stop in stops):
+        raise source.refusal("task-without-location", "each task")
+    note_places(source, stops)
+    if any(each.get("profile", "car") != "car" for each in items):
+        note_unused(source, "profile", "vehicles", "without matrices all vehicles drive as cars do")
+
+
+def _measured(source: Source, stops: Sequence[Stop]) -> Layers:
+    """Return the costs of legs between places on the earth."""
+    distance, time = measured(source, True, stops)
+    return Layers(time, {"from": "road_distance"} if source.bounds.roads else distance)
 
 
 def _by_places(
@@ -161,6 +161,15 @@ class _Cut:
         return cut if scale == 1 else [[_scaled(each, scale) for each in row] for row in cut]
 
 
+def _layers(cut: _Cut) -> Layers:
+    """Return all matrices of a profile."""
+    return Layers(
+        {"name": "longest route", "unit": "s", "matrix": cut.matrix("durations")},
+        {"matrix": cut.matrix("distances")} if cut.given.get("distances") else None,
+        {"matrix": cut.matrix("costs")} if cut.given.get("costs") else None,
+    )
+
+
 def _by_matrices(
     source: Source, cut: _Cut, rates: VroomRates, factor: float
 ) -> tuple[Objectives, float]:
@@ -205,9 +214,9 @@ def _note_beside_costs(source: Source, cut: _Cut, rates: VroomRates) -> None:
 
 def _note_rates(source: Source, rates: VroomRates, why: str) -> None:
     """Note rates that are not the defaults, and are not used."""
-    if rates.per_hour != _PER_HOUR:
+    if rates.per_hour != PER_HOUR:
         note_unused(source, "per_hour", _OF, why)
-    if rates.per_km != _PER_KM:
+    if rates.per_km != PER_KM:
         note_unused(source, "per_km", _OF, why)
 
 
@@ -221,13 +230,13 @@ def _costs(durations: Matrix, distances: Matrix, rates: VroomRates) -> Matrix:
 
 def _sum(second: Any, metre: Any, rates: VroomRates) -> Any:
     """Return the cost of a leg; None forbids it."""
-    if not _is_cost(second) or not _is_cost(metre):
+    if not is_cost(second) or not is_cost(metre):
         return None
     return round(second * rates.per_hour / 3600 + metre * rates.per_km / 1000, 6)
 
 
 def _scaled(value: Any, scale: float) -> Any:
-    return round(value * scale, 6) if _is_cost(value) else value
+    return round(value * scale, 6) if is_cost(value) else value
 
 
 def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]] | None:
@@ -253,16 +262,6 @@ def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[
         raise source.refusal("not-an-object", f"matrices/{profile[:60]}", came=given)
     note_others(source, [given], "matrices")
     return profile, given
-
-
-def _speed_factor(source: Source, vehicles: Sequence[Mapping[str, Any]]) -> float:
-    """Return how much faster than usual all vehicles are; 1, with a note, if they differ."""
-    given = [each.get("speed_factor", 1) for each in vehicles]
-    factors = {each for each in given if _is_cost(each) and each}
-    if len(factors) != 1 or not all(each in factors for each in given):
-        note_unused(source, "speed_factor", "vehicles", _DIFFER)
-        return 1
-    return float(factors.pop())
 
 
 def _limit(source: Source, vehicles: Sequence[Mapping[str, Any]], timed: bool) -> str | None:
@@ -299,7 +298,3 @@ def _add_limits(
     for item, vehicle in zip(items, vehicles, strict=True):
         if item.get(name) is not None:
             vehicle["longest"] = item[name]
-
-
-def _is_cost(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0

@@ -8,8 +8,6 @@ from service.files.fleets import Stop
 from service.files.planners.vroom_members import note_unused
 from service.files.reading import Source
 
-_LONGEST_TAKEN = "vehicles of several types visit them: the longest of their times was taken"
-
 
 class VroomTask(NamedTuple):
     """A job, or a step of a shipment, and the stop that it became."""
@@ -23,7 +21,7 @@ class VroomTask(NamedTuple):
 
 def add_services(
     source: Source,
-    vehicles: Sequence[Mapping[str, Any]],
+    vehicles: Sequence[tuple[str, str]],
     tasks: Sequence[VroomTask],
     depots: set[str],
 ) -> None:
@@ -33,38 +31,41 @@ def add_services(
 
     Args:
         source: The file.
-        vehicles: VROOM's vehicles, whose types may have times of their own.
+        vehicles: The id and the type of each vehicle. Types may have times of their own.
         tasks: The tasks.
         depots: The places where vehicles start.
 
     Raises:
         UnreadableFile: A time is not a number.
     """
-    types = {str(each.get("type", "")) for each in vehicles}
     shared = Counter(each.place for each in tasks)
+    types = list(dict.fromkeys(kind for _, kind in vehicles))
     for each in tasks:
-        service, setup = (_time(source, each, name, types) for name in ("service", "setup"))
-        if service + setup:
-            each.stop["service"] = service + setup
-        if setup and (shared[each.place] > 1 or each.place in depots):
+        services, setups = (_times(source, each, name, types) for name in ("service", "setup"))
+        taken = {kind: services[kind] + setups[kind] for kind in types}
+        usual = taken[types[0]]
+        own = [(name, taken[kind]) for name, kind in vehicles if taken[kind] != usual]
+        if usual:
+            each.stop["service"] = usual
+        if own:
+            each.stop["services"] = [{"vehicle": name, "service": time} for name, time in own]
+        if any(setups.values()) and (shared[each.place] > 1 or each.place in depots):
             text = "is part of each service here, also where tasks at one place follow each other"
             note = f"setup of {each.of} {text}."
             if all(known.text != note for known in source.notes):
                 source.note("times", note)
 
 
-def _time(source: Source, task: VroomTask, name: str, types: set[str]) -> Any:
-    """Return a time of a task: for the types of all vehicles, or by itself."""
+def _times(source: Source, task: VroomTask, name: str, types: Sequence[str]) -> dict[str, Any]:
+    """Return a time of a task by the types of vehicles."""
     usual, of_types = task.task.get(name) or 0, task.task.get(f"{name}_per_type") or {}
     if not isinstance(of_types, dict):
         raise source.refusal("not-an-object", f"{task.where}/{name}_per_type", came=of_types)
-    found = [of_types.get(each, usual) for each in sorted(types)] or [usual]
-    for value in found:
+    found = {kind: of_types.get(kind, usual) for kind in types}
+    for value in found.values():
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise source.refusal("no-seconds", f"{task.where}/{name}", came=value)
-    if len(set(found)) > 1:
-        note_unused(source, f"{name}_per_type", task.of, _LONGEST_TAKEN)
-    return max(found)
+    return found
 
 
 def load_of_jobs(source: Source, problem: Mapping[str, Any]) -> str:

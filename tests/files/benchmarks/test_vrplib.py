@@ -166,6 +166,10 @@ READ = {
         text("VEHICLES : 2\n", "VEHICLES_FIXED_COST_SECTION\n1 5\n2 7.5\n"),
         ("vehicles", "fixed", [5, 7.5]),
     ),
+    "costs of a unit of distance that differ": (
+        text("VEHICLES : 2\n", "VEHICLES_UNIT_DISTANCE_COST_SECTION\n1 1\n2 3\n"),
+        ("vehicles", "per_distance", [1, 3]),
+    ),
     "fixed costs and prizes in units of distance": (
         text(
             "VEHICLES : 999999\nVEHICLES_FIXED_COST : 6\nVEHICLES_UNIT_DISTANCE_COST : 2\n",
@@ -272,9 +276,9 @@ REFUSED = {
         "TYPE : CTSP\nDIMENSION : 4\n" + PLACES + "CTSP_SET_SECTION\n1 2 -1\n",
         "TYPE must be TSP, ATSP or CVRP, got CTSP: cities of several colours",
     ),
-    "unit costs that differ": (
-        text("VEHICLES : 2\n", "VEHICLES_UNIT_DISTANCE_COST_SECTION\n1 1\n2 3\n"),
-        "VEHICLES_UNIT_DISTANCE_COST must be one number over 0 for all vehicles",
+    "unit costs below 0": (
+        text("VEHICLES : 2\n", "VEHICLES_UNIT_DISTANCE_COST_SECTION\n1 1\n2 -3\n"),
+        "VEHICLES_UNIT_DISTANCE_COST must be over 0, got -3",
     ),
     "distances beside times": (
         text("VEHICLES_MAX_DISTANCE : 90\n", WINDOWS),

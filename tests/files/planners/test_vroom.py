@@ -31,7 +31,7 @@ def test_vroom_s_skills_windows_and_breaks_are_read() -> None:
     assert "breaks of vehicles without exactly one time window were left out." not in notes
     for name in ("steps of vehicles", "priority of jobs"):
         assert f"{name} was not used: it is not supported for fleets." in notes
-    assert any(note.startswith("speed_factor of vehicles was not used") for note in notes)
+    assert (day["speed_factor"], "speed_factor" in evening) == (1.2, False)
 
 
 def test_vroom_s_most_tasks_are_left_out_beside_shipments() -> None:

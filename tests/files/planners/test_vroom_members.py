@@ -33,9 +33,9 @@ def problem(vehicle: Members | None = None, job: Members | None = None, **member
     return {"vehicles": vehicles, "jobs": jobs, **members}
 
 
-def of_second(vehicle: Members, **members: Any) -> Members:
+def of_second(vehicle: Members, usual: Members | None = None, **members: Any) -> Members:
     """A problem whose second vehicle differs from the first."""
-    made = problem(**members)
+    made = problem(usual, **members)
     made["vehicles"][1] |= vehicle
     return made
 
@@ -117,9 +117,63 @@ def test_the_first_objective_is_what_vroom_minimises_where_costs_are_said(name: 
     parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
 
 
+# The problem; the first objective's first leg or source; and members of both vehicles.
+DIFFERING = {
+    "hours, by the travel times": (
+        of_second({"costs": {"per_hour": 36}}, **CARS),
+        *(1800, [{}, {"per_distance": 0.01}]),
+    ),
+    "kilometres alone": (
+        of_second(
+            {"costs": {"per_km": 50, "per_hour": 0}}, usual={"costs": {"per_km": 20, "per_hour": 0}}
+        ),
+        *("great_circle", [{"per_distance": 0.02}, {"per_distance": 0.05}]),
+    ),
+    "hours and kilometres": (
+        of_second({"costs": {"per_km": 50, "per_hour": 36}}, **CARS),
+        *(20_000, [{"per_distance": 0, "per_time": 1}, {"per_distance": 0.05, "per_time": 0.01}]),
+    ),
+    "speeds": (
+        of_second({"speed_factor": 2}, **CARS),
+        *(1800, [{}, {"speed_factor": 2, "per_distance": 0.5}]),
+    ),
+    "speeds on the earth": (
+        of_second({"speed_factor": 0.5}),
+        *("great_circle", [{}, {"speed_factor": 0.5, "per_distance": 2}]),
+    ),
+    "speeds beside a matrix of costs": (
+        of_second({"speed_factor": 2}, matrices={"car": {"durations": SECONDS, "costs": METRES}}),
+        *(20_000, [{}, {"speed_factor": 2}]),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DIFFERING)
+def test_vehicles_that_differ_keep_their_own_prices_and_speeds(name: str) -> None:
+    value, leg, members = DIFFERING[name]
+    reading = read(value)
+    [objective, longest] = reading.request["objectives"]
+    assert (objective["matrix"][0][1] if "matrix" in objective else objective["from"]) == leg
+    time = "longest route" if "matrix" in longest else "time"
+    assert (objective["name"], longest["name"], longest["over"]) == ("cost", time, "max")
+    own = ("per_distance", "per_time", "speed_factor")
+    found = [
+        {name: each[name] for name in own if name in each} for each in reading.request["vehicles"]
+    ]
+    assert found == members
+    parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
+
+
+def test_types_of_vehicles_have_their_own_times_at_a_job() -> None:
+    job = {"service": 60, "setup": 5, "service_per_type": {"bike": 90}}
+    stop = read(of_second({"type": "bike"}, job=job)).request["stops"][1]
+    assert (stop["service"], stop["services"]) == (65, [{"vehicle": "2", "service": 95}])
+
+
 NOTED = {
-    "per_hour of costs of vehicles": of_second({"costs": {"per_hour": 36}}),
-    "per_km of costs of vehicles": of_second({"costs": {"per_km": 36}}, **CARS),
+    "per_hour of costs of vehicles is for the whole time": of_second(
+        {"costs": {"per_km": 36}}, **CARS
+    ),
     "per_km of costs of vehicles was not used: there are no matrices of distances": problem(
         {"costs": {"per_km": 5}}, matrices={"car": {"durations": SECONDS}}
     ),
@@ -136,11 +190,8 @@ NOTED = {
         {"profile": "bike"}, **CARS
     ),
     "profile of vehicles": problem({"profile": "truck"}),
-    "speed_factor of vehicles": of_second({"speed_factor": 2}),
+    "speed_factor of vehicles": of_second({"speed_factor": "fast"}),
     "setup of jobs is part of each service": problem(job={"setup": 60, "location": NEAR}),
-    "service_per_type of jobs": of_second(
-        {"type": "bike"}, job={"service": 60, "service_per_type": {"bike": 90}}
-    ),
     "max_load of breaks of vehicles": problem(
         {"breaks": [{"id": 1, "service": 60, "time_windows": [[0, 900]], "max_load": [1]}]}
     ),
