@@ -66,7 +66,7 @@ def read_instance(folder: Path, name: str, *, counts_vehicles: bool) -> FleetIns
     Raises:
         SystemExit: There is no such file.
     """
-    path = _found(folder, name, ".vrp" if name.startswith("X-") else ".txt")
+    path = _found(folder, name, ".vrp" if name.startswith("X") else ".txt")
     if path is None:
         raise SystemExit(f"there is no file of {name} in {folder}")
     bounds = Bounds(cities=_MOST_STOPS, matrix_cities=_MOST_STOPS, cells=2**28)
@@ -121,8 +121,14 @@ def _found(folder: Path, name: str, suffix: str) -> Path | None:
 
 
 def _distance(fleet: Fleet, solution: Path) -> float:
-    """Return the distance of the routes in a file of CVRPLIB, whose customers are numbered."""
+    """Return the first length of the routes in a file of CVRPLIB, whose customers are numbered.
+
+    Where vehicles differ, each route is that of the vehicle of its number.
+    """
     lines = solution.read_text(encoding="utf-8").splitlines()
     routes = [line.partition(":")[2].split() for line in lines if line.lower().startswith("route")]
-    plan = Plan(tuple(Route(0, tuple(map(int, stops))) for stops in routes if stops))
+    types = fleet.rules.vehicles
+    kinds = [kind for kind, each in enumerate(types) for _ in range(each.count)]
+    driven = zip(kinds if len(types) > 1 else [0] * len(routes), routes, strict=False)
+    plan = Plan(tuple(Route(kind, tuple(map(int, stops))) for kind, stops in driven if stops))
     return round(float(points_of(fleet, [plan])[0, 0]), 3)

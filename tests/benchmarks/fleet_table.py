@@ -44,6 +44,9 @@ _ABOUT = {
     "be compared on the same ones.",
     "x": "CVRPLIB X, total against longest route: how far the least total is above the best known, "
     "and how many plans the\nfront has.",
+    "hfvrp": "Mixed fleets of Pessoa, Sadykov and Uchoa (2018), total cost against longest route: "
+    "how far the least cost is above\nthat of the best known routes, and how many plans the front "
+    "has.",
     "solomon": "Solomon's instances of 100 customers, distance against vehicles.",
     "homberger": "Instances of Gehring and Homberger of 200 to 1000 customers, distance against "
     "vehicles.",
@@ -78,7 +81,7 @@ def table_of(name: str) -> str:
             return _boxes(rows)
         case "bi-cvrp":
             return _bi_cvrp(rows)
-        case "x":
+        case "x" | "hfvrp":
             return _gaps(rows)
     return f"{_ENDS}\n{_ends(rows)}"
 

@@ -10,18 +10,21 @@ Every plan is checked. The sets, of which `--sets` chooses:
   PyVRP and OR-Tools in a sweep.
 - `x`: CVRPLIB X, total against longest route: how far the least total is above the best known.
   PyVRP alone.
+- `hfvrp`: mixed fleets of Pessoa, Sadykov and Uchoa (2018), total cost against longest route: how
+  far the least cost is above that of the best known routes.
 - `solomon`, `homberger`, `li-lim`: distance against vehicles. PyVRP, and if `--methods` names them
   VROOM and OR-Tools, plan twice, with the whole time for each end.
 - `longest`: six of Solomon's, distance against longest route. PyVRP in a sweep.
 
-The last five are read by the service from files in the folder `--data`, or in folders in it. They
+The last six are read by the service from files in the folder `--data`, or in folders in it. They
 are at CVRPLIB (X and Solomon, with .sol files of the best known routes: also in github.com/PyVRP/
-VRPLIB, tests/data/cvrplib) and at sintef.no/projectweb/top (the others: also in github.com/
-Thundercok/VRPTW-Research-Optimization, data, and github.com/akjjan/pdptw_alns, pdp_100).
+VRPLIB, tests/data/cvrplib), in github.com/PyVRP/Instances (HFVRP) and at sintef.no/projectweb/top
+(the others: also in github.com/Thundercok/VRPTW-Research-Optimization, data, and github.com/akjjan/
+pdptw_alns, pdp_100).
 
 Prints tables, and stores `results/fleets.json`; what is stored is not measured again. All of it
 takes under three hours on one quiet core: `bi-cvrp` one, `solomon` and `li-lim` half an hour each,
-`x` and `homberger` 20 minutes each, `uniform` six and `longest` two.
+`x` and `homberger` 20 minutes each, `hfvrp` ten, `uniform` six and `longest` two.
 """
 
 import argparse
@@ -70,6 +73,10 @@ X = (
     *("X-n101-k25", "X-n200-k36", "X-n303-k21", "X-n401-k29", "X-n502-k39", "X-n599-k92"),
     *("X-n701-k44", "X-n801-k40", "X-n895-k37", "X-n1001-k43"),
 )
+HFVRP = (
+    *("X101-FSMFD", "X106-FSMD", "X110-HD", "X115-HVRP", "X120-FSMF"),
+    *("X200-HD", "X204-FSMD", "X209-FSMFD", "X214-HVRP", "X256-FSMF"),
+)
 LONGEST = ("C101", "C201", "R101", "R201", "RC101", "RC201")
 _RIVALS = {  # the module and the function of each, which takes a fleet and seconds
     SWEEP: "pyvrp_fleets.swept",
@@ -95,6 +102,7 @@ class Files(NamedTuple):
 _ENDS = (OURS, ALONE)
 FILES = {
     "x": Files(X, 60.0, (OURS, ALONE), counts_vehicles=False),
+    "hfvrp": Files(HFVRP, 60.0, (OURS,), counts_vehicles=False),
     "solomon": Files(names_of(SOLOMON), 10.0, _ENDS),
     "homberger": Files(names_of(HOMBERGER), 60.0, _ENDS),
     "li-lim": Files(names_of(LI_LIM), 10.0, _ENDS),
