@@ -205,7 +205,6 @@ class Judge:
         wanted = [(stop["due"][0], begin) for stop, begin in visits if _is_pair(stop.get("due"))]
         return float(sum(due - begin for due, begin in wanted if is_later(due, begin)))
 
-
     def _driven(self, objective: Json, vehicle: Json, path: list[int]) -> float:
         """Return what the legs of a path cost a vehicle."""
         return float(sum(self._leg(objective, vehicle, a, b) for a, b in pairwise(path)))
