@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
+from service.fleet.checks import Basis, check_depot, check_shipped, check_vehicle, check_visit
 from service.fleet.groups import NO_GROUPS, Groups, check_groups
-from service.fleet.rounding import is_over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 
 Array = NDArray[np.float64]
@@ -98,12 +98,24 @@ class Rules:
         for name, given in (("slack", self.slack > 0), ("leave", self.leave != "late")):
             if given and self.clock is None:
                 raise invalid(name, "untimed")
+        basis = self._basis()
         for index, vehicle in enumerate(self.vehicles):
-            _check_vehicle(self, vehicle, f"vehicles/{index}")
+            check_vehicle(vehicle, f"vehicles/{index}", basis)
         for index, visit in enumerate(self.visits):
-            _check_visit(self, visit, index)
+            if index in self.depots:
+                check_depot(visit, f"stops/{index}")
+            check_visit(visit, f"stops/{index}", basis)
         _check_shipments(self)
         check_groups(self.groups, self.depots, self.shipped)
+
+    def _basis(self) -> Basis:
+        return Basis(
+            timed=self.clock is not None,
+            summed=self.over[0] != "max",
+            limited=self.limited is not None,
+            ships=bool(self.shipments),
+            dimensions=self.dimensions,
+        )
 
     @property
     def n(self) -> int:
@@ -256,79 +268,6 @@ class Rules:
         return bool(self.spans) or self.has_longest
 
 
-def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
-    if len(vehicle.capacity) != rules.dimensions:
-        values = {"numbers": rules.dimensions, "other": "/vehicles/0"}
-        raise invalid(f"{part}/capacity", "not-as-first", **values, came=len(vehicle.capacity))
-    _check_span(rules, vehicle.shift, f"{part}/shift")
-    if vehicle.max_overtime and vehicle.shift[1] == inf:
-        raise invalid(f"{part}/max_overtime", "endless-shift")
-    _check_initial_load(rules, vehicle, part)
-    _check_trips(rules, vehicle, part)
-    _check_breaks(rules, vehicle, part)
-    _check_prices(rules, vehicle, part)
-    for name, given in (("longest", vehicle.longest != inf), ("shortest", vehicle.shortest > 0)):
-        if rules.limited is None and given:
-            raise invalid(f"{part}/{name}", "unlimited")
-    if vehicle.shortest > vehicle.longest:
-        raise invalid(f"{part}/shortest", "over-longest", limit=vehicle.longest)
-    if vehicle.max_stops is not None and vehicle.min_stops > vehicle.max_stops:
-        raise invalid(f"{part}/min_stops", "over-max-stops", limit=vehicle.max_stops)
-
-
-def _check_prices(rules: Rules, vehicle: VehicleType, part: str) -> None:
-    """Raise a refusal of prices and factors that count in nothing."""
-    prices = {
-        "fixed": vehicle.fixed > 0,
-        "per_distance": vehicle.per_distance != 1,
-        "per_time": vehicle.per_time > 0,
-    }
-    for name, given in prices.items():
-        if given and rules.over[0] == "max":
-            raise invalid(f"{part}/{name}", "unsummed")
-    timed = {
-        "per_time": vehicle.per_time > 0,
-        "speed_factor": vehicle.speed_factor != 1,
-        "service_factor": vehicle.service_factor != 1,
-    }
-    for name, given in timed.items():
-        if given and rules.clock is None:
-            raise invalid(f"{part}/{name}", "untimed")
-
-
-def _check_initial_load(rules: Rules, vehicle: VehicleType, part: str) -> None:
-    load = vehicle.initial_load
-    if load and len(load) != rules.dimensions:
-        numbers, came = rules.dimensions, len(load)
-        raise invalid(f"{part}/initial_load", "not-as-capacity", numbers=numbers, came=came)
-    for dimension, (loaded, most) in enumerate(zip(load, vehicle.capacity, strict=False)):
-        if loaded > most:
-            where = f"{part}/initial_load/{dimension}"
-            raise invalid(where, "over-capacity", limit=most, came=loaded)
-
-
-def _check_breaks(rules: Rules, vehicle: VehicleType, part: str) -> None:
-    free = 0.0
-    for index, (opens, closes, length) in enumerate(vehicle.breaks):
-        where = f"{part}/breaks/{index}/window"
-        if rules.clock is None:
-            raise invalid(where, "untimed")
-        if closes < opens or is_over(free, opens):
-            raise invalid(where, "break-not-after", begin=opens, end=closes)
-        free = closes + length
-
-
-def _check_trips(rules: Rules, vehicle: VehicleType, part: str) -> None:
-    if vehicle.max_trips is not None and not vehicle.reload:
-        raise invalid(f"{part}/max_trips", "no-reload")
-    if vehicle.reload and vehicle.max_stops is not None:
-        raise invalid(f"{part}/max_stops", "also-given", member="reload")
-    if rules.shipments:
-        for name, given in (("reload", vehicle.reload), ("max_stops", vehicle.max_stops)):
-            if given:
-                raise invalid(f"{part}/{name}", "also-given", member="shipments")
-
-
 def _check_objectives(rules: Rules) -> None:
     """Raise a refusal unless the objectives fit each other, and the data what they measure."""
     first, *others = rules.over
@@ -371,61 +310,6 @@ def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
             raise invalid(where, "breaks-of-measure", measure=measure, other=f"/{part}")
 
 
-def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
-    part = f"stops/{index}"
-    if index in rules.depots:
-        _check_depot(visit, part)
-    for name, timed in (
-        ("service", visit.service),
-        ("services", visit.services),
-        ("due", visit.due < inf or visit.wanted > 0),
-        ("release", visit.release),
-    ):
-        if timed and rules.clock is None:
-            raise invalid(f"{part}/{name}", "untimed")
-    if visit.wanted > visit.due:
-        raise invalid(f"{part}/due", "ends-early", begin=visit.wanted, end=visit.due)
-    for number, window in enumerate(visit.windows):
-        alone = len(visit.windows) == 1
-        _check_span(rules, window, f"{part}/window" if alone else f"{part}/windows/{number}")
-    if visit.demand and len(visit.demand) != rules.dimensions:
-        numbers, came = rules.dimensions, len(visit.demand)
-        raise invalid(f"{part}/demand", "not-as-capacities", numbers=numbers, came=came)
-    if visit.prize is not None and rules.over[0] == "max":
-        raise invalid(f"{part}/prize", "unsummed")
-
-
-def _check_depot(visit: Visit, part: str) -> None:
-    members = (
-        ("window", visit.windows != (ALWAYS,)),
-        ("demand", any(visit.demand)),
-        ("service", visit.service),
-        ("services", visit.services),
-        ("prize", visit.prize is not None),
-        ("due", visit.due < inf or visit.wanted > 0),
-        ("release", visit.release),
-        ("urgency", visit.urgency != 1),
-        ("skills", visit.skills),
-        ("vehicle", visit.vehicles),
-    )
-    given = [name for name, is_given in members if is_given]
-    if not given:
-        return
-    first, *others = given
-    if first == "window":
-        code = "window-and-more-of-depot" if others else "window-of-depot"
-    else:
-        code = "several-of-depot" if others else "of-depot"
-    raise invalid(f"{part}/{first}", code, members=" or ".join(others) or None)
-
-
-def _check_span(rules: Rules, span: Span, part: str) -> None:
-    if span[0] > span[1]:
-        raise invalid(part, "ends-early", begin=span[0], end=span[1])
-    if rules.clock is None and span != ALWAYS:
-        raise invalid(part, "untimed")
-
-
 def _check_shipments(rules: Rules) -> None:
     parts: dict[int, str] = {}
     for index, shipment in enumerate(rules.shipments):
@@ -435,15 +319,7 @@ def _check_shipments(rules: Rules) -> None:
                 raise invalid(part, "shipped-to-depot")
             if parts.setdefault(stop, part) != part:
                 raise invalid(part, "in-two-shipments", other=f"/{parts[stop]}")
-            _check_shipped(rules.visits[stop], stop)
+            check_shipped(rules.visits[stop], stop)
         delivery = rules.visits[shipment.delivery]
         if any(delivery.demand) or delivery.prize is not None:
             raise invalid(f"shipments/{index}/delivery", "delivery-asks")
-
-
-def _check_shipped(visit: Visit, stop: int) -> None:
-    """Raise a refusal where a stop of a shipment asks for what only other stops can."""
-    if len(visit.windows) > 1:
-        raise invalid(f"stops/{stop}/windows", "windows-of-shipment")
-    if visit.release:
-        raise invalid(f"stops/{stop}/release", "release-of-shipment")

@@ -7,13 +7,12 @@ from service.fleet.search.changes import begin_iteration, measure_changed, resto
 from service.fleet.search.found import Found, offer
 from service.fleet.search.other_vehicle import SELDOM, change_vehicles, choose_type
 from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_outside
-from service.fleet.search.route import lacking, values_of
 from service.fleet.search.rows import write_point
 from service.fleet.search.ruin import ruin, uniform
+from service.fleet.search.values import lacking, values_of
 from service.fleet.search.working_plan import (
     MISSING,
     MORE_TRIPS,
-    ONE_TYPE,
     USED,
     State,
     total_cost,
@@ -55,7 +54,6 @@ def anneal(
         begin_iteration(plan)
         try_outside(plan)
         ruin(state)
-        plan.counts[ONE_TYPE] = -1
         if problem.mixed:
             choose_type(state)
         more = problem.reloads and random_below(plan.random, _MORE_TRIPS) == 0

@@ -14,7 +14,7 @@ from math import inf
 
 import numpy as np
 
-from service.fleet.fleet import Array, Fleet, prices_of
+from service.fleet.fleet import Array, Fleet
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -96,7 +96,6 @@ class Directions:
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
         self._bound = _least_longest(fleet)
         optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
-        self._prices = prices_of(fleet.rules)
         self._by_limit = [over in _LIMITED for over in self._over]
         two = len(self._over) == OBJECTIVES and sum(self._by_limit) == 1
         self._counts_vehicles = two and "vehicles" in self._over and not optional
@@ -315,7 +314,7 @@ class Directions:
         by_measure = dict.fromkeys(self._over, 0.0)
         longest, routes, penalty = inf, 2**31, 0.0
         for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
-            if over == "sum" and index > 0:
+            if over == "sum" and not (index == 0 and self._rules.priced):
                 costs[layer] += weights[index]
             elif over == "max":
                 # Where only the longest route counts, a plan of short routes is a good start.
@@ -327,7 +326,7 @@ class Directions:
             by_measure[over] = float(weights[index])
         paid = self._over.index("unassigned") if "unassigned" in self._over else 0
         return Direction(
-            costs=costs + weights[0] * self._prices,
+            costs=(float(costs[0]), float(costs[1])),
             vehicle=by_measure.get("vehicles", 0.0),
             fixed=float(weights[0]),
             prize=float(weights[paid]),

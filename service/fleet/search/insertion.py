@@ -11,8 +11,9 @@ from service.fleet.search.spots import Place, Spot, better_at, nowhere
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
-    ONE_TYPE,
     TRY,
+    TYPE,
+    TYPES_END,
     UNTIL_BLINK,
     USED,
     State,
@@ -50,7 +51,7 @@ def best_place(state: State, stop: int, most: float) -> Place:
         best = _better(state, stop, slot, plan.previous[beside], best)
     if tried < _FEW or best.slot < 0:
         best = _anywhere(state, stop, best)
-    for kind in range(len(problem.capacity)):
+    for kind in range(plan.counts[TYPE], plan.counts[TYPES_END]):
         slot = new_slot(state, kind)
         if slot >= 0 and has_room(problem, plan, stop, slot):
             best = _better(state, stop, slot, len(problem.demand) + 2 * slot, best)
@@ -62,8 +63,6 @@ def best_place(state: State, stop: int, most: float) -> Place:
 def new_slot(state: State, kind: int) -> int:
     """Return the slot of a vehicle of a type for one more route; -1 if there may be none."""
     problem, plan, direction = state
-    if plan.counts[ONE_TYPE] >= 0 and kind != plan.counts[ONE_TYPE]:
-        return -1
     return free_slot(problem, plan, kind) if plan.counts[USED] < direction.routes else -1
 
 

@@ -4,13 +4,16 @@ import numpy as np
 
 from service.fleet.search.changes import save_slot
 from service.fleet.search.problem import Problem
-from service.fleet.search.route import measure, route_cost, values_of
+from service.fleet.search.route import measure
+from service.fleet.search.values import route_cost, values_of
 from service.fleet.search.working_plan import (
-    ONE_TYPE,
     SAVED,
+    TYPE,
+    TYPES_END,
     USED,
     State,
     WorkingPlan,
+    any_type,
     free_slot,
 )
 from service.jit import compiled, inlined, standalone
@@ -61,12 +64,13 @@ def choose_type(state: State) -> None:
     A route that lost stops is then given to that type, so that a larger vehicle can be filled.
     """
     problem, plan, _ = state
+    any_type(problem, plan)
     if random_below(plan.random, _ONE_TYPE) > 0:
         return
     kind = random_below(plan.random, len(problem.capacity))
     if plan.counts[USED] > 0 and random_below(plan.random, _ANY_TYPE) > 0:
         kind = problem.kind[plan.used[random_below(plan.random, plan.counts[USED])]]
-    plan.counts[ONE_TYPE] = kind
+    plan.counts[TYPE], plan.counts[TYPES_END] = kind, kind + 1
     if plan.counts[SAVED] > 0:
         _give(state, plan.saved[random_below(plan.random, plan.counts[SAVED])], kind)
 

@@ -18,18 +18,18 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.route import (
     Span,
-    Values,
-    grown_cost,
     head_at,
     joined,
     measure,
     stay,
     tail_at,
-    values_of,
 )
 from service.fleet.search.spots import Place, nowhere
+from service.fleet.search.values import Values, grown_cost, values_of
 from service.fleet.search.working_plan import (
     TRY,
+    TYPE,
+    TYPES_END,
     USED,
     State,
     WorkingPlan,
@@ -77,7 +77,7 @@ def best_pair(state: State, pickup: int, most: float) -> Place:
     if tried + more < _FEW or best.slot < 0:
         for number in range(plan.counts[USED]):
             best = _in_route(state, pickup, plan.used[number], best)
-    for kind in range(len(problem.capacity)):
+    for kind in range(plan.counts[TYPE], plan.counts[TYPES_END]):
         slot = new_slot(state, kind)
         if slot >= 0:
             best = _in_route(state, pickup, slot, best)

@@ -325,7 +325,7 @@ class Direction(NamedTuple):
     by.
     """
 
-    costs: Array  # (v, 2), by type of vehicles: at its prices
+    costs: tuple[float, float]  # without prices
     vehicle: float
     fixed: float
     prize: float

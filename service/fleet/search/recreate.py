@@ -14,13 +14,13 @@ from service.fleet.search.spots import Place, Spot, put, take_back
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
-    ONE_TYPE,
     OUTSIDE,
     REMOVED,
     SAVED,
     UNTIL_BLINK,
     State,
     WorkingPlan,
+    any_type,
     leave_out,
     leg,
     link,
@@ -186,5 +186,6 @@ def insert_all(state: State, order: int) -> None:
     for place in range(plan.counts[OUTSIDE]):
         plan.removed[place] = plan.outside[place]
     plan.counts[REMOVED] = plan.counts[OUTSIDE]
-    plan.counts[MORE_TRIPS], plan.counts[ONE_TYPE] = problem.reloads, -1
+    plan.counts[MORE_TRIPS] = problem.reloads
+    any_type(problem, plan)
     recreate(state, order)

@@ -4,6 +4,7 @@ import numpy as np
 
 from service.fleet.search.problem import Problem
 from service.fleet.search.route import measure
+from service.fleet.search.values import at_prices
 from service.fleet.search.working_plan import State, WorkingPlan, leg, way
 from service.jit import inlined, standalone
 
@@ -83,11 +84,13 @@ def _loading(state: State, slot: int, place: int) -> tuple[int, float]:
         via = problem.reload[kind, number]
         if via < 0:
             break
-        detour = 0.0
-        for layer in range(plan.step.shape[1]):
-            longer = way(problem, profile, before, via, stop, layer)
-            longer -= leg(problem, profile, before, stop, layer)
-            detour += direction.costs[kind, layer] * longer
+        first = way(problem, profile, before, via, stop, 0)
+        first -= leg(problem, profile, before, stop, 0)
+        second = way(problem, profile, before, via, stop, 1)
+        second -= leg(problem, profile, before, stop, 1)
+        detour = direction.costs[0] * first + direction.costs[1] * second
+        if problem.priced:
+            detour += direction.fixed * at_prices(problem, kind, first, second)
         if detour < least:
             best, least = via, detour
     return best, least

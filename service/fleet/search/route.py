@@ -8,8 +8,6 @@ from service.fleet.rounding import is_over
 from service.fleet.search.begins import begin_at, weigh_begins
 from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
-    ARRIVAL,
-    EARLINESS,
     FIRST,
     LATENESS,
     LOADED,
@@ -20,6 +18,7 @@ from service.fleet.search.problem import (
     Problem,
 )
 from service.fleet.search.rests import rested
+from service.fleet.search.values import lacking, route_cost, values_of
 from service.fleet.search.working_plan import (
     USED,
     State,
@@ -86,90 +85,6 @@ def tail_at(plan: WorkingPlan, node: int) -> Span:
 @inlined
 def _set_span(rows: Array, node: int, span: Span) -> None:
     rows[node, 0], rows[node, 1], rows[node, 2] = span.time, span.early, span.late
-
-
-class Values(NamedTuple):
-    """The values of a route: its length in both costs, and what else an objective may measure."""
-
-    first: float
-    second: float
-    overtime: float
-    lateness: float
-    loaded: float  # loads times distances
-    early: float
-    arrival: float  # weighted
-
-
-@inlined
-def route_cost(state: State, kind: int, values: Values) -> float:
-    """Return the cost of a route that visits a stop, by a type of vehicles."""
-    problem, _, direction = state
-    cost = (
-        direction.costs[kind, 0] * values.first
-        + direction.costs[kind, 1] * values.second
-        + direction.vehicle
-        + direction.fixed * problem.fixed[kind]
-        + direction.overtime * values.overtime
-        + direction.lateness * values.lateness
-        + direction.load_distance * values.loaded
-    )
-    if problem.timely:
-        cost += direction.earliness * values.early + direction.arrival * values.arrival
-    if direction.beyond > 0:
-        cost += direction.beyond * beyond_rules(problem, kind, values)
-    length = values.first if problem.swept == 0 else values.second
-    return cost + direction.penalty * max(0.0, length - direction.longest)
-
-
-@inlined
-def at_prices(problem: Problem, kind: int, first: float, second: float) -> float:
-    """Return the first length of a route of both lengths, at the prices of its vehicle."""
-    time = first if problem.clock == 0 else second
-    return float(problem.per_distance[kind] * first + problem.per_time[kind] * time)
-
-
-@inlined
-def beyond_rules(problem: Problem, kind: int, values: Values) -> float:
-    """Return by how much a route is too long, and ends too late."""
-    length = values.first if problem.limited == 0 else values.second
-    late = max(0.0, values.overtime - problem.most_overtime[kind])
-    return late + max(0.0, length - problem.most_length[kind])
-
-
-@inlined
-def grown_cost(state: State, slot: int, more: int, values: Values) -> float:
-    """Return what the cost of a route grows by with a number of stops more; without breaks."""
-    problem, plan, _ = state
-    kind = problem.kind[slot]
-    cost = route_cost(state, kind, values) - plan.plain[slot]
-    more += plan.size[slot]
-    return cost + (lacking(state, kind, more, values) if problem.bounded_below else 0.0)
-
-
-@compiled
-def lacking(state: State, kind: int, size: int, values: Values) -> float:
-    """Return what it costs that a route has too few stops, or is too short."""
-    problem, _, direction = state
-    length = values.first if problem.limited == 0 else values.second
-    cost = direction.required * max(0, problem.min_stops[kind] - size)
-    if problem.shortest[kind] > 0 and _is_over(problem.shortest[kind], length):
-        cost += direction.required * (2 - length / problem.shortest[kind])
-    return cost
-
-
-@inlined
-def values_of(plan: WorkingPlan, slot: int) -> Values:
-    """Return the values of a route."""
-    value = plan.value[slot]
-    return Values(
-        value[FIRST],
-        value[SECOND],
-        value[OVERTIME],
-        value[LATENESS],
-        value[LOADED],
-        value[EARLINESS],
-        value[ARRIVAL],
-    )
 
 
 @standalone

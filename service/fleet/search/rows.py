@@ -13,7 +13,8 @@ from service.fleet.search.problem import (
     Nodes,
     Problem,
 )
-from service.fleet.search.route import at_prices, measure
+from service.fleet.search.route import measure
+from service.fleet.search.values import at_prices
 from service.fleet.search.working_plan import (
     OUTSIDE,
     USED,
@@ -118,16 +119,25 @@ def _joined_value(problem: Problem, plan: WorkingPlan, over: int, objective: int
         return float(used)
     if over == UNASSIGNED or used == 0:
         return 0.0
+    if objective == 0 and problem.priced:
+        return _at_prices(problem, plan)
     column = problem.column[objective]
     total, longest, shortest = 0.0, 0.0, np.inf
     for number in range(used):
-        slot = plan.used[number]
-        value = float(plan.value[slot, column])
-        if objective == 0 and problem.priced:
-            first, second = plan.value[slot, FIRST], plan.value[slot, SECOND]
-            value = at_prices(problem, problem.kind[slot], first, second)
+        value = float(plan.value[plan.used[number], column])
         total += value
         longest, shortest = max(longest, value), min(shortest, value)
     if over == MAX:
         return longest
     return longest - shortest if over == IMBALANCE else total
+
+
+@compiled
+def _at_prices(problem: Problem, plan: WorkingPlan) -> float:
+    """Return the first length of a plan at the prices of its vehicles."""
+    total = 0.0
+    for number in range(plan.counts[USED]):
+        slot = plan.used[number]
+        first, second = plan.value[slot, FIRST], plan.value[slot, SECOND]
+        total += at_prices(problem, problem.kind[slot], first, second)
+    return total

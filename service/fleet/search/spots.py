@@ -15,14 +15,13 @@ from service.fleet.search.problem import (
     Problem,
 )
 from service.fleet.search.route import (
-    Values,
-    grown_cost,
     head_at,
     joined,
     measure,
     stay,
     tail_at,
 )
+from service.fleet.search.values import Values, grown_cost
 from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
@@ -172,6 +171,8 @@ def _costs_too_much(state: State, slot: int, first: float, second: float, most: 
         return False
     cost = 0.0 if problem.clock == 0 else direction.costs[0] * first
     cost += 0.0 if problem.clock == 1 else direction.costs[1] * second
+    if problem.priced and problem.clock != 0:
+        cost += direction.fixed * problem.per_distance[problem.kind[slot]] * first
     return cost >= most + _ROUNDING * plan.plain[slot]
 
 

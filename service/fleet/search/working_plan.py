@@ -11,10 +11,10 @@ from service.jit import by_reference, compiled, inlined
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
 # what is saved; the number of the iteration; stops to insert; in how many places one is passed by,
 # and how many come before the next; and the number of the stop that is inserted, of all so far;
-# whether vehicles may begin one trip more; and the type of vehicles that may begin routes, -1 for
-# all.
+# whether vehicles may begin one trip more; and the first of the types of vehicles that may begin
+# routes, and the one after the last.
 USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
-BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS, ONE_TYPE = 8, 9, 10, 11, 12
+BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS, TYPE, TYPES_END = 8, 9, 10, 11, 12, 13
 MOST_STATES = 24  # ways to have taken so many breaks up to a stop, of which none is always better
 
 
@@ -67,7 +67,7 @@ class WorkingPlan(NamedTuple):
     saved_outside: Nodes  # (n,)
     touched: Indices  # (r,), by slot: the iteration that changed it last
     ruined: Indices  # (n,), by stop: the iteration that last took stops out of its trip
-    counts: Indices  # (13,)
+    counts: Indices  # (14,)
     random: Indices  # (1,)
 
 
@@ -128,9 +128,10 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved_outside=_nothing(n),
         touched=np.zeros(r, np.int64),
         ruined=np.zeros(n, np.int64),
-        counts=np.zeros(13, np.int64),
+        counts=np.zeros(14, np.int64),
         random=np.array([_mixed(seed)], np.int64),
     )
+    plan.counts[TYPES_END] = len(problem.capacity)
     for stop in problem.tasks.tolist():
         plan.out[stop] = plan.counts[OUTSIDE]
         plan.outside[plan.counts[OUTSIDE]] = stop
@@ -234,6 +235,12 @@ def unlink(plan: WorkingPlan, stop: int) -> None:
         if plan.via[after] < 0 and after < len(plan.route):
             plan.via[after] = plan.via[stop]
         plan.via[stop] = -1
+
+
+@inlined
+def any_type(problem: Problem, plan: WorkingPlan) -> None:
+    """Let vehicles of all types begin routes."""
+    plan.counts[TYPE], plan.counts[TYPES_END] = 0, len(problem.capacity)
 
 
 @compiled

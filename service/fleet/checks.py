@@ -1,0 +1,162 @@
+"""Check that what each stop and each type of vehicles asks for fits the rest of a fleet's rules."""
+
+from math import inf
+from typing import NamedTuple
+
+from service.errors import invalid
+from service.fleet.rounding import is_over
+from service.fleet.vehicles import ALWAYS, Span, VehicleType, Visit
+
+
+class Basis(NamedTuple):
+    """What stops and vehicles must fit.
+
+    Attributes:
+        timed: Whether there is a clock.
+        summed: Whether the first objective is a sum.
+        limited: Whether the lengths of routes can be bounded.
+        ships: Whether there are shipments.
+        dimensions: The number of dimensions of demands and capacities.
+    """
+
+    timed: bool
+    summed: bool
+    limited: bool
+    ships: bool
+    dimensions: int
+
+
+def check_vehicle(vehicle: VehicleType, part: str, basis: Basis) -> None:
+    """Raise a refusal if a type of vehicles contradicts itself or the other rules."""
+    if len(vehicle.capacity) != basis.dimensions:
+        values = {"numbers": basis.dimensions, "other": "/vehicles/0"}
+        raise invalid(f"{part}/capacity", "not-as-first", **values, came=len(vehicle.capacity))
+    _check_span(vehicle.shift, f"{part}/shift", basis)
+    if vehicle.max_overtime and vehicle.shift[1] == inf:
+        raise invalid(f"{part}/max_overtime", "endless-shift")
+    _check_initial_load(vehicle, part, basis)
+    _check_trips(vehicle, part, basis)
+    _check_breaks(vehicle, part, basis)
+    _check_prices(vehicle, part, basis)
+    for name, given in (("longest", vehicle.longest != inf), ("shortest", vehicle.shortest > 0)):
+        if not basis.limited and given:
+            raise invalid(f"{part}/{name}", "unlimited")
+    if vehicle.shortest > vehicle.longest:
+        raise invalid(f"{part}/shortest", "over-longest", limit=vehicle.longest)
+    if vehicle.max_stops is not None and vehicle.min_stops > vehicle.max_stops:
+        raise invalid(f"{part}/min_stops", "over-max-stops", limit=vehicle.max_stops)
+
+
+def _check_prices(vehicle: VehicleType, part: str, basis: Basis) -> None:
+    """Raise a refusal of prices and factors that count in nothing."""
+    prices = {
+        "fixed": vehicle.fixed > 0,
+        "per_distance": vehicle.per_distance != 1,
+        "per_time": vehicle.per_time > 0,
+    }
+    for name, given in prices.items():
+        if given and not basis.summed:
+            raise invalid(f"{part}/{name}", "unsummed")
+    timed = {
+        "per_time": vehicle.per_time > 0,
+        "speed_factor": vehicle.speed_factor != 1,
+        "service_factor": vehicle.service_factor != 1,
+    }
+    for name, given in timed.items():
+        if given and not basis.timed:
+            raise invalid(f"{part}/{name}", "untimed")
+
+
+def _check_initial_load(vehicle: VehicleType, part: str, basis: Basis) -> None:
+    load = vehicle.initial_load
+    if load and len(load) != basis.dimensions:
+        numbers, came = basis.dimensions, len(load)
+        raise invalid(f"{part}/initial_load", "not-as-capacity", numbers=numbers, came=came)
+    for dimension, (loaded, most) in enumerate(zip(load, vehicle.capacity, strict=False)):
+        if loaded > most:
+            where = f"{part}/initial_load/{dimension}"
+            raise invalid(where, "over-capacity", limit=most, came=loaded)
+
+
+def _check_breaks(vehicle: VehicleType, part: str, basis: Basis) -> None:
+    free = 0.0
+    for index, (opens, closes, length) in enumerate(vehicle.breaks):
+        where = f"{part}/breaks/{index}/window"
+        if not basis.timed:
+            raise invalid(where, "untimed")
+        if closes < opens or is_over(free, opens):
+            raise invalid(where, "break-not-after", begin=opens, end=closes)
+        free = closes + length
+
+
+def _check_trips(vehicle: VehicleType, part: str, basis: Basis) -> None:
+    if vehicle.max_trips is not None and not vehicle.reload:
+        raise invalid(f"{part}/max_trips", "no-reload")
+    if vehicle.reload and vehicle.max_stops is not None:
+        raise invalid(f"{part}/max_stops", "also-given", member="reload")
+    if basis.ships:
+        for name, given in (("reload", vehicle.reload), ("max_stops", vehicle.max_stops)):
+            if given:
+                raise invalid(f"{part}/{name}", "also-given", member="shipments")
+
+
+def check_visit(visit: Visit, part: str, basis: Basis) -> None:
+    """Raise a refusal if a stop contradicts itself or the other rules."""
+    for name, timed in (
+        ("service", visit.service),
+        ("services", visit.services),
+        ("due", visit.due < inf or visit.wanted > 0),
+        ("release", visit.release),
+    ):
+        if timed and not basis.timed:
+            raise invalid(f"{part}/{name}", "untimed")
+    if visit.wanted > visit.due:
+        raise invalid(f"{part}/due", "ends-early", begin=visit.wanted, end=visit.due)
+    for number, window in enumerate(visit.windows):
+        alone = len(visit.windows) == 1
+        _check_span(window, f"{part}/window" if alone else f"{part}/windows/{number}", basis)
+    if visit.demand and len(visit.demand) != basis.dimensions:
+        numbers, came = basis.dimensions, len(visit.demand)
+        raise invalid(f"{part}/demand", "not-as-capacities", numbers=numbers, came=came)
+    if visit.prize is not None and not basis.summed:
+        raise invalid(f"{part}/prize", "unsummed")
+
+
+def check_depot(visit: Visit, part: str) -> None:
+    """Raise a refusal if a depot asks for what only other stops can."""
+    members = (
+        ("window", visit.windows != (ALWAYS,)),
+        ("demand", any(visit.demand)),
+        ("service", visit.service),
+        ("services", visit.services),
+        ("prize", visit.prize is not None),
+        ("due", visit.due < inf or visit.wanted > 0),
+        ("release", visit.release),
+        ("urgency", visit.urgency != 1),
+        ("skills", visit.skills),
+        ("vehicle", visit.vehicles),
+    )
+    given = [name for name, is_given in members if is_given]
+    if not given:
+        return
+    first, *others = given
+    if first == "window":
+        code = "window-and-more-of-depot" if others else "window-of-depot"
+    else:
+        code = "several-of-depot" if others else "of-depot"
+    raise invalid(f"{part}/{first}", code, members=" or ".join(others) or None)
+
+
+def _check_span(span: Span, part: str, basis: Basis) -> None:
+    if span[0] > span[1]:
+        raise invalid(part, "ends-early", begin=span[0], end=span[1])
+    if not basis.timed and span != ALWAYS:
+        raise invalid(part, "untimed")
+
+
+def check_shipped(visit: Visit, stop: int) -> None:
+    """Raise a refusal where a stop of a shipment asks for what only other stops can."""
+    if len(visit.windows) > 1:
+        raise invalid(f"stops/{stop}/windows", "windows-of-shipment")
+    if visit.release:
+        raise invalid(f"stops/{stop}/release", "release-of-shipment")
