@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import httpx
 import typer
 from paretour import Refused, Remedy, UnexpectedAnswer
+from paretour.remedies import in_words
 
 from service.errors.printable import printable
 from service.files.reading import UnreadableFile
@@ -54,8 +55,6 @@ def exit_on_error() -> Iterator[None]:
 def exit_with(sentence: str, code: int, remedies: Sequence[Remedy] = ()) -> typer.Exit:
     """Print a sentence on stderr, and what helps; return the exception that ends the command."""
     typer.echo(f"paretour: {printable(sentence)}", err=True)
-    if remedies:
-        typer.echo("Each of these changes to the request alone helps, as was tried:", err=True)
-    for remedy in remedies:
-        typer.echo(f"- {printable(remedy.detail)}", err=True)
+    for line in in_words(remedies):
+        typer.echo(printable(line), err=True)
     return typer.Exit(code)

@@ -7,13 +7,13 @@ from typing import cast
 from paretour import Offer, Offers, OffersRequest
 from rich.console import Console
 
+from service.amounts import clock_time
 from service.cli.backends import RemoteBackend
 from service.cli.data import print_data
 from service.cli.errors import exit_on_error
 from service.cli.inputs import read_object
 from service.cli.output import table_of
 from service.errors.printable import printable
-from service.mcp.amounts import clock_time
 
 
 def run_offers(front: str, asked: Path, as_json: bool, backend: RemoteBackend) -> None:

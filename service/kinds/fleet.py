@@ -89,9 +89,13 @@ def _with_remedies(
         return refusal
     assert task.labels is not None
     unit = None if subject.clock is None else subject.clock.unit
-    vehicles = [name.id for name in subject.vehicles]
+    obstacles = refusal.obstacles if isinstance(refusal, NoTour) else ()
     asked = AskedFleet(
-        fleet=fleet, stops=[each.id for each in task.labels.stops], vehicles=vehicles, unit=unit
+        fleet=fleet,
+        stops=[each.id for each in task.labels.stops],
+        vehicles=[name.id for name in subject.vehicles],
+        unit=unit,
+        at_fault=[stop for each in obstacles for stop in each.cities],
     )
     actor = tools.actors.get(task.actor)
 

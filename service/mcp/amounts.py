@@ -1,14 +1,11 @@
-"""Read and write times, durations and budgets as people say them: "10:00", "2:10 h", "3%"."""
+"""Read times, durations and budgets as people say them: "10:00", "2:10 h", "3%"."""
 
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-MINUTE, HOUR, DAY = 60, 3600, 86400
-_TIMES = {"s": 1, "second": 1, "seconds": 1, "min": MINUTE, "minute": MINUTE, "minutes": MINUTE}
-SECONDS = {**_TIMES, "h": HOUR, "hour": HOUR, "hours": HOUR}  # in each unit of time
-_METRES = {"m": 1, "km": 1000}
-_FAR = 10_000  # metres, from which kilometres are said
+from service.amounts import DAY, HOUR, METRES, MINUTE, SECONDS
+
 # 10:00, 2:10 h, 10:00:30, and day 2, 8:05
 _CLOCK = re.compile(r"(?:day (\d{1,3}), ?)?(\d{1,6}):([0-5]\d)(?::([0-5]\d))?(?: ?h)?")
 _AMOUNT = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?) ?([^\d\s].*)?")
@@ -37,29 +34,6 @@ _HOLDERS = frozenset(
 _OWN = {"every": ("from", "to", "length", "step"), "slices": ("from",)}
 
 
-def clock_time(time: float, unit: str | None) -> str | float:
-    """Return a time of the day, as 8:05 or "day 2, 8:05"; the number in other units."""
-    if unit not in SECONDS:
-        return time
-    minutes = round(time * SECONDS[unit] / MINUTE)
-    days, minutes = divmod(minutes, DAY // MINUTE)
-    text = f"{minutes // MINUTE}:{minutes % MINUTE:02}"
-    return f"day {days + 1}, {text}" if days else text
-
-
-def amount(value: float, unit: str | None) -> str:
-    """Return a value with its unit, as "2:10 h", "12 min", "14.2 km" or "340 EUR"."""
-    if unit in SECONDS:
-        seconds = round(value * SECONDS[unit])
-        minutes = round(seconds / MINUTE)
-        if minutes >= MINUTE:
-            return f"{minutes // MINUTE}:{minutes % MINUTE:02} h"
-        return f"{minutes} min" if seconds >= MINUTE or not seconds else f"{seconds} s"
-    if unit == "m" and value >= _FAR:
-        return f"{value / _METRES['km']:.4g} km"
-    return f"{value:.6g}" + (f" {unit}" if unit else "")
-
-
 def number_in(text: str, unit: str | None) -> float:
     """Return the number, in a unit, that a text says, as 10:00, "2:10 h", "90 min" or "12 km".
 
@@ -74,7 +48,7 @@ def number_in(text: str, unit: str | None) -> float:
         value, given = float(found[1]), (found[2] or unit or "")
     else:
         raise ValueError(f"{text!r:.80} must be a number, a time as 10:00 or a duration as 2:10 h")
-    sizes = next((each for each in (SECONDS, _METRES) if given in each), {given: 1})
+    sizes = next((each for each in (SECONDS, METRES) if given in each), {given: 1})
     if (unit or "") not in sizes:
         known = "no unit" if unit is None else f"the unit {unit}"
         raise ValueError(f"{text!r:.80} must be in the unit of its objective, which has {known}")

@@ -11,8 +11,9 @@ from paretour.choice import knee
 from paretour.display import shown
 from paretour.kinds import kind_of
 from paretour.questions import Option, Question
+from paretour.remedies import in_words
 
-from service.mcp.amounts import amount
+from service.amounts import amount
 from service.mcp.routes import (
     Way,
     fairest,
@@ -56,14 +57,13 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
 
 def refusal_text(error: Refused) -> str:
     """Return the text of a refusal, with each change that helps and its JSON patch, if short."""
-    lines = [str(error)]
-    if error.remedies:
-        lines.append("Each of these changes to the request alone helps, as was tried:")
-    for remedy in error.remedies:
+    heading, *remedies = in_words(error.remedies) or [""]
+    lines = [str(error), *([heading] if heading else [])]
+    for said, remedy in zip(remedies, error.remedies, strict=True):
         patch = json.dumps(remedy.patch)
         if len(patch) > _LONGEST_PATCH:
             patch = f"{json.dumps(remedy.patch[0])} and {len(remedy.patch) - 1} more like it"
-        lines.append(f"- {remedy.detail}: {patch}")
+        lines.append(f"{said}: {patch}")
     return "\n".join(lines)
 
 

@@ -30,12 +30,14 @@ class AskedFleet:
         stops: The ids of the stops.
         vehicles: The id of each type of vehicles; those of several shifts have the same.
         unit: The unit of the clock, if there is one.
+        at_fault: The stops that its refusal names, if it names some.
     """
 
     fleet: Fleet
     stops: Sequence[str]
     vehicles: Sequence[str]
     unit: str | None
+    at_fault: Sequence[int] = ()
 
     @property
     def rules(self) -> Rules:
@@ -77,17 +79,17 @@ class AskedFleet:
         )
         return replace(self.rules, vehicles=vehicles), tuple(operations)
 
-    def first_change(
+    def least_change(
         self,
         amounts: Sequence[Amount],
         change: Callable[[Amount, str, VehicleType], Members],
         tried: "Try",
     ) -> tuple[Amount, Patch] | None:
-        """Return the first of ascending amounts by which a change of vehicles works, and its patch.
+        """Return the least of ascending amounts by which a change of vehicles works, and its patch.
 
         `change` gets an amount before the other arguments.
         """
-        found = first_that_works(
+        found = least_that_works(
             amounts, lambda amount: self.changed(partial(change, amount))[0], tried
         )
         return found and (found[0], self.changed(partial(change, found[0]))[1])
@@ -102,17 +104,24 @@ class AskedFleet:
 Look = Callable[[AskedFleet, Try], Remedy | None]
 
 
-def first_that_works(
+def least_that_works(
     amounts: Sequence[Amount], rules_with: Callable[[Amount], Rules], tried: Try
 ) -> tuple[Amount, FleetFront] | None:
-    """Return the first of ascending amounts that works, and its front; None if none does in time.
+    """Return the least of ascending amounts that works, and its front; None if none does in time.
 
-    Most that are too little break a necessary condition, which is found out at once.
+    What is between the last that was too little and one that works is bisected. If the time ends,
+    the least that has worked by then is returned.
     """
-    for amount in amounts:
-        if front := tried(rules_with(amount)):
-            return amount, front
-    return None
+    low, high, at, step = 0, len(amounts), 0, 1
+    found: tuple[Amount, FleetFront] | None = None
+    while low < high:
+        if front := tried(rules_with(amounts[at])):
+            found, high = (amounts[at], front), at
+        else:
+            low = at + 1
+        at = (low + high) // 2 if found else min(low + step - 1, high - 1)
+        step *= 2
+    return found
 
 
 def _operation(path: str, value: object) -> Operation:

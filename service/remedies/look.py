@@ -12,7 +12,7 @@ from service.fleet.rules import Rules
 from service.remedies.asked import AskedFleet, Look
 from service.remedies.patch import put
 from service.remedies.stops import any_vehicle, leave_out
-from service.remedies.times import later_windows, longer_routes, longer_shifts
+from service.remedies.times import earlier_shifts, later_windows, longer_routes, longer_shifts
 from service.remedies.vehicles import (
     larger_vehicles,
     load_again,
@@ -36,6 +36,7 @@ _KINDS: tuple[Look, ...] = (
     load_again,
     more_vehicles,
     longer_shifts,
+    earlier_shifts,
     later_windows,
     longer_routes,
     more_stops,

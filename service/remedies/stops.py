@@ -1,29 +1,46 @@
 """Remedies that ask less of the visits: stops are left out, or any vehicle may visit them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from service.errors import Remedy
+from service.errors import CityNames, Remedy
+from service.fleet.plans import FleetFront
 from service.remedies.amounts import rounded_up
 from service.remedies.asked import AskedFleet, Try
-from service.remedies.patch import put, remove
+from service.remedies.patch import Operation, put, remove
 
 _DETOURS = 3.0  # prizes, in largest legs: more than a visit costs
 
 
 def leave_out(asked: AskedFleet, tried: Try) -> Remedy | None:
-    """Let all stops be left out, for a prize that is more than a visit costs."""
+    """Let the stops that the refusal names be left out, or all, for more than a visit costs."""
     rules = asked.rules
     if rules.over[0] == "max" or not asked.required:
         return None
     prize = _more_than_a_visit(asked)
-    visits = {stop: replace(rules.visits[stop], prize=prize) for stop in asked.required}
-    front = tried(asked.with_visits(visits))
+    if (few := [stop for stop in asked.required if stop in asked.at_fault]) and (
+        len(few) < len(asked.required) and _without(asked, few, prize, tried)
+    ):
+        named = CityNames("stop", asked.stops).of(few)
+        return Remedy("leave-these-out", _prizes(few, prize), {"prize": prize, "named": named})
+    front = _without(asked, asked.required, prize, tried)
     if front is None:
         return None
     visited = max(len(set(plan.visited()) & {*rules.clients}) for plan in front.plans)
-    patch = tuple(put(f"/stops/{stop}/prize", prize) for stop in asked.required)
-    values = {"prize": prize, "visited": visited, "stops": len(rules.clients)}
-    return Remedy("leave-out", patch, values) if visited else None
+    counts = {"prize": prize, "visited": visited, "stops": len(rules.clients)}
+    return Remedy("leave-out", _prizes(asked.required, prize), counts) if visited else None
+
+
+def _without(
+    asked: AskedFleet, stops: Sequence[int], prize: float, tried: Try
+) -> FleetFront | None:
+    """Return the front of the fleet if some stops may be left out."""
+    visits = {stop: replace(asked.rules.visits[stop], prize=prize) for stop in stops}
+    return tried(asked.with_visits(visits))
+
+
+def _prizes(stops: Sequence[int], prize: float) -> tuple[Operation, ...]:
+    return tuple(put(f"/stops/{stop}/prize", prize) for stop in stops)
 
 
 def _more_than_a_visit(asked: AskedFleet) -> float:

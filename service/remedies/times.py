@@ -1,27 +1,28 @@
-"""Remedies by the clock: later ends of shifts, later windows, and longer routes."""
+"""Remedies by the clock: longer shifts, at either end, later windows, and longer routes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from math import inf
 
-from service.errors import Remedy
+from service.amounts import duration
+from service.errors import CityNames, Remedy
 from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, path_of
 from service.fleet.rules import Rules
 from service.fleet.schedule import schedule
 from service.fleet.vehicles import VehicleType
-from service.remedies.amounts import time_in_words, time_rounded_up
-from service.remedies.asked import AskedFleet, Members, Try, first_that_works
+from service.remedies.amounts import time_rounded_up
+from service.remedies.asked import AskedFleet, Members, Try, least_that_works
 from service.remedies.patch import Operation, put
 
-_LATER = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2)  # shares of the longest shift, or of all windows
+_LATER = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8)  # shares of the longest shift, or of all windows
 _LONGER = (25, 50, 100, 200, 400)  # per cent
 
 
 def longer_shifts(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Let all vehicles be back later than the end of their shift."""
-    found = asked.first_change(_amounts(asked, _longest_shift(asked)), _with_overtime, tried)
+    found = asked.least_change(_amounts(asked, _longest_shift(asked)), _with_overtime, tried)
     return None if found is None else Remedy("longer-shifts", found[1], _values(asked, found[0]))
 
 
@@ -29,14 +30,38 @@ def _with_overtime(more: float, _: str, vehicle: VehicleType) -> Members:
     return {"max_overtime": vehicle.max_overtime + more} if vehicle.shift[1] < inf else {}
 
 
+def earlier_shifts(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let all vehicles leave earlier than their shift begins."""
+    amounts = _amounts(asked, _longest_shift(asked))
+    found = asked.least_change(amounts, partial(_with_earlier, asked), tried)
+    if found is None:
+        return None
+    more, changes = found
+    patch = tuple(operation for change in changes for operation in _shifts(change))
+    return Remedy("earlier-shifts", patch, _values(asked, more))
+
+
+def _with_earlier(asked: AskedFleet, more: float, item: str, vehicle: VehicleType) -> Members:
+    """Return an earlier shift of the vehicles of an id, if they have one that begins."""
+    begin, end = vehicle.shift
+    several = asked.vehicles.count(item) > 1
+    return {} if several or begin <= 0 else {"shift": (max(0.0, begin - more), end)}
+
+
+def _shifts(change: Operation) -> tuple[Operation, Operation]:
+    """Return the operations that give vehicles their shift, whether it stood alone or in a list."""
+    return put(f"{change['path']}s", [change["value"]]), put(change["path"], None)
+
+
 def later_windows(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Let the last windows of some stops close later: of those that need it."""
     windows = {stop: asked.rules.visits[stop].windows for stop in asked.rules.clients}
     closing = [stop for stop, each in windows.items() if each[-1][1] < inf]
+    closing = [stop for stop in closing if stop in asked.at_fault] or closing
     times = [time for stop in closing for span in windows[stop] for time in span]
     longest = max(max(times) - min(times), _longest_shift(asked)) if times else 0.0
     amounts = _amounts(asked, longest)
-    found = first_that_works(amounts, partial(_later, asked, closing), tried)
+    found = least_that_works(amounts, partial(_later, asked, closing), tried)
     if found is None:
         return None
     more, front = found
@@ -45,7 +70,8 @@ def later_windows(asked: AskedFleet, tried: Try) -> Remedy | None:
         late = closing  # with which it was tried
     rules = _later(asked, late, more)
     patch = tuple(each for stop in late for each in _windows(rules, stop))
-    return Remedy("later-windows", patch, {"stops": len(late), **_values(asked, more)})
+    named = CityNames("stop", asked.stops).of(late)
+    return Remedy("later-windows", patch, {"named": named, **_values(asked, more)})
 
 
 def _later(asked: AskedFleet, stops: Sequence[int], more: float) -> Rules:
@@ -88,7 +114,7 @@ def _late_of(asked: AskedFleet, fleet: Fleet, plan: Plan, closing: Sequence[int]
 
 def longer_routes(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Let all routes be longer that have a limit of their own."""
-    found = asked.first_change(_LONGER if asked.rules.has_longest else (), _with_longer, tried)
+    found = asked.least_change(_LONGER if asked.rules.has_longest else (), _with_longer, tried)
     return None if found is None else Remedy("longer-routes", found[1], {"share": found[0]})
 
 
@@ -110,4 +136,4 @@ def _amounts(asked: AskedFleet, longest: float) -> list[float]:
 
 
 def _values(asked: AskedFleet, more: float) -> dict[str, float | str]:
-    return {"more": more, "text": time_in_words(more, asked.unit)}
+    return {"more": more, "text": duration(more, asked.unit)}

@@ -30,7 +30,7 @@ def more_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Have more vehicles of one id: as few as are needed, of the first id that helps."""
     amounts = [more for more in _MORE if more <= len(asked.rules.clients)]
     for item in asked.items[:_MOST_ITEMS]:
-        if found := asked.first_change(amounts, partial(_with_more, item), tried):
+        if found := asked.least_change(amounts, partial(_with_more, item), tried):
             more, patch = found
             before = asked.first_of(item).count
             counts = {"count": before + more, "before": before}
@@ -45,7 +45,7 @@ def _with_more(item: str, more: int, name: str, vehicle: VehicleType) -> Members
 def larger_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Have larger vehicles of one id: as little larger as is needed."""
     for item in asked.items[:_MOST_ITEMS] if asked.rules.dimensions else ():
-        if found := asked.first_change(_LARGER, partial(_with_larger, item), tried):
+        if found := asked.least_change(_LARGER, partial(_with_larger, item), tried):
             share, patch = found
             return Remedy("larger-vehicles", patch, {"vehicle": item, "share": share})
     return None
@@ -59,7 +59,7 @@ def _with_larger(item: str, share: int, name: str, vehicle: VehicleType) -> Memb
 def more_stops(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Let routes have more stops."""
     limited = any(vehicle.max_stops is not None for vehicle in asked.rules.vehicles)
-    found = asked.first_change(_MORE if limited else (), _with_stops, tried)
+    found = asked.least_change(_MORE if limited else (), _with_stops, tried)
     return None if found is None else Remedy("more-stops", found[1], {"more": found[0]})
 
 

@@ -85,15 +85,22 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {
     "too few trips": (request(capacity=[2], reload=[0], max_trips=2), {"load-again": {}}),
     "a short shift": (
         request(shift=[480, 492]),
-        {"longer-shifts": {"more": 15, "text": "15 min"}, "leave-out": {"visited": 6}},
+        {
+            "longer-shifts": {"more": 15, "text": "15 min"},
+            "leave-these-out": {"named": "stops 'stop-7' and 'stop-8'"},
+        },
     ),
     "an early window": (
         of_stops(request(shift=[480, 600]), 8, window=[480, 485]),
-        {"later-windows": {"stops": 1, "more": 15, "text": "15 min"}},
+        {"later-windows": {"named": "stop 'stop-8'", "more": 15, "text": "15 min"}},
     ),
     "early windows, each in a list": (
         of_stops(request(shift=[480, 600]), 7, 8, windows=[[480, 482], [483, 484]]),
-        {"later-windows": {"stops": 2}},
+        {"later-windows": {"named": "stops 'stop-7' and 'stop-8'"}},
+    ),
+    "a window before the shift": (
+        of_stops(request(shift=[480, 600]), 8, window=[400, 470]),
+        {"leave-these-out": {"named": "stop 'stop-8'"}, "earlier-shifts": {"more": 30}},
     ),
     "short routes": (request(longest=12), {"longer-routes": {"share": 50}}),
     "few stops of a route": (request(max_stops=5), {"more-stops": {"more": 3}}),
@@ -116,7 +123,8 @@ def test_what_helps_is_told_with_its_values(case: str) -> None:
 def test_all_are_told_with_the_first_error_alone() -> None:
     asked = of_stops(request(), 1, 2, demand=[9])
     first, *others = refused(asked).errors
-    assert {remedy["code"] for remedy in first["remedies"]} >= {"leave-out", "larger-vehicles"}
+    codes = {remedy["code"] for remedy in first["remedies"]}
+    assert codes >= {"leave-these-out", "larger-vehicles"}
     assert all(remedy.keys() == MEMBERS for remedy in first["remedies"])
     assert others
     assert not any("remedies" in each for each in others)

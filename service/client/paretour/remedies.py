@@ -36,6 +36,14 @@ class Remedy:
         return changed
 
 
+def in_words(remedies: Sequence[Remedy]) -> list[str]:
+    """Return a heading and a line for each remedy; nothing if there is none."""
+    if not remedies:
+        return []
+    heading = "Each of these changes to the request alone helps, as was tried:"
+    return [heading, *(f"- {remedy.detail}" for remedy in remedies)]
+
+
 def parse_remedy(value: Any, where: str) -> Remedy:
     """Return a remedy of a problem document."""
     document = members(value, where)
