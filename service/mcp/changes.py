@@ -1,19 +1,60 @@
 """Make the members of a request to replan from what an agent says of a fleet's day."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import Any
 
-from paretour import FleetFront, FleetPlan, FrontOfAnyKind
+from paretour import FleetFront, FleetPlan, FrontOfAnyKind, Refused
 from paretour.choice import knee
 
 from service.mcp.amounts import with_times
 
 AS_PLANNED = "as planned"
 Named = Mapping[str, Any]
+_PART = re.compile(r"routes/\d+/\w+(?:/\d+)?")  # of a request to replan a fleet
 
 
-def changes_of(front: FrontOfAnyKind, asked: Named) -> tuple[dict[str, Any], list[str]]:
-    """Return the members of the request, and what was taken for granted, in sentences.
+@dataclass(frozen=True)
+class Day:
+    """What has changed since a front was planned.
+
+    Args:
+        members: The members of the request.
+        assumed: What was taken for granted, in sentences.
+        parts: What the agent calls parts of the request: done/van/1 for routes/0/done/1.
+    """
+
+    members: dict[str, Any]
+    assumed: Sequence[str] = ()
+    parts: Mapping[str, str] = field(default_factory=dict)
+
+    @contextmanager
+    def refused_in_its_words(self) -> Iterator[None]:
+        """Have a refusal name the parts of the request as the agent does."""
+        try:
+            yield
+        except Refused as error:
+            raise Refused(self._renamed(error.document)) from None
+
+    def _renamed(self, value: Any) -> Any:
+        """Return a problem document, or a member of it, with other names of parts in sentences."""
+        if isinstance(value, list):
+            return [self._renamed(each) for each in value]
+        if not isinstance(value, Mapping):
+            return value
+        return {
+            name: self._in_words(each) if name == "detail" else self._renamed(each)
+            for name, each in value.items()
+        }
+
+    def _in_words(self, sentence: str) -> str:
+        return _PART.sub(lambda found: self.parts.get(found[0], found[0]), sentence)
+
+
+def changes_of(front: FrontOfAnyKind, asked: Named) -> Day:
+    """Return the changes that an agent tells.
 
     Of a fleet `done` says by vehicle which stops were visited, or that all went as planned until
     now, and `broken_down` which vehicles are out of service.
@@ -26,11 +67,11 @@ def changes_of(front: FrontOfAnyKind, asked: Named) -> tuple[dict[str, Any], lis
         unit = None if front.clock is None else front.clock.unit
     members = with_times(asked, unit)
     if not isinstance(front, FleetFront):
-        return members, []
+        return Day(members)
     return _of_fleet(front, members)
 
 
-def _of_fleet(front: FleetFront, members: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def _of_fleet(front: FleetFront, members: dict[str, Any]) -> Day:
     number = members.get("plan")
     number = knee(front.lengths) if number is None else number
     if not isinstance(number, int) or not 0 <= number < len(front):
@@ -38,22 +79,34 @@ def _of_fleet(front: FleetFront, members: dict[str, Any]) -> tuple[dict[str, Any
     plan, done = front[number], members.pop("done", None)
     ways: dict[int, dict[str, Any]] = {}
     assumed: list[str] = []
+    parts: dict[int, dict[str, str]] = {}
+    depots = _depots(plan)
     if done == AS_PLANNED:
         ways, assumed = _as_planned(plan, members.get("now"))
+        parts = {at: {"done": f"done of {plan.routes[at].vehicle}"} for at in ways}
     elif isinstance(done, Mapping):
         for name, stops in done.items():
             route = _route(plan, number, name)
-            depots = _depots(plan)
-            visited = [stop for stop in stops if stop not in depots]
-            ways[route] = {"route": route, "done": visited}
+            visited = [(at, stop) for at, stop in enumerate(stops) if stop not in depots]
+            ways[route] = {"route": route, "done": [stop for _, stop in visited]}
+            items = {f"done/{new}": f"done/{name}/{at}" for new, (at, _) in enumerate(visited)}
+            parts[route] = {"route": f"done/{name}", "done": f"done/{name}", **items}
     elif done:
         raise ValueError(f'done of a fleet must name vehicles or routes, or be "{AS_PLANNED}"')
-    for name in members.pop("broken_down", None) or ():
+    for at, name in enumerate(members.pop("broken_down", None) or ()):
         route = _route(plan, number, name)
         ways.setdefault(route, {"route": route})["broken_down"] = True
+        parts.setdefault(route, {})["broken_down"] = f"broken_down/{at}"
+        parts[route].setdefault("route", f"broken_down/{at}")
+    given = members.get("routes", ())
     if ways:
-        members["routes"] = [*members.get("routes", ()), *ways.values()]
-    return {**members, "plan": number}, assumed
+        members["routes"] = [*given, *ways.values()]
+    named = {
+        f"routes/{at}/{part}": words
+        for at, route in enumerate(ways, len(given))
+        for part, words in parts.get(route, {}).items()
+    }
+    return Day({**members, "plan": number}, assumed, named)
 
 
 def _as_planned(plan: FleetPlan, now: float | None) -> tuple[dict[int, dict[str, Any]], list[str]]:

@@ -205,15 +205,19 @@ async def _ask(planner: Planner, asked: AskAbout) -> str:
 
 async def _offer_slots(planner: Planner, asked: Changes) -> str:
     front = await planner.stored(asked.front)
-    members, assumed = changes_of(front, asked.members)
-    offers = await planner.client.offers(asked.front, **cast(Any, members))
-    return offers_text(offers, assumed)
+    day = changes_of(front, asked.members)
+    with day.refused_in_its_words():
+        offers = await planner.client.offers(asked.front, **cast(Any, day.members))
+    return offers_text(offers, day.assumed)
 
 
 async def _replan(planner: Planner, asked: Changes) -> str:
     front = await planner.stored(asked.front)
-    members, assumed = changes_of(front, asked.members)
-    return await planner.planned(replan_plan(asked.front, cast(Any, members)), 0, assumed)
+    day = changes_of(front, asked.members)
+    with day.refused_in_its_words():
+        return await planner.planned(
+            replan_plan(asked.front, cast(Any, day.members)), 0, day.assumed
+        )
 
 
 TOOLS = (

@@ -12,9 +12,10 @@ import pytest
 from mcp import Client
 from paretour import AsyncClient
 
+from service.amounts import amount, clock_time
 from service.api.app import Edge
 from service.mcp import server
-from service.mcp.amounts import amount, budget_in, clock_time, number_in, with_times
+from service.mcp.amounts import budget_in, number_in, with_times
 from service.mcp.tools import Planner
 from tests.helpers.serving import app_of, serving
 from tests.mcp.test_tools import FLEET, LIMITS, agent, call, said
@@ -131,6 +132,10 @@ async def check_replanning(
     planned = {"front": morning["front"], "plan": plan, "now": now, "time_limit": 0.2}
     refused = await said(client, "replan", True, **planned, done={"Ann": []})
     assert "'Ann' is no vehicle with a route" in refused
+    for vehicle, stops in done.items():
+        wrong = {**done, vehicle: [*stops, "nobody"]}
+        refused = await said(client, "replan", True, **planned, done=wrong)
+        assert f"done/{vehicle}/2 must be the id" in refused, refused
     hours = {"from": "6:00", "to": "18:00", "length": "2:00 h"}
     asked = {**planned, "done": done, "order": added, "every": hours, "time_limit": 30}
     offered = await call(client, "offer_slots", **asked)

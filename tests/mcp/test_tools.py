@@ -65,17 +65,16 @@ async def agent(url: str, key: str | None = None) -> AsyncIterator[Client]:
 
 
 async def call(client: Client, tool: str, **arguments: Any) -> Any:
-    """The answer to a call, which is not an error and is small."""
-    text = await said(client, tool, False, **arguments)
-    assert len(text.encode()) <= 8000
-    return json.loads(text)
+    """The answer to a call, which is not an error."""
+    return json.loads(await said(client, tool, False, **arguments))
 
 
 async def said(client: Client, tool: str, is_error: bool, **arguments: Any) -> str:
-    """The text of an answer."""
+    """The text of an answer, which is small."""
     result = await client.call_tool(tool, arguments)
     [content] = result.content
     assert result.is_error == is_error, content
+    assert len(content.text.encode()) <= 8000
     return str(content.text)
 
 
