@@ -7,7 +7,7 @@ from typing import cast
 from paretour import Offer, Offers, OffersRequest
 from rich.console import Console
 
-from service.amounts import clock_time
+from service.amounts.said import clock_time
 from service.cli.backends import RemoteBackend
 from service.cli.data import print_data
 from service.cli.errors import exit_on_error

@@ -11,7 +11,7 @@ from paretour.questions import OPTIONS, QUESTIONS
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core.core_schema import ModelSchema, StringSchema
 
-from service.mcp.amounts import TIMED
+from service.mcp.times import TIMED
 from service.requests.fields import SearchFields
 from service.requests.json_schemas import RULES, WithoutNull
 from service.requests.replan.offers import EverySlot

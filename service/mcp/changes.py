@@ -9,7 +9,7 @@ from typing import Any
 from paretour import FleetFront, FleetPlan, FrontOfAnyKind, Refused
 from paretour.choice import knee
 
-from service.mcp.amounts import with_times
+from service.mcp.times import with_times
 
 AS_PLANNED = "as planned"
 Named = Mapping[str, Any]

@@ -6,7 +6,7 @@ from typing import Any
 
 from paretour import Offer, Offers
 
-from service.amounts import amount, clock_time
+from service.amounts.said import amount, clock_time
 
 _MOST_BYTES = 8000
 _HINT = (

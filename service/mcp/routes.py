@@ -7,7 +7,7 @@ from typing import Any
 from paretour import FleetFront, FleetPlan, FleetRoute, FrontOfAnyKind, Tour
 from paretour.kinds import kind_of
 
-from service.amounts import amount, clock_time
+from service.amounts.said import amount, clock_time
 
 # Measures of plans that are times by the clock; others are counts, prizes or lengths.
 _TIMES = ("driving", "service", "waiting", "lateness", "overtime", "longest", "shortest")

@@ -13,7 +13,7 @@ from paretour.kinds import kind_of
 from paretour.questions import Option, Question
 from paretour.remedies import in_words
 
-from service.amounts import amount
+from service.amounts.said import amount
 from service.mcp.routes import (
     Way,
     fairest,

@@ -15,7 +15,7 @@ from paretour import (
 from paretour.choice import choose
 from pydantic import BaseModel, ValidationError
 
-from service.mcp.amounts import budget_in, clock_unit, with_times
+from service.amounts.read import budget_in
 from service.mcp.arguments import (
     Arguments,
     AskAbout,
@@ -37,6 +37,7 @@ from service.mcp.summaries import (
     tour_text,
     unreadable_text,
 )
+from service.mcp.times import clock_unit, with_times
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.null_members import without_null_members

@@ -2,7 +2,7 @@
 
 import math
 
-from service.amounts import SECONDS
+from service.amounts.units import SECONDS
 
 _QUARTER = 900  # seconds, in whole numbers of which times are changed
 

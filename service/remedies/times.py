@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from math import inf
 
-from service.amounts import duration
+from service.amounts.said import duration
 from service.errors import CityNames, Remedy
 from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, path_of

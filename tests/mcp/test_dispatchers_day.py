@@ -12,10 +12,11 @@ import pytest
 from mcp import Client
 from paretour import AsyncClient
 
-from service.amounts import amount, clock_time
+from service.amounts.read import budget_in, number_in
+from service.amounts.said import amount, clock_time
 from service.api.app import Edge
 from service.mcp import server
-from service.mcp.amounts import budget_in, number_in, with_times
+from service.mcp.times import with_times
 from service.mcp.tools import Planner
 from tests.helpers.serving import app_of, serving
 from tests.mcp.test_tools import FLEET, LIMITS, agent, call, said

@@ -1,9 +1,7 @@
 """Say times of the day, durations and lengths with their units, as "10:00", "2:10 h", "14.2 km"."""
 
-MINUTE, HOUR, DAY = 60, 3600, 86400
-_TIMES = {"s": 1, "second": 1, "seconds": 1, "min": MINUTE, "minute": MINUTE, "minutes": MINUTE}
-SECONDS = {**_TIMES, "h": HOUR, "hour": HOUR, "hours": HOUR}  # in each unit of time
-METRES = {"m": 1, "km": 1000}  # in each unit of length
+from service.amounts.units import DAY, HOUR, METRES, MINUTE, SECONDS
+
 _FAR = 10_000  # metres, from which kilometres are said
 
 
