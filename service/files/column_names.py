@@ -11,7 +11,8 @@ from service.objectives import NTH
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
     " customerno custno deliveryid deliveryno deliverynumber dono donumber shipmentid"
-    " jobreferencenumber jobno jobnumber taskid taskno tasknumber"
+    " jobreferencenumber jobreference orderreference jobno jobnumber taskid taskno tasknumber"
+    " trackingid trackingno trackingnumber consignmentno consignmentnumber waybillno waybillnumber"
     " bestellnummer auftragsnummer kundennummer auftrag"
     " stop ref reference code key name stopname ordername alias customer kunde node label site no"
     " nr number"
@@ -86,9 +87,22 @@ _AMOUNT = f"({'|'.join(sorted(_NAMES['demand'].split(), key=len, reverse=True))}
 # Amounts with words around them, as `Order Weight`, `Load #1` or `Max load 1`; not of money.
 _OF_ORDERS = re.compile(
     "(?!total|order)(?:net|gross|delivery|shipment|lineitem|parcel|cargo)?"
-    rf"{_AMOUNT}(\d?)|(?:order|total)(?!amount){_AMOUNT}(\d?)"
+    rf"{_AMOUNT}(?:load)?(\d?)|(?:order|total)(?!amount){_AMOUNT}(\d?)"
 )
 _OF_CAPACITY = re.compile(rf"(?:max|maximum|capacity|initial|vehicle)?{_AMOUNT}(?:capacity)?(\d?)")
+# Windows and visits that are said in full, as `Delivery time slot start`, `Appointment end` and
+# `Transaction duration`.
+_VISIT = "(?:delivery|appointment|visit|arrival|customer|receiving|unloading|dropoff|recipient)"
+_SPAN = rf"(?:{_VISIT}?(?:time)?(?:window|slot|interval|range|frame)|{_VISIT})(?:time)?"
+_IN_FULL = {
+    "window_from": re.compile(rf"{_SPAN}(?:from|start|starts|starttime|begin|begins|opens?)"),
+    "window_to": re.compile(rf"{_SPAN}(?:to|till|until|end|ends|endtime|stop|closes?)|till"),
+    "window": re.compile(rf"{_VISIT}(?:time)?(?:window|slot|interval|range|frame)s?"),
+    "service": re.compile(
+        rf"(?:average|avg|estimated|est|expected|planned)?(?:{_VISIT}|transaction|handling|loading"
+        "|offloading|onsite|parking|service|stop|task|job|order)(?:duration|minutes|mins)"
+    ),
+}
 _LAST = 1000  # the rank of names that are not listed
 # The coordinates of each plane, as fields that columns may be chosen for.
 PLANES = ("x", "y", *(f"{nth} {axis}" for nth in NTH[1:] for axis in "xy"))
@@ -270,7 +284,8 @@ def seconds_of(name: str) -> float | None:
 
 def are_usually_minutes(name: str) -> bool:
     """Return whether a heading is one of route planners for how long visits take, in minutes."""
-    return plain_name(name) in _USUALLY_MINUTES
+    plain = plain_name(name)
+    return plain in _USUALLY_MINUTES or bool(_IN_FULL["service"].fullmatch(plain))
 
 
 def unit_of_times(name: str, field: str | None) -> float | None:
@@ -299,7 +314,8 @@ def _rank(
         found = of_place
     if found:
         return found[1:]
-    for field, pattern in (("capacity", _OF_CAPACITY), ("demand", _OF_ORDERS)):
+    patterns = {"capacity": _OF_CAPACITY, "demand": _OF_ORDERS, **_IN_FULL}
+    for field, pattern in patterns.items():
         if field in fields and pattern.fullmatch(plain):
             return field, _LAST
     return None, 0

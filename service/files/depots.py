@@ -78,7 +78,8 @@ def _is_called_depot(columns: Columns, row: int) -> bool:
     texts = [text.replace("_", " ") for name, text in cells if plain_name(name) in _NAMED]
     if columns.table.heading is None and "id" in columns.fields:
         texts.append(columns.text(row, columns.fields.index("id")))
-    return any(
+    customers = [text.strip() for name, text in cells if plain_name(name) in _CUSTOMERS]
+    return any(_DEPOT.fullmatch(text) for text in customers) or any(
         (_DEPOT.search(text) and not _SHOP.search(text)) or _HOME.fullmatch(text) for text in texts
     )
 

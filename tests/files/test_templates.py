@@ -91,6 +91,51 @@ TEMPLATES = {
         "id latitude longitude service window_from window_to window_2_from window_2_to demand"
         " vehicle",
     ),
+    "Droppath": (
+        "tracking_id,title,address_line1,address_city,latitude,longitude,quantity,contact_name",
+        "0,Depot,,,60.17,24.94,,|T1,A,Main 1,Espoo,60.18,24.95,3,Ann|T2,B,H 2,,60.16,24.93,2,Bob",
+        "id latitude longitude demand",
+    ),
+    "NowGo": (
+        "Job Reference,Address,Latitude,Longitude,Type,Date,Time Window Start,Time Window End,"
+        "Service time",
+        "0,Depot,60.17,24.94,,,,,|J1,Main 1,60.18,24.95,Delivery,2026-11-29,08:00,12:00,10"
+        "|J2,High 2,60.16,24.93,Delivery,2026-11-29,09:00,17:00,5",
+        "id latitude longitude window_from window_to service",
+    ),
+    "ElasticRoute": (
+        "Name,Address,Latitude,Longitude,Weight Load,Volume Load,Vehicle Type,From,Till,"
+        "Service Time",
+        "Depot,,60.17,24.94,,,,,,|A,Main 1,60.18,24.95,3,1,,800,1200,10"
+        "|B,High 2,60.16,24.93,2,1,,900,1700,5",
+        "id latitude longitude demand demand window_from window_to service",
+    ),
+    "Locus": (
+        "Task Id,Customer Name,Address,Latitude,Longitude,Slot Start,Slot End,"
+        "Transaction Duration,Volume,Weight,Team,Skills",
+        "0,Depot,,60.17,24.94,,,,,,,|T1,A,Main 1,60.18,24.95,08:00,12:00,10,1,3,x,"
+        "|T2,B,High 2,60.16,24.93,09:00,17:00,5,2,4,x,",
+        "id latitude longitude window_from window_to service demand demand skills",
+    ),
+    "Wialon": (
+        "name,address,lat,lon,Delivery interval from,Delivery interval to,Unloading time,Weight",
+        "Depot,,60.17,24.94,,,,|A,Main 1,60.18,24.95,08:00,12:00,10,3"
+        "|B,High 2,60.16,24.93,09:00,17:00,5,2",
+        "id latitude longitude window_from window_to service demand",
+    ),
+    "Zeo": (
+        "Address,Latitude,Longitude,Stop Type,Delivery time slot start,Delivery time slot end,"
+        "Stop Duration,Parcel Count,Customer Name,Customer Phone",
+        "Depot,60.17,24.94,,,,,,,|Main 1,60.18,24.95,Delivery,08:00,12:00,10,3,Ann,"
+        "|High 2,60.16,24.93,Delivery,09:00,17:00,5,2,Bob,",
+        "latitude longitude window_from window_to service demand",
+    ),
+    "a booking system": (
+        "appointment_start,appointment_end,street,zip_code,lat,lon,service_time,skills_needed",
+        ",,Depot,,60.17,24.94,,|08:00,12:00,Main 1,00100,60.18,24.95,10,"
+        "|09:00,17:00,High 2,00200,60.16,24.93,5,",
+        "window_from window_to latitude longitude service skills",
+    ),
 }
 
 
@@ -101,6 +146,7 @@ def test_a_template_is_read_without_a_question(product: str) -> None:
     found = read_files([NamedFile("orders.csv", table.encode())], Bounds(roads=LIMITS.roads))
     taken = [each.taken_for for each in found.columns]
     assert [each for each in taken if each not in ("ignored", "detail")] == expected.split()
+    assert not any(note.code == "no-depot" for note in found.notes)
     order = found.request["stops"][1]
     assert order["location"] == [24.95, 60.18]
     if "window_from" in taken:
