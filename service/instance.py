@@ -64,15 +64,13 @@ class Instance:
 
     def __post_init__(self) -> None:
         if (self.coordinates is None) == (self.matrices is None):
-            raise InvalidInstance("an instance needs either coordinates or matrices, and not both")
+            raise InvalidInstance("either-coordinates-or-matrices")
         if self.coordinates is not None:
             object.__setattr__(self, "coordinates", _checked_coordinates(self.coordinates))
         else:
             object.__setattr__(self, "matrices", _checked_matrices(self.matrices))
         if not math.isfinite(2 * self.n * float(self.extents.max())):
-            raise InvalidInstance(
-                f"costs must leave a tour's length finite, got costs up to {self.extents.max():g}"
-            )
+            raise InvalidInstance("costs-too-large", came=float(self.extents.max()))
         _check_ends(self)
 
     @property
@@ -154,7 +152,7 @@ class Instance:
             InvalidInstance: The instance was made from coordinates.
         """
         if self.matrices is None:
-            raise InvalidInstance("an instance made from coordinates has no matrices")
+            raise InvalidInstance("no-matrices")
         forbidden = np.isinf(self.matrices[0])
         if not forbidden.any():
             return self.matrices
@@ -179,7 +177,7 @@ class Instance:
             InvalidInstance: The instance was made from matrices.
         """
         if self.coordinates is None:
-            raise InvalidInstance("an instance made from matrices has no coordinates")
+            raise InvalidInstance("no-coordinates")
         corner = np.concatenate([box[0] for box in self._ordinary_boxes])
         return (self.coordinates - corner) / self.scale.repeat(PLANE)
 
@@ -347,11 +345,11 @@ def _check_ends(instance: Instance) -> None:
         if city is None:
             continue
         if instance.closed:
-            raise InvalidInstance(f"a closed tour has no {name}, got {city}")
+            raise InvalidInstance("end-of-closed-tour", end=name, came=city)
         if not 0 <= city < instance.n:
-            raise InvalidInstance(f"{name} must be a city, 0 to {instance.n - 1}, got {city}")
+            raise InvalidInstance("end-no-city", end=name, last=instance.n - 1, came=city)
     if instance.n > 1 and instance.start == instance.end is not None:
-        raise InvalidInstance(f"an open route cannot end where it starts, got {instance.start}")
+        raise InvalidInstance("same-ends", came=instance.start)
 
 
 def _checked_coordinates(coordinates: Array) -> Array:
@@ -359,11 +357,9 @@ def _checked_coordinates(coordinates: Array) -> Array:
     shape = coordinates.shape
     columns = [PLANE * m for m in range(OBJECTIVES, MOST_OBJECTIVES + 1)]
     if coordinates.ndim != 2 or shape[1] not in columns or not shape[0]:
-        raise InvalidInstance(
-            f"coordinates must have shape (n, 4), (n, 6) or (n, 8) with n at least 1, got {shape}"
-        )
+        raise InvalidInstance("wrong-coordinates", came=str(shape))
     if not np.isfinite(coordinates).all():
-        raise InvalidInstance("coordinates must be finite")
+        raise InvalidInstance("coordinates-not-finite")
     coordinates.setflags(write=False)
     return coordinates
 
@@ -373,28 +369,20 @@ def _checked_matrices(matrices: Array | None) -> Array:
     shape = matrices.shape
     enough = matrices.ndim == 3 and OBJECTIVES <= shape[0] <= MOST_OBJECTIVES
     if not enough or shape[1] != shape[2] or not shape[1]:
-        raise InvalidInstance(
-            f"matrices must have shape (m, n, n) with m from {OBJECTIVES} to {MOST_OBJECTIVES} and "
-            f"n at least 1, got {shape}"
-        )
+        bounds = {"least": OBJECTIVES, "most": MOST_OBJECTIVES}
+        raise InvalidInstance("wrong-matrices", came=str(shape), **bounds)
     matrices[:, np.arange(shape[1]), np.arange(shape[1])] = 0.0
     if np.isnan(matrices).any():
-        m, i, j = np.argwhere(np.isnan(matrices))[0]
-        raise InvalidInstance(
-            f"costs must be numbers, got NaN from city {i} to {j} in matrix {m}; where there is no "
-            "way, write null in JSON and infinity in an array"
-        )
+        m, i, j = np.argwhere(np.isnan(matrices))[0].tolist()
+        raise InvalidInstance("cost-missing", matrix=m, origin=i, destination=j)
     if (matrices < 0).any():
-        raise InvalidInstance(f"costs must not be negative, got {matrices.min():g}")
+        raise InvalidInstance("costs-negative", came=float(matrices.min()))
     forbidden = np.isinf(matrices).any(axis=0)
     if forbidden.any():
         matrices[:, forbidden] = np.inf
     for matrix, largest in zip(matrices, largest_costs(matrices).tolist(), strict=True):
         least = matrix.min(where=matrix > 0, initial=np.inf)
         if least < largest * MOST_SPREAD:
-            raise InvalidInstance(
-                "positive costs of an objective must lie within a factor of 1e301 of each other, "
-                f"got {least:g} and {largest:g}"
-            )
+            raise InvalidInstance("costs-too-far-apart", least=float(least), greatest=largest)
     matrices.setflags(write=False)
     return matrices

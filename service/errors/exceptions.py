@@ -127,10 +127,10 @@ def invalid_header(name: str, code: str, **values: float | str) -> Refusal:
 
 
 class InvalidInstance(Refusal, ValueError):
-    """The cities, or the costs between them, cannot be planned."""
+    """The cities, or the costs between them, cannot be planned, for a reason with its values."""
 
-    def __init__(self, reason: str) -> None:
-        super().__init__("invalid-instance", reason=reason)
+    def __init__(self, reason: str, **values: object) -> None:
+        super().__init__("invalid-instance", errors=[Fault(reason, values=values)])
 
 
 class InvalidCoverage(InvalidInstance):

@@ -5,7 +5,7 @@ from math import inf
 
 import numpy as np
 
-from service.errors import Refusal
+from service.errors import InvalidInstance
 from service.fleet.fleet import Array, Fleet
 from service.fleet.vehicles import Span
 
@@ -29,7 +29,7 @@ class Units:
         """Return the units of a fleet. They are its own units if costs are not tiny.
 
         Raises:
-            Refusal: In these units a prize or a time would overflow.
+            InvalidInstance: In these units a prize or a time would overflow.
         """
         largest, rules = fleet.largest_legs, fleet.rules
         tiny = (largest > 0) & (largest < _TINY)
@@ -96,8 +96,7 @@ def _scaled_span(span: Span, shift: int) -> Span:
 def _scaled(value: float, shift: int) -> float:
     scaled = _scaled_bound(value, shift)
     if scaled == inf:
-        reason = f"costs, prizes and times are too far apart: costs are tiny, and one is {value:g}"
-        raise Refusal("invalid-instance", reason=reason)
+        raise InvalidInstance("times-too-far-apart", came=value)
     return scaled
 
 

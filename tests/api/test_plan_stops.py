@@ -141,7 +141,9 @@ def test_costs_that_only_the_worker_finds_wrong_are_refused(client: httpx.Client
     costs[0, 1], costs[1, 0] = 5e-324, 1e150
     risk = {"name": "risk", "matrix": costs.tolist()}
     answer = client.post("/front", json={**REQUEST, "objectives": [OBJECTIVES[0], risk]})
-    problem(answer, 422, "invalid-instance")
+    [fault] = problem(answer, 422, "invalid-instance")["errors"]
+    assert fault["code"] == "costs-too-far-apart"
+    assert fault["values"] == {"least": 5e-324, "greatest": 1e150}
 
 
 def test_initial_tours_of_long_ids_are_parsed_too(client: httpx.Client) -> None:
