@@ -1,4 +1,4 @@
-"""Print the results of a benchmark as they are stored: each row with its commit and machine.
+"""Print the results of a benchmark as they are stored, in tables, with commits and machines.
 
 Single figures are printed as they are, and what was found of several instances as their mean and
 deviation. Points and tours are counted.
@@ -10,22 +10,53 @@ from typing import Any
 
 import numpy as np
 
+from tests.benchmarks.markdown import table
+
+_MOST_COLUMNS = 8  # of a table
 _ORIGIN = ("commit", "cpu", "python", "threads", "date")
 _KEPT_APART = (*_ORIGIN, "digest", "busy")
 
 
 def rows(results: dict[str, Any]) -> str:
-    """Return a paragraph for each row: its name, where it comes from, and its figures."""
-    if "commit" in results:
-        return "\n".join(_paragraph("", results))
-    return "\n\n".join("\n".join(_paragraph(key, entry)) for key, entry in results.items())
+    """Return tables of what is stored, and below them where each row comes from.
+
+    Rows with the same figures are in one table. A row of a list of rounds is a row for each round.
+    """
+    entries = {"": results} if "commit" in results else results
+    tables: dict[tuple[str, ...], dict[str, dict[str, str]]] = {}
+    for key, entry in entries.items():
+        for name, figures in _rows_of(key, entry).items():
+            tables.setdefault(tuple(figures), {})[name] = figures
+    parts = [_table(found) for found in tables.values()]
+    origins = (f"{key}{': ' if key else ''}{_origin(each)}" for key, each in entries.items())
+    return "\n".join([*parts, *origins] if entries else [])
 
 
-def _paragraph(key: str, entry: dict[str, Any]) -> Iterator[str]:
-    yield f"{key}{': ' if key else ''}{_origin(entry)}"
-    figures = {name: value for name, value in entry.items() if name not in _KEPT_APART}
-    for place, value in _leaves(figures):
-        yield f"  {place}: {value}"
+def _rows_of(key: str, entry: dict[str, Any]) -> dict[str, dict[str, str]]:
+    """Return the figures of an entry by the name of their row: its key, and the round if any.
+
+    Of very many figures those of each part of the entry are a row.
+    """
+    leaves = [*_leaves({k: v for k, v in entry.items() if k not in _KEPT_APART})]
+    found: dict[str, dict[str, str]] = {}
+    for place, value in leaves:
+        parts = place.removeprefix("instances / ").split(" / ")
+        kept = [part for part in parts if not part.isdecimal()]
+        rounds = [part for part in parts[:-1] if part.isdecimal()]
+        if len(leaves) > _MOST_COLUMNS and not rounds:
+            rounds, kept = kept[:-1], kept[-1:]
+        name = ", ".join(filter(None, (key, *rounds)))
+        found.setdefault(name, {})[" / ".join(kept) or "value"] = value
+    return found
+
+
+def _table(found: dict[str, dict[str, str]]) -> str:
+    """Return a table whose columns are the figures, or else the rows if these are fewer."""
+    columns = list(next(iter(found.values())))
+    if len(columns) <= max(_MOST_COLUMNS, len(found)):
+        return table(["row", *columns], [[name, *each.values()] for name, each in found.items()])
+    pairs = ((column, [each[column] for each in found.values()]) for column in columns)
+    return table(["figure", *found], [[column, *values] for column, values in pairs])
 
 
 def _origin(entry: dict[str, Any]) -> str:
@@ -54,7 +85,7 @@ def _summary(values: list[Any], place: str) -> Iterator[tuple[str, str]]:
             found = [each[name] for each in values if name in each]
             yield from _summary(found, f"{place} / {name}")
     elif values and all(_is_number(each) for each in values):
-        deviation = f" ± {np.std(values):.4g}" if len(values) > 1 else ""
+        deviation = f" ± {np.std(values):.2g}" if len({*values}) > 1 else ""
         yield place, f"{np.mean(values):.6g}{deviation} (of {len(values)})"
     elif values and all(_is_of_rounds(each) for each in values):
         for i, each in enumerate(zip(*values, strict=True)):

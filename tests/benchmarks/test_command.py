@@ -53,6 +53,7 @@ def test_stored_rows_are_printed_with_their_commits_and_machines(
     entries = {"": stored} if "commit" in stored else stored
     for key, entry in entries.items():
         assert f"{key}{': ' if key else ''}{entry['commit']}, {entry['cpu']}, " in printed.out
+    assert "| --- |" in printed.out
     assert f"python -m tests.benchmarks {name} --again" in printed.err
 
 
@@ -87,7 +88,8 @@ def test_a_run_changes_no_tracked_file(
     assert contents(provenance.RESULTS) == before
     assert contents(anew).keys() == {"concave.json", "concave.png"}
     printed = capsys.readouterr()
-    assert "different / rays: 20" in printed.out
+    assert "| different / rays |" in printed.out
+    assert "| 20 | 2 |" in printed.out
     assert "All of it: anew/concave.json" in printed.err
 
 
