@@ -224,7 +224,7 @@ function plan() {
 /** Changes the request by a remedy, and plans it; where stops may be left out, most of them are to be visited. */
 function remedy({ code, patch }) {
   change(patched(input.asked, patch), input.objectives);
-  if (code === "leave-out") result.want(0);
+  if (["leave-out", "leave-these-out"].includes(code)) result.want(0);
   element("result").focus({ preventScroll: !narrow.matches });
   plan();
 }
