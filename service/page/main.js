@@ -169,7 +169,7 @@ async function screen() {
 const placeResult = () => arrange(form, element("result"), answer || planning);
 
 /** Shows the states of a planning, which `states` asks it for; until the first one, says `waiting`. */
-async function run(states, waiting = "A first try is being made.", failed = fail) {
+async function run(states, waiting = "A quick first result is being made.", failed = fail) {
   if (input.unread && !(await settled())) return;
   leave();
   const mine = (planning = new Planning(service, mostSeconds));

@@ -1,7 +1,7 @@
 """`python -m tests.benchmarks weights`: Paretour beside a few weights in OR-Tools.
 
 One instance: `service/examples/helsinki-deliveries.json`, 60 stops by road, seconds of driving
-against people met. Paretour plans it once, as the service does, on one thread. OR-Tools solves a
+against people passed. Paretour plans it once, as the service does, on one thread. OR-Tools solves a
 weighted sum for each of 3, 10 or 30 weights by guided local search, and these share the same limit
 on the clock. The methods take turns, round by round. Compiling the search is not counted.
 
@@ -63,7 +63,7 @@ def main(arguments: list[str]) -> None:
 
 
 def example() -> Instance:
-    """The instance: matrices of seconds and of people met."""
+    """The instance: matrices of seconds and of people passed."""
     request = json.loads(EXAMPLE.read_text(encoding="utf-8"))
     return Instance(matrices=np.array([each["matrix"] for each in request["objectives"]], float))
 

@@ -22,7 +22,7 @@ def weights_table() -> str:
         return "Not measured.\n"
     best = _together(stored)
     rows = [_row(key, entry, best) for key, entry in stored.items()]
-    within = [f"people met, at most {budget} % longer" for budget in BUDGETS]
+    within = [f"people passed, at most {budget} % longer" for budget in BUDGETS]
     head = ["limit", "method", "seconds taken", "tours", "hypervolume", *within]
     under_weights = (
         f"The best front, of all tours that any method found, has {len(best)} tours. "

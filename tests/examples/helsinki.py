@@ -1,4 +1,4 @@
-"""Deliveries in central Helsinki by road: time, people met and side streets; or by several vans.
+"""Deliveries in central Helsinki by road: time, people passed and side streets; or by several vans.
 
 Times and streets are those of a Valhalla whose tiles are built of OpenStreetMap's data,
 (c) OpenStreetMap contributors, under the Open Database License (ODbL).
@@ -92,7 +92,7 @@ async def _request(router_url: str) -> tuple[dict[str, Any], Mapping[Leg, Line]]
         "stops": [{"id": id_, "location": place} for id_, place in located],
         "objectives": [
             {"name": "time", "unit": "s", "matrix": costs.seconds.astype(np.int64).tolist()},
-            {"name": "people met", "unit": "people", "matrix": _people(streets).tolist()},
+            {"name": "people passed", "unit": "people", "matrix": _people(streets).tolist()},
         ],
         "time_limit": 1.0,
         "seed": 1,
@@ -129,7 +129,7 @@ def three_costs(
     """Return the request for one van with a third cost: the metres beside the main streets.
 
     Args:
-        one_van: The request under time and people met.
+        one_van: The request under time and people passed.
         lines: The line of each leg.
         main: The lines of the main streets, each of shape (p, 2), longitude and latitude.
     """

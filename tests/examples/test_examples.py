@@ -204,7 +204,7 @@ def test_of_three_costs_each_has_its_own_best_tour() -> None:
     )
     options = PlanOptions(directions=spread(1, 3), size=1000, time_limit=4.0, seed=1)
     points = plan(Shuffler(), instance, options).points
-    # The guide gives these: least and greatest of time, people met and metres in side streets.
+    # The guide gives these: least and greatest of time, people passed and metres in side streets.
     np.testing.assert_allclose(points.min(axis=0), (1945, 2460, 5274), rtol=0.01)
     assert (points.max(axis=0) > 1.1 * points.min(axis=0)).all()
 

@@ -1,4 +1,4 @@
-"""Cleaning a warehouse: one robot's metres driven beside people met; three robots that share it."""
+"""Cleaning a warehouse: one robot's metres beside people passed; three robots that share it."""
 
 from typing import Any
 

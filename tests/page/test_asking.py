@@ -23,7 +23,7 @@ from tests.helpers.browsing import (
 pytestmark = needs_chromium
 
 N = 12
-NAMES = ("way", "people met", "climb")
+NAMES = ("way", "people passed", "climb")
 ROUNDED = 0.006  # relative: what the page says to three digits
 
 

@@ -63,6 +63,7 @@ def check_sheets(window: Page) -> None:
         assert part.evaluate("part => getComputedStyle(part).breakBefore") == (
             "page" if at else "auto"
         )
+    assert sheet.get_by_text("Start: depot").count() == sheet.get_by_text("End: depot").count() == 2
     place = sheet.get_by_role("link", name="A, at the back")
     expect(place).to_have_attribute("href", re.compile(r"^geo:60\.18,24\.95\?q="))
     window.emulate_media(media="screen")

@@ -40,7 +40,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
         wait_until_planned(page)
         expect(page.locator("#count")).to_have_text("60 stops")
         expect(page.locator("#about", has_text="OpenStreetMap contributors (ODbL)")).to_be_visible()
-        expect(row(page, "People met")).to_be_visible()
+        expect(row(page, "People passed")).to_be_visible()
         first, second = page.locator(".plane").all()
         expect(first).to_be_visible()
         expect(second).to_be_hidden()

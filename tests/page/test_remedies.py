@@ -34,12 +34,12 @@ FLEET: dict[str, Any] = {
 REMEDIES: list[dict[str, Any]] = [
     {
         "code": "leave-out",
-        "detail": "let stops be left out, for a prize of 9000 each: 2 of 4 are then visited",
+        "detail": "let stops be left out, where each counts like a cost of 9000",
         "patch": [{"op": "add", "path": f"/stops/{k}/prize", "value": 9000.0} for k in range(1, 5)],
     },
     {
         "code": "more-vehicles",
-        "detail": "have 2 of vehicle 'van', where there are 1",
+        "detail": "use 2 vehicles like 'van' instead of 1",
         "patch": [{"op": "add", "path": "/vehicles/0/count", "value": 2}],
     },
 ]

@@ -40,7 +40,7 @@ def request() -> str:
     ]
     objectives = [
         {"name": "way", "from": "great_circle"},
-        {"name": "people met", "unit": "people", "matrix": (9 * rng.random((N, N))).tolist()},
+        {"name": "people passed", "unit": "people", "matrix": (9 * rng.random((N, N))).tolist()},
         {"name": "climb", "unit": "m", "matrix": (30 * rng.random((N, N))).tolist()},
     ]
     return json.dumps({"stops": stops, "objectives": objectives, "time_limit": 0.1})
@@ -58,7 +58,7 @@ def planned(browser: Browser, released: str) -> Iterator[Page]:
 @pytest.fixture
 def page(planned: Page) -> Page:
     """The same without limits."""
-    for name in ("Way", "People met", "Climb"):
+    for name in ("Way", "People passed", "Climb"):
         limit(planned, name).press("Escape")
     return planned
 
@@ -104,15 +104,15 @@ def shown(page: Page) -> list[float]:
 
 def test_three_objectives_are_asked_for_shown_and_named(page: Page) -> None:
     names = ["First objective", "Second objective", "Third objective"]
-    for name, value in zip(names, ["way", "people met", "climb"], strict=True):
+    for name, value in zip(names, ["way", "people passed", "climb"], strict=True):
         expect(page.get_by_label(name, exact=True)).to_have_value(value)
     expect(page.locator("#several")).to_be_visible()
     for hidden in (".plot", "#balance", "#budget"):
         expect(page.locator(hidden)).to_be_hidden()
     label = page.locator("#scatter").get_attribute("aria-label") or ""
-    assert re.match(r"A choice of \d+ tours: way from .* to .*, people met from", label)
+    assert re.match(r"A choice of \d+ tours: way from .* to .*, people passed from", label)
     rows = page.locator("#comparison tbody th").all_inner_texts()
-    assert rows == ["Way", "People met", "Climb"]
+    assert rows == ["Way", "People passed", "Climb"]
 
 
 def test_without_limits_the_tour_in_the_middle_is_shown(page: Page) -> None:
@@ -213,7 +213,7 @@ def test_a_slider_keeps_its_width_while_a_limit_is_set(page: Page, width: int) -
 def test_a_limit_stops_where_the_others_leave_nothing(page: Page) -> None:
     limit(page, "Way").press("Home")
     limit(page, "Climb").press("Home")
-    limit(page, "People met").press("Home")
+    limit(page, "People passed").press("Home")
     lengths = front_of(page)
     assert shown(page)[0] == pytest.approx(lengths[:, 0].min(), rel=ROUNDED)
 
@@ -249,7 +249,7 @@ def test_a_tour_is_said_beside_the_least_of_each(page: Page) -> None:
     limit(page, "Way").press("Home")
     choice = page.locator("#choice")
     expect(choice).to_have_text(
-        re.compile(r"^The least way of all, .*more people met.* and .*more climb.*of each\.$")
+        re.compile(r"^The least way of all, .*more people passed.* and .*more climb.*of each\.$")
     )
 
 
@@ -267,7 +267,7 @@ def test_two_tours_are_compared(page: Page) -> None:
 def test_a_link_carries_the_limits_and_the_tour(page: Page, browser: Browser) -> None:
     for _ in range(3):
         limit(page, "Way").press("ArrowLeft")
-    page.get_by_role("button", name="Fewest people met within the limits").click()
+    page.get_by_role("button", name="Fewest people passed within the limits").click()
     most, tour = limit(page, "Way").input_value(), shown(page)
     said = page.locator("#caps-said").inner_text()
     with open_page(browser, copied(page, "link")) as other:
@@ -281,12 +281,12 @@ def test_a_link_carries_the_limits_and_the_tour(page: Page, browser: Browser) ->
 
 def test_what_is_taken_along_has_all_three(page: Page) -> None:
     lines = saved(page, "csv").decode().splitlines()
-    assert lines[0] == "way (m),people met (people),climb (m),tour,selected"
+    assert lines[0] == "way (m),people passed (people),climb (m),tour,selected"
     assert len(lines) == 1 + len(front_of(page))
     assert "choose(knee=True)" in copied(page, "as Python")
     svg = saved(page, "svg").decode()
     assert ">Way<" in svg
-    assert ">People met<" in svg
+    assert ">People passed<" in svg
 
 
 def test_the_next_front_of_two_has_its_own_chart(page: Page) -> None:

@@ -95,7 +95,7 @@ export class FrontChart {
     const rooms = [() => BESIDE, roomUp];
     const axes = this.#objectives.map((objective, axis) => ({ ...axisOf(objective), range: (pixels) => roomy(this.#ranges[axis], rooms[axis](pixels)) }));
     const points = (front) => front.map(({ lengths }) => lengths);
-    // No line through the first try: it would seem to lead to the names of others.
+    // No line through the quick first result: it would seem to lead to the names of others.
     this.#plot.show(axes, [{ name: "alone", points: points(this.#alone) }, { name: "improved", points: points(this.#improved), line: stair }]);
   }
 

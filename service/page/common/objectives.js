@@ -42,10 +42,10 @@ export const isCounted = ({ measure }) => measure === "vehicles";
 /** Whether the unit names things that people count: their numbers are whole. */
 export const isOfThings = ({ unit }) => THINGS.includes(unit);
 
-/** Whether the name says what is counted, as "people met" of people does. */
+/** Whether the name says what is counted, as "people passed" of people does. */
 export const namesThings = ({ name, unit }) => isOfThings({ unit }) && name.split(" ").includes(unit);
 
-/** Whether there are fewer or more of it, where of other objectives there is less: "people met", or "left turns" without a unit. */
+/** Whether there are fewer or more of it, where of other objectives there is less: "people passed", or "left turns" without a unit. */
 export const isPlural = ({ name, unit }) => namesThings({ name, unit }) || (!unit && name.split(" ").some((word) => THINGS.includes(word)));
 
 /** Whether this is the longest of a plan's routes: it is shorter or longer, where sums are less or more. */
@@ -58,7 +58,7 @@ export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || T
 export const isMetres = ({ unit }) => unit === "m";
 
 /** The units of loads that are carried so far, or for so long. */
-export const [LOAD_KM, LOAD_HOURS] = ["load × km", "load × hours"];
+export const [LOAD_KM, LOAD_HOURS] = ["load-km", "load-hours"];
 
 /** How many of what the service counts in are one of the unit. */
 export const perUnit = ({ measure, unit }) => (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1;

@@ -6,8 +6,8 @@ import { counted } from "../common/numbers.js";
 const element = (id) => document.getElementById(id);
 
 const SAID = {
-  queued: "A first try: the search waits for its turn.",
-  running: "The search is improving the first try.",
+  queued: "This is a quick first result: the search waits for its turn.",
+  running: "The search is improving a quick first result.",
 };
 
 /** Says a text only once in a row: screen readers read each change. */
@@ -31,7 +31,7 @@ function warmingUp({ compiling, alone }) {
   const far = compiling
     ? `: ${Math.round(100 * compiling.share)} %, about ${Math.ceil(compiling.seconds_left)} s left`
     : "";
-  const shown = alone ? "This is a first try" : "A first try is shown as soon as there is one";
+  const shown = alone ? "This is a quick first result" : "A quick first result is shown as soon as there is one";
   return `The search is being compiled, once${far}. ${shown}, and it improves by itself.`;
 }
 

@@ -9,7 +9,7 @@ export const choiceKept = ({ one }) =>
 
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
 export function choiceOf(front, tour, objectives, noun) {
-  const kept = tour.kept == null ? "" : ` Keeps ${Math.round(100 * tour.kept)} % of the legs.`;
+  const kept = tour.kept == null ? "" : ` ${Math.round(100 * tour.kept)} % of the stops left come after the same stop as before.`;
   return `${sentence(front, tour, objectives, noun)}${kept}`;
 }
 

@@ -6,10 +6,12 @@ import { namesOf } from "../fleet/routes_of_plan.js";
 import { hoursOf } from "../fleet/times.js";
 import { hoursOfPlan } from "../fleet/timetable.js";
 import { dueIn, routeNote, spansIn } from "../fleet/visit_sentence.js";
+import { kindsOf } from "../fleet/visit_times.js";
 import { quoted } from "./exports.js";
 
 const TIMES = ["window", "arrives", "waits", "break", "leaves"];
 const COLUMNS = ["vehicle", "position", "stop"];
+const ROLES = { start: "Start: ", end: "End: ", loading: "Load again: " }; // of stops that are not visited
 const AFTER_DETAILS = ["latitude", "longitude", ...TIMES, "load"];
 
 /**
@@ -43,10 +45,11 @@ function routeOfTour(tour, round) {
 function routesOfPlan(routes, movers, asked) {
   const names = namesOf(routes, movers, asked);
   const { lanes, clock } = hoursOfPlan(routes, names, asked);
-  const { stops } = knownFleet(asked);
+  const { stops, types } = knownFleet(asked);
   return routes.map((route, at) => {
     const times = lanes[at]?.visits;
-    const visit = (stop, place) => ({ stop, ...(times && inWords(times[place], clock)), load: stops.get(stop)?.demand?.join(", ") });
+    const kinds = route.stops ? kindsOf(route, types.get(route.vehicle)) : [];
+    const visit = (stop, place) => ({ stop, kind: kinds[place], ...(times && inWords(times[place], clock)), load: stops.get(stop)?.demand?.join(", ") });
     return { name: names[at], note: times ? routeNote(times, clock.said) : "", visits: route[movers.through].map(visit) };
   });
 }
@@ -117,7 +120,7 @@ export function gpxOf(routes) {
 
 /**
  * Fills the sheets that are printed, a page for each route: its name, what it comes to, when it begins, and its table. A stop's name opens the
- * map of a phone that reads the sheet.
+ * map of a phone that reads the sheet; where a vehicle starts, loads again or ends says so.
  *
  * @param {{ title: string, date: Date, totals: { whole: string, ofRoutes: string[] } }} head what stands on each page: the title, the day on
  *   which it is printed, and totals, as of `totalsOf`
@@ -147,9 +150,10 @@ function row(table, cells) {
   for (const cell of cells) made.insertCell().append(cell);
 }
 
-function linked({ stop, place }) {
-  if (!place) return stop;
+function linked({ stop, kind, place }) {
+  const textContent = `${ROLES[kind] ?? ""}${stop}`;
+  if (!place) return textContent;
   const [longitude, latitude] = place;
   const href = `geo:${latitude},${longitude}?q=${latitude},${longitude}(${encodeURIComponent(stop)})`;
-  return Object.assign(document.createElement("a"), { href, textContent: stop });
+  return Object.assign(document.createElement("a"), { href, textContent });
 }

@@ -63,7 +63,7 @@ export class Offers {
       const { offers, objectives } = await this.#service.post({ path: `front/${id}/offers`, body: offersBody(body, asked) });
       const possible = offers.filter((each) => each.possible);
       const units = withUnits(objectives, asked);
-      this.#say(`${body.add[row].id}: ${counted(possible.length, "hour is", "hours are")} possible. Press one to promise it, and replan.`);
+      this.#say(`${body.add[row].id} can be visited in ${counted(possible.length, "of these hours", "of these hours")}. Press the hour that you promise to the customer, then “Replan what is left”.`);
       const take = ({ slot }) => {
         this.clear();
         onTake(row, slot);

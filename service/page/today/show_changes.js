@@ -10,7 +10,7 @@ const element = (id) => document.getElementById(id);
  * @param {{ said: string[], same: number, last: string, vehicles: object[] }} changes by `changesOf`
  */
 export function showChanges({ kept }, { said, same, last, vehicles }) {
-  const share = kept === undefined ? "" : `The vehicles in service keep ${Math.round(100 * kept)} % of their stops in order. `;
+  const share = kept === undefined ? "" : `${Math.round(100 * kept)} % of the stops left stay with their vehicle, in the same order. `;
   element("changes-said").textContent = `${share}${last}`;
   const timed = vehicles.some(({ before, after }) => (before ?? after)?.back);
   const titles = ["Vehicle", "Stops left", ...(timed ? ["Back at"] : [])].map((title) => made("th", { scope: "col" }, title));
