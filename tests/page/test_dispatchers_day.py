@@ -189,7 +189,7 @@ def test_vehicles_leave_early_with_time_in_hand_that_delays_may_use_up(
     desk.fill("#everyday-shift", "8:00-16:00")
     desk.fill("#everyday-slack", "10")
     expect(page.locator("#everyday-slack")).to_have_value("10 min")
-    page.get_by_label("Vehicles leave").select_option("as early as they can")
+    page.get_by_label("Vehicles leave").select_option("early")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     for row in page.locator("#fleet-legend tbody tr").all():

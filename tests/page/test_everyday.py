@@ -145,7 +145,7 @@ SAID = [
     "8 min at each stop",
     "shifts from 8:00 to 16:00",
     "10 min in hand",
-    "vehicles leave as early as they can",
+    "vehicles leave early",
     "25 km/h",
 ]
 

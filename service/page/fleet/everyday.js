@@ -210,7 +210,7 @@ export function recalled(asked, { depot, service, shift, speed, reload, leave, s
     [given.service === null && service > 0, withService, service, `${duration(service)} at each stop`],
     [given.shift === null && shift, withShift, shift, `shifts from ${shift?.map(timeText).join(" to ")}`],
     [given.slack === null && slack > 0, withSlack, slack, `${duration(slack)} in hand`],
-    [given.leave !== leave && leave === "early", withLeave, leave, "vehicles leave as early as they can"],
+    [given.leave !== leave && leave === "early", withLeave, leave, "vehicles leave early"],
     [given.speed && speed > 0 && given.speed !== speed, withSpeed, speed, `${speed} km/h`],
   ].filter(([isMeant]) => isMeant);
   return { asked: steps.reduce((changed, [, change, value]) => change(changed, value), asked), said: steps.map((step) => step.at(-1)) };

@@ -3,7 +3,6 @@
 import { amount } from "../common/amounts.js";
 import { SECONDS } from "../common/durations.js";
 import { made } from "../common/elements.js";
-import { counted } from "../common/numbers.js";
 import { isMetres } from "../common/objectives.js";
 import { clockUnit, withUnits } from "../fleet/units.js";
 import { Problem } from "../planning/service.js";
@@ -63,7 +62,7 @@ export class Offers {
       const { offers, objectives } = await this.#service.post({ path: `front/${id}/offers`, body: offersBody(body, asked) });
       const possible = offers.filter((each) => each.possible);
       const units = withUnits(objectives, asked);
-      this.#say(`${body.add[row].id} can be visited in ${counted(possible.length, "of these hours", "of these hours")}. Press the hour that you promise to the customer, then “Replan what is left”.`);
+      this.#say(possible.length ? `${body.add[row].id} can be visited in any of these hours, each with what it adds to the plan. Press the hour that you promise to the customer, then “Replan what is left”.` : `${body.add[row].id} cannot be visited in any hour.`);
       const take = ({ slot }) => {
         this.clear();
         onTake(row, slot);
