@@ -1,6 +1,7 @@
 """The costs of legs in each slice of the day."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,37 @@ class CostsOfDay:
     def constant(cls, matrix: Array) -> "CostsOfDay":
         """Return costs that are the same all day, from a matrix of them, shape (n, n)."""
         return cls(np.zeros(1), np.ones(1), np.zeros(1, np.int64), matrix[np.newaxis])
+
+    @property
+    def changes(self) -> bool:
+        """Whether costs depend on the time."""
+        return len(self.begins) > 1
+
+    @property
+    def varies(self) -> bool:
+        """Whether the costs of one leg change otherwise than those of another."""
+        return len(self.matrices) > 1
+
+    def at(self, time: float, a: int, b: int) -> float:
+        """Return the cost of a leg that begins at a time."""
+        known = int(np.searchsorted(self.begins[1:], time, "right"))
+        return float(self.factors[known] * self.matrices[self.layers[known], a, b])
+
+    def least(self) -> Array:
+        """Return the least costs of all slices, shape (n, n)."""
+        used = np.unique(self.layers)
+        factors = [self.factors[self.layers == layer].min() for layer in used]
+        costs = (self.matrices[layer] * each for layer, each in zip(used, factors, strict=True))
+        return reduce(np.minimum, costs)
+
+    def among(self, stops: NDArray[np.int64]) -> "CostsOfDay":
+        """Return the costs between some stops, which may repeat."""
+        return replace(self, matrices=self.matrices[:, stops[:, np.newaxis], stops])
+
+    def scaled(self, costs: int, times: int) -> "CostsOfDay":
+        """Return costs and times of the day multiplied by powers of two."""
+        begins, matrices = np.ldexp(self.begins, times), np.ldexp(self.matrices, costs)
+        return replace(self, begins=begins, matrices=matrices)
 
     def mean(self, earliest: float, latest: float) -> Array:
         """Return the mean costs from one time of the day to a later one, shape (n, n)."""

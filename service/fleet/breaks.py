@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from math import inf
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from service.fleet.rounding import excess, is_over
 from service.fleet.vehicles import ALWAYS, Break, Span, VehicleType
 
 _ALWAYS = (ALWAYS,)
+Leg = TypeVar("Leg")
 
 
 class Stay(NamedTuple):
@@ -171,16 +172,18 @@ def _add(state: _State, states: list[_State]) -> None:
 
 def with_breaks(
     stays: Sequence[Stay],
-    driven: Sequence[float],
+    driven: Sequence[Leg],
     breaks: Sequence[Break],
     placed: Sequence[Placed],
-) -> tuple[list[Stay], list[float], list[int], list[int]]:
+    still: Leg,
+) -> tuple[list[Stay], list[Leg], list[int], list[int]]:
     """Return the stays and legs of a route with breaks as stays.
 
-    The leg to or from a break takes no time. With them come, for each stay of the route, the place
-    where the vehicle arrives for it, maybe at a break before it, and its own place.
+    The leg to or from a break is `still`, which takes no time. With them come, for each stay of the
+    route, the place where the vehicle arrives for it, maybe at a break before it, and its own
+    place.
     """
-    found, legs = list[Stay](), list[float]()
+    found, legs = list[Stay](), list[Leg]()
     arrivals, places = list[int](), list[int]()
     for place, stay in enumerate(stays):
         here = [each for each in placed if each.place == place]
@@ -189,7 +192,7 @@ def with_breaks(
         places.append(len(found) + len(group))
         group += [stay, *(_resting(breaks[each.number]) for each in here if each.after)]
         found += group
-        legs += [0.0] * (len(group) - 1) + list(driven[place : place + 1])
+        legs += [still] * (len(group) - 1) + list(driven[place : place + 1])
     return found, legs, arrivals, places
 
 

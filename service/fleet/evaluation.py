@@ -16,7 +16,8 @@ from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
-from service.fleet.schedule import REMEMBERED, Schedule, legs, schedule, trips_of
+from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of
+from service.fleet.times import Schedule
 
 
 @lru_cache(REMEMBERED)
@@ -280,7 +281,7 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:
     """Yield each rule that a route breaks by itself."""
     rules = fleet.rules
     vehicle = rules.vehicles[route.vehicle]
-    if fleet.forbids and inf in legs(fleet, route, 0):
+    if fleet.forbids and inf in fleet.legs_along(0, path_of(rules, route)):
         yield Broken("way", "takes a forbidden leg")
         return
     yield from _service_broken(rules, route)

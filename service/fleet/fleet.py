@@ -8,6 +8,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from service.day.costs import CostsOfDay
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.straight import Line
 from service.instance import SAMPLED, largest_costs, ordinary_cost
@@ -32,16 +33,27 @@ class Fleet:
         rules: The rules.
         costs: The matrices, shape (2, n, n); without stops, shape (2, 0, 0), if there are lines.
         lines: The two lines instead of them; none if there are matrices.
+        day: Both costs over the day, if some change. `costs` are then their means.
     """
 
     rules: Rules
     costs: Array
     lines: tuple[Line, ...] = ()
+    day: tuple[CostsOfDay, CostsOfDay] | None = None
 
     @classmethod
     def of_lines(cls, rules: Rules, lines: Sequence[Line]) -> "Fleet":
         """Return a fleet whose legs are lines, which are worked out where they are read."""
         return cls(rules=rules, costs=np.empty((LAYERS, 0, 0)), lines=tuple(lines))
+
+    @classmethod
+    def over_the_day(cls, rules: Rules, first: CostsOfDay, second: CostsOfDay) -> "Fleet":
+        """Return a fleet whose costs change over the day, with the means of its shifts."""
+        ends = [end for vehicle in rules.vehicles for end in vehicle.way if end < inf]
+        begin = rules.begin
+        end = max([begin, *ends, *(each.begins[-1] for each in (first, second))])
+        costs = np.stack([each.mean(begin, end) for each in (first, second)])
+        return cls(rules=rules, costs=costs, day=(first, second))
 
     def __post_init__(self) -> None:
         n = 0 if self.lines else self.rules.n
@@ -53,6 +65,9 @@ class Fleet:
         costs[:, np.isinf(costs).any(axis=0)] = inf
         costs.flags.writeable = False
         object.__setattr__(self, "costs", costs)
+        if self.day is not None:
+            first, second = (_allowed(each, np.isinf(costs[0])) for each in self.day)
+            object.__setattr__(self, "day", (first, second))
 
     def under(self, rules: Rules) -> "Fleet":
         """Return the fleet under other rules."""
@@ -62,18 +77,29 @@ class Fleet:
         """Return a fleet of some of the stops, which may repeat."""
         if self.lines:
             return Fleet.of_lines(rules, [line.chosen(stops) for line in self.lines])
-        return Fleet(rules=rules, costs=self.among(stops))
+        day = self.day and (self.day[0].among(stops), self.day[1].among(stops))
+        return Fleet(rules=rules, costs=self.among(stops), day=day)
 
     def scaled(self, rules: Rules, shifts: Indices) -> "Fleet":
         """Return a fleet whose costs are multiplied by powers of two, shape (2,)."""
         if self.lines:
             pairs = zip(self.lines, shifts.tolist(), strict=True)
             return Fleet.of_lines(rules, [line.scaled(shift) for line, shift in pairs])
-        return Fleet(rules=rules, costs=np.ldexp(self.costs, shifts[:, np.newaxis, np.newaxis]))
+        costs = np.ldexp(self.costs, shifts[:, np.newaxis, np.newaxis])
+        if self.day is None:
+            return Fleet(rules=rules, costs=costs)
+        times = int(shifts[rules.clock or 0])
+        first, second = map(CostsOfDay.scaled, self.day, shifts.tolist(), (times, times))
+        return Fleet(rules=rules, costs=costs, day=(first, second))
 
     def leg(self, layer: int, a: int, b: int) -> float:
-        """Return a cost of a leg."""
-        return float(self.lines[layer].legs(a, b) if self.lines else self.costs[layer, a, b])
+        """Return a cost of a leg; over the day the least one."""
+        return float(self.lines[layer].legs(a, b) if self.lines else self._least[layer, a, b])
+
+    @cached_property
+    def _least(self) -> Array:
+        """The least costs of the day, shape (2, n, n)."""
+        return self.costs if self.day is None else np.stack([each.least() for each in self.day])
 
     def legs_along(self, layer: int, path: Sequence[int]) -> list[float]:
         """Return a cost of each leg of a path."""
@@ -104,6 +130,8 @@ class Fleet:
     def least_paths(self, layer: int, starts: Sequence[int], *, back: bool = False) -> Array:
         """Return the least cost of a path from any of the starts to each stop, shape (n,). O(n^2).
 
+        Over the day it is a bound below that cost.
+
         Args:
             layer: The number of the costs.
             starts: The stops where paths may start.
@@ -112,13 +140,14 @@ class Fleet:
         legs = self.legs_to if back else self.legs_from
         if self.lines:  # no detour is shorter
             return np.min([legs(layer, start) for start in starts], axis=0, initial=inf)
-        return least_paths(partial(legs, layer), self.rules.n, starts)
+        rows = self._least[layer].T if back else self._least[layer]
+        return least_paths(rows.__getitem__, self.rules.n, starts)
 
     def nearest(self, layer: int) -> tuple[Array, Array]:
         """Return the least cost of a leg to and from each stop, shape (n,) both. O(n^2)."""
         to, away = np.full((2, self.rules.n), inf)
         begin = 0
-        for block in self._blocks(layer):
+        for block in self._blocks(layer) if self.day is None else [self._least[layer]]:
             rows = np.arange(begin, begin + len(block))
             others = np.where(rows[:, np.newaxis] == np.arange(self.rules.n), inf, block)
             to = np.minimum(to, others.min(axis=0))
@@ -255,6 +284,15 @@ class Fleet:
             case "load_distance":
                 return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
         return float(legs[layer])
+
+
+def _allowed(costs: CostsOfDay, forbidden: NDArray[np.bool_]) -> CostsOfDay:
+    """Return costs without the cost of a leg from a stop to itself, and some legs forbidden."""
+    still = np.eye(len(forbidden), dtype=np.bool_)
+    matrices = np.where(still, 0.0, np.where(forbidden, inf, costs.matrices))
+    if not (matrices >= 0).all():
+        raise ValueError("costs must be numbers and not negative")
+    return replace(costs, matrices=matrices)
 
 
 def least_paths(legs: Rows, n: int, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:

@@ -206,11 +206,11 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
 def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     """Return whether no detour over a stop is shorter, in the limited objective.
 
-    False if legs are forbidden, since then a detour may be the only way to a stop, and if it ended
-    before all detours were tried.
+    False if legs are forbidden, since then a detour may be the only way to a stop, if some legs
+    become slower over the day than others, and if it ended before all detours were tried.
     """
     rules = fleet.rules
-    if fleet.forbids:
+    if fleet.forbids or (fleet.day is not None and fleet.day[rules.limited or 0].varies):
         return False
     if rules.limited is None or fleet.lines:
         return True

@@ -114,6 +114,9 @@ def _constructed(
     fleet: Fleet, constructor: Constructor | None, watch: Watch[FleetFront]
 ) -> list[Plan]:
     """Return the plans made by cutting the tours of a network into routes."""
+    if fleet.day is not None:
+        reason = "costs that change over the day need a time_limit over 0"
+        raise Refusal("no-plan", reason=reason)
     if constructor is None:
         raise Refusal("no-actor", kind="fleets with time_limit 0")
     cutter = Cutter(fleet, network_sequences(fleet, constructor), watch.stopped)

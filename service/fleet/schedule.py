@@ -1,54 +1,20 @@
 """The times of a route: when its vehicle leaves, arrives and waits, and how late it is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache, partial
+from itertools import pairwise
 from math import inf
 
 from service.fleet.breaks import Stay, place_breaks, with_breaks
+from service.fleet.day_legs import DayLeg
+from service.fleet.day_schedule import times_over_the_day
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route, path_of
 from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Rules
+from service.fleet.times import Schedule
 from service.fleet.vehicles import ALWAYS, Span, VehicleType
-
-
-@dataclass(frozen=True)
-class Schedule:
-    """The times of a route: when the vehicle reaches each stop, and when it is done.
-
-    Attributes:
-        arrivals: The arrival at each stop of `path_of`; at the first stop, the departure. The
-            vehicle may wait at a stop until its window opens.
-        end: The end of the route.
-        late: The largest delay at a window, or at the end of the shift with its overtime; 0 if it
-            is a rounding.
-        waiting: The time that the vehicle waits.
-        slack: How much later it may leave without being late, if it is never late.
-        lateness: The sum of the times by which visits begin after they are due.
-        windows: The number of the window used at each stop of `path_of`.
-        tightest: The place in `path_of` of the stop that limits the slack by a window that is not
-            its last; -1 if something else does.
-        begins: When the visit at each stop of `path_of` begins.
-        breaks: When each break on the way begins.
-    """
-
-    arrivals: tuple[float, ...]
-    end: float
-    late: float
-    waiting: float
-    slack: float
-    lateness: float
-    windows: tuple[int, ...]
-    tightest: int
-    begins: tuple[float, ...]
-    breaks: tuple[float, ...] = ()
-
-    @property
-    def duration(self) -> float:
-        """The time from the departure to the end."""
-        return self.end - self.arrivals[0]
-
 
 REMEMBERED = 4096  # latest routes whose times and lengths are known: plans share many routes
 _FREE = Stay((ALWAYS,), 0.0, inf)
@@ -60,19 +26,22 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
 
     Of the ways to be done then, it takes one of the least lateness. It leaves as late as neither
     delays its end nor makes a visit later than due, and no later than it must; or as early as it
-    may, if the rules say so.
+    may, if the rules say so. Over the day it leaves when the route takes the least time instead:
+    see `times_over_the_day`.
 
     Raises:
         ValueError: The fleet has no clock.
     """
     if fleet.rules.clock is None:
         raise ValueError("a fleet without a clock has no times")
-    driven = legs(fleet, route, fleet.rules.clock)
     vehicle = fleet.rules.vehicles[route.vehicle]
     trips = trips_of(fleet.rules, route)
     released = max(vehicle.way[0], _released(fleet.rules, trips[0]))
     stays = _stays(fleet.rules, route, trips)
     early = fleet.rules.leave == "early"
+    if fleet.day is not None:
+        return times_over_the_day(_legs_of_day(fleet, route), stays, released, vehicle, early)
+    driven = legs(fleet, route, fleet.rules.clock)
     if vehicle.breaks:
         return _with_breaks(stays, driven, released, vehicle, early)
     return _timed(stays, driven, released, vehicle, early)
@@ -95,7 +64,7 @@ def _with_breaks(
         plain = _timed(stays, driven, released, vehicle, early)
         return replace(plain, late=plain.late or inf)
     departure, placed = found
-    extended, legs_between, begins, places = with_breaks(stays, driven, vehicle.breaks, placed)
+    extended, legs_between, begins, places = with_breaks(stays, driven, vehicle.breaks, placed, 0.0)
     times = _timed(extended, legs_between, departure, vehicle, early)
     rests = [place for place in range(len(extended)) if place not in places]
     opens_of = [extended[place].windows[0][0] for place in rests]
@@ -234,6 +203,30 @@ def trips_of(rules: Rules, route: Route) -> list[list[int]]:
 
 
 def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
-    """Return what the legs of a route cost its vehicle in one objective."""
-    speed = fleet.rules.speed(route.vehicle, objective)
-    return [leg / speed for leg in fleet.legs_along(objective, path_of(fleet.rules, route))]
+    """Return what the legs of a route cost its vehicle in one objective.
+
+    Over the day these are the costs at the times of the route.
+    """
+    path = path_of(fleet.rules, route)
+    if fleet.day is None:
+        speed = fleet.rules.speed(route.vehicle, objective)
+        return [leg / speed for leg in fleet.legs_along(objective, path)]
+    times = schedule(fleet, route)
+    if objective == fleet.rules.clock:
+        driven = zip(times.leaves, times.arrivals[1:], strict=False)
+        return [after - leaves for leaves, after in driven]
+    costs, between = fleet.day[objective], zip(times.leaves, pairwise(path), strict=False)
+    return [costs.at(leaves, *leg) for leaves, leg in between]
+
+
+def _legs_of_day(fleet: Fleet, route: Route) -> list[DayLeg]:
+    assert fleet.rules.clock is not None
+    speed = fleet.rules.speed(route.vehicle, fleet.rules.clock)
+    return [_leg_of_day(fleet, speed, a, b) for a, b in pairwise(path_of(fleet.rules, route))]
+
+
+@lru_cache(4 * REMEMBERED)
+def _leg_of_day(fleet: Fleet, speed: float, a: int, b: int) -> DayLeg:
+    assert fleet.day is not None
+    assert fleet.rules.clock is not None
+    return DayLeg.of(fleet.day[fleet.rules.clock], a, b, speed)

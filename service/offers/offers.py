@@ -7,7 +7,7 @@ by ascending bounds, until no other place can be better in any objective.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain
+from itertools import chain, pairwise
 from typing import get_args
 
 import numpy as np
@@ -317,6 +317,8 @@ class _Search:
                 return known.lateness
             case "overtime":
                 return np.maximum(known.end - rules.vehicles[places.vehicle].shift[1], 0.0)
+            case "load_distance" if self._fleet.day is not None:
+                return np.zeros(known.end.shape)
             case "load_distance":
                 return self._at_any_time(places, known, load_distance)
         return self._least_costs(places, known, rules.limited if over == "imbalance" else layer)
@@ -327,7 +329,9 @@ class _Search:
             return known.duration
 
         def driven(fleet: Fleet, route: Route) -> float:
-            return sum(legs(fleet, route, layer))
+            if fleet.day is None:
+                return sum(legs(fleet, route, layer))
+            return sum(fleet.leg(layer, *leg) for leg in pairwise(path_of(fleet.rules, route)))
 
         return self._at_any_time(places, known, driven)
 
