@@ -47,6 +47,9 @@ WORK: Mapping[Part, Compilation] = {
         search.several_objectives, (search.several_objectives,), 4
     ),
     Part.OVER_THE_DAY: Compilation(day.warm_up, (day.warm_up,), 8),
+    Part.FLEETS_OVER_THE_DAY: Compilation(
+        fleet.warm_up_over_the_day, (fleet.warm_up_over_the_day,), 11
+    ),
     Part.MANY_CITIES: Compilation(search.many_cities, (search.many_cities,), 5),
     Part.BOUNDS: Compilation(search.bounds, (search.bounds,), 4),
 }

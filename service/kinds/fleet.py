@@ -142,6 +142,13 @@ def warm_up() -> None:
     search.warm_up()
 
 
+def warm_up_over_the_day() -> None:
+    """Compile what plans fleets whose costs change over the day."""
+    from service.fleet.search import search
+
+    search.warm_up_over_the_day()
+
+
 def document_of_plans(
     front: FleetFront,
     encode: Callable[[Plan, dict[str, Any]], bytes],

@@ -30,8 +30,12 @@ class Part(Enum):
     FLEETS = "fleets"
     SEVERAL_OBJECTIVES = "several-objectives"  # three and four
     OVER_THE_DAY = "over-the-day"
+    FLEETS_OVER_THE_DAY = "fleets-over-the-day"
     MANY_CITIES = "many-cities"
     BOUNDS = "bounds"
+
+
+_OF_DAYS = (Part.OVER_THE_DAY, Part.FLEETS_OVER_THE_DAY)
 
 
 @dataclass(frozen=True)
@@ -60,18 +64,19 @@ class Compiling:
 
 def parts_for_robots(_: SharedCoverage, __: Task) -> frozenset[Part]:
     """Return the parts that several robots on a map need."""
-    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY}
+    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, *_OF_DAYS}
 
 
 def parts_for_fleet(fleet: UnmeasuredFleet, _: Task) -> frozenset[Part]:
     """Return the parts that a fleet needs."""
     several = {Part.SEVERAL_OBJECTIVES} if len(fleet.rules.over) > OBJECTIVES else set()
-    return frozenset({Part.FEW_CITIES, Part.FLEETS} | several)
+    search = Part.FLEETS_OVER_THE_DAY if fleet.stops.changes else Part.FLEETS
+    return frozenset({Part.FEW_CITIES, search} | several)
 
 
 def parts_for_map(coverage: Coverage, _: Task) -> frozenset[Part]:
     """Return the parts that one robot on a map needs."""
-    unneeded = {Part.FLEETS, Part.OVER_THE_DAY}
+    unneeded = {Part.FLEETS, *_OF_DAYS}
     if coverage.objectives == OBJECTIVES:
         unneeded.add(Part.SEVERAL_OBJECTIVES)
     return frozenset(Part) - unneeded

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Measure, Over, Rules
+from service.fleet.search.day import FleetDay, day_of
 from service.fleet.vehicles import VehicleType
 from service.jit import by_reference
 
@@ -40,6 +41,7 @@ class Problem(NamedTuple):
     places: Array  # (n, 2, 3), where stops are in each line; (0, 2, 3) where costs are stored
     curved: Flags  # (2,), whether each line is along a sphere
     factors: Array  # (p, 2), what a line of length 1 costs
+    day: FleetDay | None  # both costs over the day; `costs` are then their means
     clock: int  # the number of the costs that are time; -1 for none
     limited: int  # the number of the costs that `longest` bounds; -1 for none
     swept: int  # the number of the costs by which the longest route counts; -1 if it does not
@@ -128,6 +130,7 @@ def problem_of(fleet: Fleet) -> Problem:
         places=np.ascontiguousarray(np.moveaxis(np.array(places), 0, 1)),
         curved=np.array([line.curved for line in fleet.lines], np.bool_),
         factors=np.array([_driven(rules, factors, each.speed, forbidden) for each in profiles]),
+        day=day_of(fleet, forbidden),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
         swept=-1 if rules.swept is None else rules.swept,
@@ -191,7 +194,7 @@ def problem_of(fleet: Fleet) -> Problem:
         bounded_below=any(vehicle.is_bounded_below for vehicle in vehicles),
         min_stops=np.array([vehicle.min_stops for vehicle in vehicles]),
         shortest=_floats([vehicle.shortest for vehicle in vehicles]),
-        tried=np.array([_is_tried(rules, vehicle) for vehicle in vehicles]),
+        tried=np.array([_is_tried(fleet, vehicle) for vehicle in vehicles]),
     )
 
 
@@ -262,13 +265,15 @@ def _breaks(vehicles: Sequence[VehicleType]) -> Array:
     return found
 
 
-def _is_tried(rules: Rules, vehicle: VehicleType) -> bool:
+def _is_tried(fleet: Fleet, vehicle: VehicleType) -> bool:
     """Return whether a stop in a route may cost something else than what is known along it says.
 
-    It may where the vehicle has breaks, where the begin of each visit counts, or where it loads
-    again and times or loads on the way depend on what all of a trip brings.
+    It may where costs change over the day, where the vehicle has breaks, where the begin of each
+    visit counts, or where it loads again and times or loads on the way depend on what all of a trip
+    brings.
     """
-    if rules.weighs_begins:
+    rules = fleet.rules
+    if rules.weighs_begins or fleet.day is not None:
         return True
     if not vehicle.reload:
         return bool(vehicle.breaks)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
+from service.fleet.search.day import FleetDay, driven, slice_of
 from service.fleet.search.problem import RELEASED, Array, Problem
 from service.fleet.search.working_plan import MOST_STATES, WorkingPlan, leg, service_at
 from service.jit import compiled, inlined, standalone
@@ -47,17 +48,17 @@ def rested(problem: Problem, plan: WorkingPlan, slot: int) -> Times:
     node, at = plan.next[start], problem.place[start]
     while node != end:
         if plan.via[node] >= 0:
-            _drive(plan, leg(problem, profile, at, plan.via[node], problem.clock))
+            _drive(problem.day, problem, plan, slot, (at, plan.via[node]))
             _rest(problem, plan, kind)
             _wait(plan, plan.released[node])
             at = plan.via[node]
             _rest(problem, plan, kind)
-        _drive(plan, leg(problem, profile, at, node, problem.clock))
+        _drive(problem.day, problem, plan, slot, (at, node))
         _rest(problem, plan, kind)
         _serve(problem, plan, profile, node)
         _rest(problem, plan, kind)
         at, node = node, plan.next[node]
-    _drive(plan, plan.step[end, problem.clock])
+    _drive(problem.day, problem, plan, slot, (at, problem.place[end]))
     _rest(problem, plan, kind)
     return _ended(problem, plan, kind)
 
@@ -72,10 +73,32 @@ def _depart(problem: Problem, plan: WorkingPlan, slot: int) -> None:
         if not _is_over(begin, problem.leaves_by[kind]):
             # Of vehicles that leave early, those that leave the earliest count as the latest.
             latest = -begin if problem.early else problem.leaves_by[kind]
-            _add(plan, taken, Way(begin, 0.0, 0.0, latest, begin))
+            _depart_from(problem.day, problem, plan, slot, (taken, begin, latest))
         if taken < problem.rests[kind]:
             opens, length = problem.breaks[kind, taken, 0], problem.breaks[kind, taken, 2]
             begin = max(begin, opens + length)
+
+
+@inlined
+def _depart_from(
+    day: FleetDay | None,
+    problem: Problem,
+    plan: WorkingPlan,
+    slot: int,
+    begun: tuple[int, float, float],
+) -> None:
+    """Add the state of a vehicle that may leave from a time on, with so many breaks taken.
+
+    Over the day it leaves at this time, or when the route takes the least time without breaks.
+    """
+    taken, begin, latest = begun
+    if day is None:
+        _add(plan, taken, Way(begin, 0.0, 0.0, latest, begin))
+    else:
+        leaves = plan.ready[len(problem.demand) + 2 * slot]
+        _add(plan, taken, Way(begin, 0.0, 0.0, latest if problem.early else begin, begin))
+        if leaves > begin and not problem.early:
+            _add(plan, taken, Way(leaves, 0.0, 0.0, leaves, leaves))
 
 
 @inlined
@@ -123,11 +146,27 @@ def _add(plan: WorkingPlan, taken: int, way: Way) -> None:
 
 
 @inlined
-def _drive(plan: WorkingPlan, leg: float) -> None:
-    for taken in range(len(plan.states)):
-        for number in range(plan.states[taken]):
-            plan.state[taken, number, _TIME] += leg
-            plan.state[taken, number, _WORK] += leg
+def _drive(
+    day: FleetDay | None,
+    problem: Problem,
+    plan: WorkingPlan,
+    slot: int,
+    between: tuple[int, int],
+) -> None:
+    """Drive a leg; one branch is left where this is compiled: that of the type of the day."""
+    if day is None:
+        legs = leg(problem, problem.profile[slot], between[0], between[1], problem.clock)
+        for taken in range(len(plan.states)):
+            for number in range(plan.states[taken]):
+                plan.state[taken, number, _TIME] += legs
+                plan.state[taken, number, _WORK] += legs
+    else:
+        pace = day.paces[problem.kind[slot]]
+        for taken in range(len(plan.states)):
+            for number in range(plan.states[taken]):
+                time = plan.state[taken, number, _TIME]
+                ends = driven(day, between, pace, time, slice_of(day, time)).time
+                plan.state[taken, number, _TIME] = ends
 
 
 @inlined
@@ -191,8 +230,28 @@ def _ended(problem: Problem, plan: WorkingPlan, kind: int) -> Times:
         for number in range(plan.states[taken]):
             way = _state(plan.state[taken], number)
             if not _is_over(way.time, last):
-                best = _better(best, way, problem.early)
+                best = _better_at_end(problem.day, problem, kind, best, way)
     return best
+
+
+@inlined
+def _better_at_end(
+    day: FleetDay | None, problem: Problem, kind: int, best: Times, way: Way
+) -> Times:
+    """Return the better of the times of a route, and those of another way at its end.
+
+    Over the day that is first the least late, then of the least overtime, then the shortest.
+    """
+    if day is None or problem.early:
+        return _better(best, way, problem.early)
+    times = Times(way.time, way.time - way.departure, way.late)
+    if best.end == np.inf or _is_over(best.late, way.late, way.time):
+        return times
+    shift_end = problem.shift_end[kind]
+    more = max(0.0, way.time - shift_end) - max(0.0, best.end - shift_end)
+    if _is_over(way.late, best.late, way.time) or more > 0.0:
+        return best
+    return times if more < 0.0 or times.duration < best.duration else best
 
 
 @inlined

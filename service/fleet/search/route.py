@@ -6,6 +6,7 @@ import numpy as np
 
 from service.fleet.rounding import is_over
 from service.fleet.search.begins import begin_at, weigh_begins
+from service.fleet.search.day import FleetDay
 from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
     FIRST,
@@ -18,6 +19,7 @@ from service.fleet.search.problem import (
     Problem,
 )
 from service.fleet.search.rests import rested
+from service.fleet.search.routes_of_day import drive_over_the_day
 from service.fleet.search.values import lacking, route_cost, values_of
 from service.fleet.search.working_plan import (
     USED,
@@ -99,21 +101,54 @@ def measure(state: State, slot: int) -> bool:
     fits = gather(problem, plan, slot, start)
     first, second = _sum_legs(problem, plan, slot, start)
     fits &= first < problem.forbidden
-    duration = 0.0
-    if problem.clock >= 0:
-        duration, in_time = _forward(problem, plan, slot, start)
-        _backward(problem, plan, slot, start)
-        fits &= in_time
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     if problem.clock >= 0:
-        plan.value[slot, problem.clock] = duration
-        if problem.timely and fits:
-            weigh_begins(problem, plan, start, plan.ready[start + 1] - duration)
+        fits &= _drive(problem.day, problem, plan, slot, fits)
+        _backward(problem, plan, slot, start)
     fits &= _set_cost(state, slot, start + 1)
     plan.plain[slot] = plan.cost[slot]
     if fits and problem.rests[problem.kind[slot]] > 0:
         return _rest(state, slot, start + 1)
     return fits
+
+
+@inlined
+def _drive(
+    day: FleetDay | None, problem: Problem, plan: WorkingPlan, slot: int, fits: bool
+) -> bool:
+    """Write the times up to each node of a route and how long it takes; return whether it is kept.
+
+    One branch is left where this is compiled: that of the type of the day.
+    """
+    start = len(problem.demand) + 2 * slot
+    if day is None:
+        duration, in_time = _forward(problem, plan, slot, start)
+        plan.value[slot, problem.clock] = duration
+        if problem.timely and fits and in_time:
+            weigh_begins(problem, plan, start, plan.ready[start + 1] - duration)
+        return in_time
+    in_time = drive_over_the_day(day, problem, plan, slot)
+    _set_heads(problem, plan, slot, start)
+    return in_time
+
+
+@inlined
+def _set_heads(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> None:
+    """Write the route up to each node, with the legs as they are at its times."""
+    kind, profile = problem.kind[slot], problem.profile[slot]
+    departs = max(problem.departs[kind], plan.value[slot, RELEASED])
+    span = Span(0.0, departs, problem.leaves_by[kind])
+    _set_span(plan.head, start, span)
+    at, node = problem.place[start], plan.next[start]
+    while node != start + 1:
+        leg_to = plan.step[node, problem.clock]
+        if plan.via[node] >= 0:
+            away = min(leg_to, leg(problem, profile, at, plan.via[node], problem.clock))
+            leg_to -= away
+            span, _ = joined(span, away, Span(0.0, plan.released[node], np.inf))
+        span, _ = joined(span, leg_to, stay(problem, profile, node))
+        _set_span(plan.head, node, span)
+        at, node = node, plan.next[node]
 
 
 @inlined

@@ -6,6 +6,7 @@ import numpy as np
 
 from service.fleet.rounding import is_over
 from service.fleet.search.begins import begin_at, weighed_with
+from service.fleet.search.day import FleetDay
 from service.fleet.search.problem import (
     FIRST,
     LATENESS,
@@ -21,6 +22,7 @@ from service.fleet.search.route import (
     stay,
     tail_at,
 )
+from service.fleet.search.spots_of_day import cost_over_the_day
 from service.fleet.search.values import Values, grown_cost
 from service.fleet.search.working_plan import (
     State,
@@ -75,7 +77,7 @@ def nowhere(most: float) -> Place:
 @inlined
 def better_at(state: State, stop: int, spot: Spot, best: Place) -> Place:
     """Return the better of two places: the best so far, and a spot with room."""
-    cost = insertion_cost(state, stop, spot, best.cost)
+    cost = _estimated(state.problem.day, state, stop, spot, best.cost)
     if cost >= best.cost:
         return best
     if state.problem.tried[state.problem.kind[spot.slot]]:
@@ -83,6 +85,14 @@ def better_at(state: State, stop: int, spot: Spot, best: Place) -> Place:
         if cost >= best.cost:
             return best
     return Place(cost, spot.slot, spot.before, spot.via, spot.onward, -1)
+
+
+@inlined
+def _estimated(day: FleetDay | None, state: State, stop: int, spot: Spot, most: float) -> float:
+    """Return insertion_cost(), or an estimate over the day: where compiled, by the type of it."""
+    if day is None:
+        return insertion_cost(state, stop, spot, most)
+    return cost_over_the_day(day, state, stop, spot)
 
 
 @inlined

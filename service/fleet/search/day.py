@@ -1,0 +1,105 @@
+"""The costs of a fleet over the day as the arrays that the search reads."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.day.driving import arrived, slices_of
+from service.fleet.fleet import Fleet
+from service.jit import by_reference, inlined
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_MOST_KNOTS = 2**13  # of the function from the departure of a route to a time on its way
+
+
+@by_reference
+class FleetDay(NamedTuple):
+    """Both costs in the slices of a day, and scratch space.
+
+    Attributes:
+        begins: As in `Slices`.
+        factors: As in `Slices`.
+        layers: As in `Slices`.
+        matrices: As in `Slices`; a forbidden leg costs a finite sum that no plan may cost.
+        clock: The number of the costs that are time.
+        paces: By what each type of vehicles multiplies them, shape (v,).
+        departures: Scratch space, shape (2, k): the departures of some routes that are alike.
+        times: When these are at a place on the way, shape (2, k).
+        changes: When a leg becomes slower or faster, shape (2 s,).
+    """
+
+    begins: Array
+    factors: Array
+    layers: Indices
+    matrices: Array
+    clock: int
+    paces: Array
+    departures: Array
+    times: Array
+    changes: Array
+
+
+def day_of(fleet: Fleet, forbidden: float) -> FleetDay | None:
+    """Return the costs of a fleet over the day; None if they do not change."""
+    if fleet.day is None or fleet.rules.clock is None:
+        return None
+    slices = slices_of(fleet.day)
+    # In every slice it costs as much, whatever the factor.
+    most = forbidden / min(1.0, float(slices.factors.min()))
+    matrices = np.where(np.isinf(slices.matrices), most, slices.matrices)
+    knots = _MOST_KNOTS
+    return FleetDay(
+        *slices._replace(matrices=np.ascontiguousarray(matrices)),
+        clock=fleet.rules.clock,
+        paces=1.0 / np.array([vehicle.speed_factor for vehicle in fleet.rules.vehicles]),
+        departures=np.zeros((2, knots)),
+        times=np.zeros((2, knots)),
+        changes=np.zeros(2 * len(slices.factors)),
+    )
+
+
+class Moment(NamedTuple):
+    """A time, the slice that it is in, and both costs of the leg that ends then."""
+
+    time: float
+    slice: int
+    first: float
+    second: float
+
+
+@inlined
+def slice_of(day: FleetDay, time: float) -> int:
+    """Return the slice of a time. O(log s)."""
+    low, high = 0, len(day.factors) - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if day.begins[middle] <= time:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
+@inlined
+def driven(day: FleetDay, between: tuple[int, int], pace: float, time: float, known: int) -> Moment:
+    """Return the moment at which a vehicle arrives that begins a leg; at once from or to anywhere.
+
+    Args:
+        day: The day.
+        between: The places where the leg begins and ends.
+        pace: By what its seconds are multiplied.
+        time: When it begins.
+        known: The slice of this time.
+    """
+    a, b = between
+    if a < 0 or b < 0:
+        return Moment(time, known, 0.0, 0.0)
+    other = 1 - day.clock
+    cost = day.factors[known, other] * day.matrices[day.layers[known, other], a, b]
+    arrival, later = arrived(day, a, b, time, known, pace)
+    if day.clock == 0:
+        return Moment(arrival, later, arrival - time, cost)
+    return Moment(arrival, later, cost, arrival - time)

@@ -1,0 +1,117 @@
+"""Drive routes over the day: their times, and what a stop costs in them about."""
+
+import numpy as np
+
+from service.fleet.rounding import is_over
+from service.fleet.search.begins import begin_at
+from service.fleet.search.day import FleetDay, Moment, driven, slice_of
+from service.fleet.search.departures import best_departure
+from service.fleet.search.problem import (
+    ARRIVAL,
+    EARLINESS,
+    FIRST,
+    LOADED,
+    RELEASED,
+    SECOND,
+    Problem,
+)
+from service.fleet.search.working_plan import WorkingPlan, service_at
+from service.jit import compiled, inlined, standalone
+
+_is_over = inlined(is_over)
+
+
+@standalone
+def drive_over_the_day(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int) -> bool:
+    """Write the costs and times along a route that leaves at its best departure.
+
+    Return whether it keeps all windows.
+    """
+    kind, start = problem.kind[slot], len(problem.demand) + 2 * slot
+    departs = max(problem.departs[kind], plan.value[slot, RELEASED])
+    if not drive_from(day, problem, plan, slot, departs):
+        return False
+    if _is_over(departs, problem.leaves_by[kind]):
+        return False
+    if problem.early or problem.leaves_by[kind] <= departs:
+        return True
+    leaves = best_departure(day, problem, plan, slot)
+    if leaves > departs and not drive_from(day, problem, plan, slot, leaves):
+        return drive_from(day, problem, plan, slot, departs)
+    return plan.ready[start] >= departs
+
+
+@compiled
+def drive_from(
+    day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int, departure: float
+) -> bool:
+    """Write the costs and times along a route that leaves at a time; return whether it is in time.
+
+    Of a route that misses a window nothing is known from there on.
+    """
+    kind = problem.kind[slot]
+    start, end = _ends(problem, slot)
+    pace, first, second, loaded, first_trip = day.paces[kind], 0.0, 0.0, 0.0, True
+    moment = _moment(day, departure)
+    plan.ready[start], plan.late[start], plan.along[start] = departure, 0.0, 0.0
+    plan.value[slot, EARLINESS] = plan.value[slot, ARRIVAL] = 0.0
+    at, node = problem.place[start], plan.next[start]
+    while True:
+        away, on = 0.0, 0.0
+        if plan.via[node] >= 0:
+            # What was on board from the start, if anything, is unloaded there.
+            moment = driven(day, (at, plan.via[node]), pace, moment.time, moment.slice)
+            away, on = moment.first, moment.second
+            loaded += away * (problem.initial[kind] if first_trip else 0)
+            first_trip, at = False, plan.via[node]
+            moment = _moment(day, max(moment.time, plan.released[node]))
+        moment = driven(day, (at, problem.place[node]), pace, moment.time, moment.slice)
+        loaded += moment.first * plan.ahead[node]
+        plan.step[node, 0], plan.step[node, 1] = away + moment.first, on + moment.second
+        first, second = first + plan.step[node, 0], second + plan.step[node, 1]
+        plan.along[node] = first
+        if node == end:
+            break
+        ready = _visited(problem, plan, slot, node, moment.time)
+        if ready == np.inf:
+            return False
+        moment = _moment(day, ready)
+        at, node = node, plan.next[node]
+    plan.ready[end], plan.late[end] = moment.time, plan.late[plan.previous[end]]
+    plan.value[slot, FIRST], plan.value[slot, SECOND], plan.value[slot, LOADED] = (
+        first,
+        second,
+        loaded,
+    )
+    plan.value[slot, day.clock] = moment.time - departure
+    return not _is_over(moment.time, problem.returns[kind])
+
+
+@inlined
+def _ends(problem: Problem, slot: int) -> tuple[int, int]:
+    """Return the nodes at which a route starts and ends."""
+    start = len(problem.demand) + 2 * slot
+    return start, start + 1
+
+
+@inlined
+def _moment(day: FleetDay, time: float) -> Moment:
+    """Return the moment at a time."""
+    return Moment(time, slice_of(day, time), 0.0, 0.0)
+
+
+@inlined
+def _visited(problem: Problem, plan: WorkingPlan, slot: int, node: int, arrival: float) -> float:
+    """Write the times of a visit; return when it ends, which is never after all windows."""
+    begin = begin_at(problem, node, arrival)
+    if begin == np.inf:
+        return np.inf
+    late = plan.late[plan.previous[node]]
+    if _is_over(begin, problem.due[node]):
+        late += begin - problem.due[node]
+    if problem.timely:
+        plan.value[slot, EARLINESS] += max(0.0, problem.wanted[node] - begin)
+        plan.value[slot, ARRIVAL] += problem.urgency[node] * (begin - problem.begin)
+    ready = begin + service_at(problem, problem.profile[slot], node)
+    plan.ready[node], plan.late[node] = ready, late
+    return ready

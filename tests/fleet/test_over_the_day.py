@@ -1,0 +1,108 @@
+"""Fleets over the day: routes at their best departures, and the search for plans of them."""
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+import pytest
+
+from service.fleet.evaluation import first_broken, overtime, points_of, violations
+from service.fleet.fleet import Fleet
+from service.fleet.fronts import FleetOptions
+from service.fleet.plans import FleetFront, Route
+from service.fleet.schedule import legs, schedule
+from service.fleet.search.search import RuinSearch
+from service.watch import Watch
+from tests.helpers.fleet_days import Driven, day_fleet, departures, driven, other_length
+from tests.helpers.fleets import exact_front
+from tests.helpers.sampled import third
+
+
+def routes_of(fleet: Fleet, seed: int) -> list[Route]:
+    """Return some routes of one window a stop, without breaks and without loading again."""
+    random = np.random.default_rng(seed)
+    found = []
+    for index, vehicle in enumerate(fleet.rules.vehicles):
+        for _ in range(3):
+            count = int(random.integers(1, len(fleet.rules.clients) + 1))
+            stops = random.permutation(fleet.rules.clients)[:count].tolist()
+            alone = all(len(fleet.rules.windows[stop]) == 1 for stop in stops)
+            if alone and not vehicle.breaks:
+                found.append(Route(index, tuple(stops)))
+    return found
+
+
+def badness(fleet: Fleet, route: Route, times: Driven) -> tuple[float, float, float]:
+    """Return how late a route is, how long after its shift it ends, and how long it takes."""
+    late = max(0.0, times.end - fleet.rules.vehicles[route.vehicle].shift[1])
+    return times.lateness, late, times.end - times.arrivals[0]
+
+
+def reaches(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Return whether a point is as good as another, up to roundings."""
+    return all(a <= b + 1e-9 * (1 + abs(b)) for a, b in zip(one, other, strict=True))
+
+
+def test_a_route_leaves_when_it_takes_the_least_time_and_nothing_is_later_for_it() -> None:
+    tried = 0
+    for seed in range(third(60)):
+        fleet = day_fleet(seed)
+        for route in routes_of(fleet, seed):
+            if fleet.forbids or fleet.rules.clock is None:
+                continue
+            times = schedule(fleet, route)
+            every = [each for t in departures(fleet, route) if (each := driven(fleet, route, t))]
+            if times.late:
+                assert not every
+                continue
+            again = driven(fleet, route, times.arrivals[0])
+            assert again is not None
+            np.testing.assert_allclose(times.arrivals, again.arrivals, rtol=1e-9)
+            assert times.lateness == pytest.approx(again.lateness, abs=1e-9)
+            least = min(badness(fleet, route, each) for each in every)
+            if fleet.rules.leave == "late":
+                assert badness(fleet, route, again)[:2] <= tuple(x + 1e-6 for x in least[:2])
+                assert overtime(fleet.rules, route, times) <= least[1] + 1e-6
+                assert times.duration <= least[2] + 1e-6
+            other = 1 - fleet.rules.clock
+            expected = other_length(fleet, route, list(times.leaves), other)
+            assert sum(legs(fleet, route, other)) == pytest.approx(expected)
+            tried += 1
+    assert tried > 20
+
+
+def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better() -> None:
+    tried = same = 0
+    for seed in range(third(24)):
+        fleet = day_fleet(seed)
+        expected = exact_front(fleet)
+        options = FleetOptions(time_limit=inf, iterations=60)
+        search = RuinSearch(fleet, options, Watch[FleetFront]())
+        search.run()
+        plans = [search.plan_at(index) for index in range(len(search))]
+        assert [violations(fleet, plan) for plan in plans] == [[]] * len(plans)
+        points = points_of(fleet, plans)
+        rests = any(vehicle.breaks for vehicle in fleet.rules.vehicles)
+        if not rests:  # with breaks the search knows of two departures
+            np.testing.assert_allclose(search.points, points, rtol=1e-9, atol=1e-9)
+        assert all(any(reaches(each, point) for each in expected) for point in points)
+        tried += 1
+        same += all(any(reaches(point, each) for point in points) for each in expected)
+    assert same >= 0.8 * tried > 5
+
+
+def test_a_route_without_changes_over_the_day_is_that_of_a_plain_fleet() -> None:
+    for seed in range(third(30)):
+        plain = day_fleet(seed)
+        day = plain.day
+        assert day is not None
+        costs = np.stack([each.factors[0] * each.matrices[each.layers[0]] for each in day])
+        fleet = Fleet(rules=plain.rules, costs=costs)
+        still = [type(each).constant(matrix) for each, matrix in zip(day, costs, strict=True)]
+        over = Fleet.over_the_day(plain.rules, *still)
+        for route in routes_of(plain, seed):
+            assert (first_broken(over, route) is None) == (first_broken(fleet, route) is None)
+            if first_broken(fleet, route) is None:
+                times, known = schedule(over, route), schedule(fleet, route)
+                np.testing.assert_allclose(times.arrivals, known.arrivals, rtol=1e-9)
+                assert times.lateness == pytest.approx(known.lateness)
