@@ -26,7 +26,8 @@ _RARE = {
     "FleetStopItem": "windows due release skills vehicle",
     "VehicleItem": "shift shifts max_overtime longest fixed skills max_stops reload max_trips"
     " initial_load breaks",
-    "ClockItem": "matrix coordinates",
+    "FleetObjectiveItem": "over_the_day slices traffic",
+    "ClockItem": "matrix coordinates over_the_day slices traffic",
     "ReplanRequest": "size reference_point seed preferences repairs arrivals bound actor objectives"
     " geometry pose grid blocked freed cost_layer cost_layers paths",
     "ReplanFleetRequest": "size reference_point seed geometry add",

@@ -1,11 +1,11 @@
 """The fields of requests about the time of day, and what they say about stops and costs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import date
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, JsonValue, Tag
 
 from service.errors import invalid
 from service.errors.faults import show
@@ -113,24 +113,25 @@ class StopItem(NamedStop):
     )
 
 
+# The members of which an objective has exactly one, and what others of them go with.
+SOURCES = ("matrix", "coordinates", "from", "slices")
+OF_SOURCES: Mapping[str, JsonValue] = {
+    "speed": OF_A_SPEED,
+    "traffic": {
+        "required": ["from"],
+        "properties": {"from": {"const": "road_time"}, "over_the_day": ABSENT},
+    },
+    "slices": {"properties": {"over_the_day": ABSENT}},
+}
+
+
 class DayObjectiveItem(ObjectiveItem):
     """An objective, whose costs may change over the day.
 
     It has exactly one source of costs: matrix, coordinates, from or slices.
     """
 
-    model_config = one_of(
-        "matrix",
-        "coordinates",
-        "from",
-        "slices",
-        speed=OF_A_SPEED,
-        traffic={
-            "required": ["from"],
-            "properties": {"from": {"const": "road_time"}, "over_the_day": ABSENT},
-        },
-        slices={"properties": {"over_the_day": ABSENT}},
-    )
+    model_config = one_of(*SOURCES, **OF_SOURCES)
 
     over_the_day: Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)] = (
         Field(
@@ -172,14 +173,14 @@ class DayObjectiveItem(ObjectiveItem):
             return self._slices(part, len(stops))
         base = self.fixed_source(part, stops)
         if self.traffic is None or not isinstance(base, Measured):
-            return self.over(part, base)
+            return self.factored(part, base)
         if base.measure != "road_time":
             raise invalid(f"{part}/traffic", "needs-from", measure="road_time", given=base.measure)
         if self.over_the_day:
             raise invalid(f"{part}/traffic", "not-beside", member="over_the_day")
         return self.traffic.source(f"{part}/traffic", len(stops))
 
-    def over(self, part: str, base: FixedSource) -> Source:
+    def factored(self, part: str, base: FixedSource) -> Source:
         """Return a source with the factors of the day, if there are any."""
         if self.traffic is not None:
             raise invalid(f"{part}/traffic", "needs-road-time")
@@ -272,10 +273,14 @@ def _clock(
         if not changing and not in_seconds:
             raise invalid("clock", "no-time")
         clock = [*changing, *in_seconds][0]
-    unit = objectives[clock].unit
-    if unit not in (None, "s"):
-        raise invalid(f"objectives/{clock}/unit", "not-in-seconds", came=unit)
+    check_in_seconds(objectives[clock], f"objectives/{clock}")
     return clock
+
+
+def check_in_seconds(clock: Objective, part: str) -> None:
+    """Raise a refusal unless the times of a clock over the day are seconds."""
+    if clock.unit not in (None, "s"):
+        raise invalid(f"{part}/unit", "not-in-seconds", came=clock.unit)
 
 
 def _check_times(part: str, places: Sequence[str], times: Sequence[float]) -> None:

@@ -13,6 +13,7 @@ from service.fleet.groups import Groups
 from service.fleet.rules import Leave, Rules
 from service.fleet.vehicles import VehicleType
 from service.objectives import Objective
+from service.requests.day_fields import check_in_seconds
 from service.requests.fields import (
     GEOMETRY,
     Cost,
@@ -122,6 +123,7 @@ class FleetRequest(SearchFields):
         vehicles, names = self._vehicles(ids)
         types = types_by_id(names)
         costs, layers = self._layers()
+        self._check_day()
         rules = Rules(
             visits=tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops)),
             vehicles=vehicles,
@@ -137,6 +139,18 @@ class FleetRequest(SearchFields):
         )
         stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops))
         return UnmeasuredFleet(rules, names, stops, clock=self._named_clock)
+
+    def _check_day(self) -> None:
+        """Raise a refusal where costs change over the day without a clock in seconds."""
+        own = [self.clock] if isinstance(self.clock, ClockItem) else []
+        if not any(item.changes for item in (*self.objectives, *own)):
+            return
+        if self.clock is None:
+            raise invalid("clock", "no-clock-of-day")
+        named = self._named_clock
+        if named is not None:
+            names = [item.name for item in self.objectives]
+            check_in_seconds(named, "clock" if own else f"objectives/{names.index(named.name)}")
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
         """Return the groups of stops.
@@ -200,7 +214,7 @@ class FleetRequest(SearchFields):
         for index, item in enumerate(self.objectives):
             part = f"objectives/{index}"
             if item.of_plan is not None:
-                if {*item.sources, "over"} & item.model_fields_set:
+                if item.sources or item.changes or "over" in item.model_fields_set:
                     raise invalid(part, "measure-and-costs")
                 layers.append(0)
                 continue
@@ -215,7 +229,7 @@ class FleetRequest(SearchFields):
     def _same_costs(self, first: int, second: int) -> bool:
         """Return whether two objectives have the same costs between the stops."""
         a, b = (self.objectives[index] for index in (first, second))
-        names = ("matrix", "coordinates", "measure", "speed")
+        names = ("matrix", "coordinates", "measure", "speed", "over_the_day", "slices", "traffic")
         return all(getattr(a, name) == getattr(b, name) for name in names)
 
     def _sources(self, costs: Sequence[int], stops: Sequence[Stop]) -> list[Source]:

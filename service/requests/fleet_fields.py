@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.fleet.rules import Measure, Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
+from service.requests.day_fields import OF_SOURCES, SOURCES, DayObjectiveItem
 from service.requests.fields import (
     ABSENT,
     AsInteger,
@@ -22,13 +23,7 @@ from service.requests.fields import (
     optional,
     without_default,
 )
-from service.requests.stop_fields import (
-    OF_A_SPEED,
-    NamedStop,
-    ObjectiveItem,
-    StopReference,
-    find_index,
-)
+from service.requests.stop_fields import NamedStop, StopReference, find_index
 from service.requests.validation import nearest
 
 _MOST_LOAD = 10**9
@@ -306,8 +301,8 @@ class VehicleItem(StrictModel):
         ]
 
 
-class ClockItem(ObjectiveItem):
-    """The source of travel times that are not an objective."""
+class ClockItem(DayObjectiveItem):
+    """The source of travel times that are not an objective, maybe over the day."""
 
     name: Text = Field(default="time", description="of the times, which are not an objective")
 
@@ -318,19 +313,16 @@ Clock = Annotated[
 ]
 
 
-class FleetObjectiveItem(ObjectiveItem):
+class FleetObjectiveItem(DayObjectiveItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
-    It has exactly one of matrix, coordinates, from and measure.
+    It has exactly one of matrix, coordinates, from, slices and measure.
     """
 
     model_config = one_of(
-        "matrix",
-        "coordinates",
-        "from",
-        "measure",
-        speed=OF_A_SPEED,
-        measure={"properties": {"over": ABSENT}},
+        *(*SOURCES, "measure"),
+        **OF_SOURCES,
+        measure={"properties": {"over": ABSENT, "over_the_day": ABSENT}},
     )
 
     of_plan: Measure | None = Field(

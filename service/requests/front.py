@@ -161,7 +161,7 @@ class FrontRequest(DayFields, PlanRequest):
             return tuple(matrices)
         # Not strict: _check_objectives() refuses another number of matrices.
         each = zip(self.objectives, matrices, strict=False)
-        return tuple(item.over(f"objectives/{m}", base) for m, (item, base) in enumerate(each))
+        return tuple(item.factored(f"objectives/{m}", base) for m, (item, base) in enumerate(each))
 
     @cached_property
     def hours(self) -> Hours | None:

@@ -175,13 +175,19 @@ def _limited(model: type[BaseModel], limits: Limits) -> dict[str, Schema]:
         fields["geometry"]["enum"].remove("roads")
     if "TrafficItem" in schemas and not limits.traffic:
         del schemas["TrafficItem"]
-        for part in ("properties", "dependentSchemas"):
-            del schemas["DayObjectiveItem"][part]["traffic"]
+        _drop(schemas, "traffic")
     for schema in schemas.values():
         source = schema["properties"].get("from", {})
         if "enum" in source and not limits.roads:
             source["enum"] = [each for each in source["enum"] if each not in ROAD_MEASURES]
     return schemas
+
+
+def _drop(schemas: dict[str, Schema], member: str) -> None:
+    """Leave a member out of all schemas that have it."""
+    for schema in schemas.values():
+        for part in ("properties", "dependentSchemas"):
+            schema.get(part, {}).pop(member, None)
 
 
 def _at_most(most: int, schema: Schema, *names: str) -> None:

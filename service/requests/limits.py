@@ -14,9 +14,9 @@ from service.requests.stops import (
     Source,
     Stops,
     Traffic,
-    are_straight,
     base_of,
 )
+from service.requests.straight_sources import are_straight
 from service.requests.validation import too_many_cities
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id

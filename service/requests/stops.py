@@ -12,18 +12,17 @@ from pydantic_core import to_json
 
 from service.day.costs import CostsOfDay
 from service.errors import CityNames
-from service.fleet.straight import Line
 from service.instance import CLOSED, Instance, Kind, RouteEnds
 from service.objectives import Objective
 from service.over_the_day.day import Day
-from service.roads.great_circle import EARTH_RADIUS, great_circle_matrix
+from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]
 Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
 Measure = Literal["great_circle", "road_time", "road_distance"]
 RoadMeasure = Literal["road_time", "road_distance"]
 UNITS: Mapping[Measure, str] = {"great_circle": "m", "road_time": "s", "road_distance": "m"}
-_KMH = 3.6  # km/h that are one metre per second
+KMH = 3.6  # km/h that are one metre per second
 ROAD_MEASURES: tuple[RoadMeasure, ...] = ("road_time", "road_distance")
 
 
@@ -220,6 +219,11 @@ class Stops:
         return "matrices" if self.hours is not None else kind_of(self.sources)
 
     @property
+    def changes(self) -> bool:
+        """Whether some costs change over the day."""
+        return any(isinstance(source, OverTheDay | Slices | Traffic) for source in self.sources)
+
+    @property
     def measured(self) -> bool:
         """Whether no costs are left to be measured."""
         unmeasured = Measured | Traffic
@@ -247,8 +251,7 @@ class Stops:
         """The costs over the day, all of them measured; None if they do not depend on the time."""
         if self.hours is None:
             return None
-        costs = [_over_the_day(source, self.locations) for source in self.sources]
-        return Day(costs=costs, ends=self.ends, **vars(self.hours))
+        return Day(costs=costs_of_day(self), ends=self.ends, **vars(self.hours))
 
     @cached_property
     def known_scale(self) -> tuple[Array, Array] | None:
@@ -344,27 +347,9 @@ def cost_matrices(stops: Stops) -> Array:
     return np.stack([_costs(source, stops.locations) for source in stops.sources])
 
 
-def are_straight(sources: Sequence[Source]) -> bool:
-    """Return whether all costs are straight lines, in planes or by great circle."""
-    return all(
-        isinstance(each, Plane) or (isinstance(each, Measured) and each.measure == "great_circle")
-        for each in sources
-    )
-
-
-def lines_of(stops: Stops) -> list[Line]:
-    """Return the lines that the costs between stops are; see are_straight()."""
-    return [_line(source, stops.locations) for source in stops.sources]
-
-
-def _line(source: Source, locations: Array) -> Line:
-    match source:
-        case Plane(points):
-            return Line.in_plane(points)
-        case Measured("great_circle", speed):
-            metres = Line.on_earth(locations, EARTH_RADIUS)
-            return metres if speed is None else replace(metres, factor=_KMH * metres.factor / speed)
-    raise ValueError("costs must be straight lines")
+def costs_of_day(stops: Stops) -> list[CostsOfDay]:
+    """Return the costs between stops over the day, all of them measured."""
+    return [_over_the_day(source, stops.locations) for source in stops.sources]
 
 
 def _over_the_day(source: Source, locations: Array) -> CostsOfDay:
@@ -388,7 +373,7 @@ def _costs(source: Source, locations: Array) -> Array:
             return np.hypot(steps[..., 0], steps[..., 1])
         case Measured("great_circle", speed):
             metres = great_circle_matrix(locations)
-            return metres if speed is None else metres / (speed / _KMH)
+            return metres if speed is None else metres / (speed / KMH)
         case Changed(base):
             return changed_costs(_costs(base, locations), source.steps, source.costs)
         case Measured(measure):

@@ -20,10 +20,10 @@ from service.requests.stops import (
     RoadMeasure,
     Stops,
     Traffic,
-    are_straight,
     cost_matrices,
-    lines_of,
+    costs_of_day,
 )
+from service.requests.straight_sources import are_straight, lines_of
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
 _MOST_STORED = 500  # stops; costs of more are worked out faster than read, where they are lines
@@ -103,6 +103,8 @@ class UnmeasuredFleet:
         """Return the fleet with its costs. O(n^2), unless it is large and they are lines."""
         if self.n > _MOST_STORED and are_straight(self.stops.sources):
             return Fleet.of_lines(self.rules, lines_of(self.stops))
+        if self.stops.changes:
+            return Fleet.over_the_day(self.rules, *costs_of_day(self.stops))
         return Fleet(rules=self.rules, costs=cost_matrices(self.stops))
 
 

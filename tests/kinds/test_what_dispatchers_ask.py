@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from service.errors import Refusal
 from service.kinds.fleet import run_fleet
 from service.kinds.kind import Tools
 from service.kinds.parsing import parse_replan, parse_task
@@ -172,3 +173,101 @@ def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> Non
         begun: ["far"],
         None: ["east"],
     }
+
+
+def over_the_day(request: Json, **members: Any) -> Json:
+    """Return a request whose travel times change over the day."""
+    time, *others = request["objectives"]
+    if "slices" in members:
+        time = {key: value for key, value in time.items() if key != "matrix"}
+    return {**request, "objectives": [{**time, **members}, *others]}
+
+
+def slices(*factors: tuple[float, float]) -> list[Json]:
+    """Return the costs of a depot and a stop 10 away, with a factor from some time on each."""
+    return [{"from": begin, "matrix": [[0, 10 * x], [10 * x, 0]]} for begin, x in factors]
+
+
+RUSH = {"over_the_day": [[0, 1], [100, 2], [200, 1]]}
+MORNING = {"shift": [100, 480]}
+AT_TIMES = {
+    # Driving takes a percentage longer at some times of the day.
+    "vroom#1280": (
+        over_the_day(fleet({"job": {"at": EAST, "window": [130, 130]}}, van=MORNING), **RUSH),
+        [110, 130, 150],
+    ),
+    # Where nothing bounds the visit, the driver leaves after the rush.
+    "vroom#347": (over_the_day(fleet({"job": {"at": EAST}}, van=MORNING), **RUSH), [200, 210, 220]),
+    # A matrix for the night and another for the day, and a rush hour between them.
+    "pyvrp#894": (
+        over_the_day(
+            fleet({"job": {"at": EAST, "window": [95, 95]}}), slices=slices((0, 1), (100, 3))
+        ),
+        [85, 95, 115],
+    ),
+    # Lorries are kept off the motorway for some hours, and have a long way round.
+    "vroom#548": (
+        over_the_day(
+            fleet({"job": {"at": EAST}}, van={"shift": [60, 480]}),
+            slices=slices((0, 1), (50, 20), (300, 1)),
+        ),
+        [300, 310, 320],
+    ),
+    # Who must leave now is told when he arrives in the traffic as it is then.
+    "vroom#1225": (
+        over_the_day(fleet({"job": {"at": EAST}}, van=MORNING, leave="early"), **RUSH),
+        [100, 120, 140],
+    ),
+}
+
+
+@pytest.mark.parametrize("thread", AT_TIMES)
+def test_vehicles_arrive_as_the_traffic_of_the_hour_lets_them(thread: str) -> None:
+    request, expected = AT_TIMES[thread]
+    (route,) = planned(request)["routes"]
+    assert route["arrivals"] == expected
+    assert route["lengths"][0] == expected[-1] - expected[0]
+
+
+def test_a_break_is_taken_in_the_rush() -> None:
+    """pyvrp#867: a rush hour among the rules that there are."""
+    rest = {"breaks": [{"window": [100, 110], "length": 100}], "shift": [80, 480]}
+    stops = {"job": {"at": EAST, "window": [100, 100]}}
+    (route,) = planned(over_the_day(fleet(stops, van=rest), **RUSH))["routes"]
+    assert (route["arrivals"], route["breaks"]) == ([90, 100, 210], [100])
+
+
+def test_the_rest_of_a_day_is_planned_at_its_own_times() -> None:
+    """vroom#1225: it is 120 now, in the rush, and one of two orders is done."""
+    stops = {"east": {"at": EAST}, "far": {"at": FAR}}
+    request = over_the_day(fleet(stops, van={"shift": [0, 480]}, leave="early"), **RUSH)
+    task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
+    front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
+    changes = {"now": 120, "routes": [{"route": 0, "done": ["east"]}]}
+    source = ReplanSource(json.dumps(changes).encode(), StoredFront("", encode_task(task), front))
+    rest = parse_replan(source, LIMITS, {})
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    [plan, *_] = json.loads(document.json(id="", status="done"))["front"]
+    assert [route["arrivals"] for route in plan["routes"]] == [[120, 140, 180]]
+
+
+@pytest.mark.parametrize(
+    ("members", "pointer", "code"),
+    [
+        ({"clock": None, "vehicles": [{"id": "van", "start": 0}]}, "/clock", "no-clock-of-day"),
+        ({"time_limit": 0}, None, "no-plan"),
+    ],
+)
+def test_a_day_needs_a_clock_and_a_search(members: Json, pointer: str | None, code: str) -> None:
+    stops = {f"{at}": {"at": at} for at in range(7)}
+    request = {**over_the_day(fleet(stops), **RUSH), **members}
+    with pytest.raises(Refusal) as refused:
+        planned(request)
+    assert code in (refused.value.code, *(each.code for each in refused.value.errors))
+    assert pointer is None or refused.value.errors[0].pointer == pointer
+
+
+def test_the_clock_of_a_day_is_in_seconds() -> None:
+    request = over_the_day(fleet({"job": {"at": EAST}}), **RUSH, unit="min")
+    with pytest.raises(Refusal, match="must be s"):
+        planned(request)

@@ -218,6 +218,7 @@ def test_schemas_have_names_and_limits() -> None:
         "ApartItem",
         "BeforeItem",
         "ServiceItem",
+        "SliceItem",
         "VehicleItem",
         "FleetObjectiveItem",
         "ClockItem",

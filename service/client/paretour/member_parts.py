@@ -142,6 +142,9 @@ FleetObjectiveRequest = TypedDict(
         "coordinates": ArrayLike,
         "from": Literal["great_circle", "road_time", "road_distance"],
         "speed": float | None,
+        "over_the_day": ArrayLike,
+        "slices": Sequence[SliceRequest],
+        "traffic": TrafficRequest | None,
         "measure": Measure | None,
         "over": Literal["sum", "max"],
     },
@@ -170,7 +173,7 @@ class BeforeRequest(TypedDict, total=False):
     then: Required[Sequence[int | str] | ArrayLike]
 
 
-# The source of travel times that are not an objective.
+# The source of travel times that are not an objective, maybe over the day.
 ClockRequest = TypedDict(
     "ClockRequest",
     {
@@ -180,6 +183,9 @@ ClockRequest = TypedDict(
         "coordinates": ArrayLike,
         "from": Literal["great_circle", "road_time", "road_distance"],
         "speed": float | None,
+        "over_the_day": ArrayLike,
+        "slices": Sequence[SliceRequest],
+        "traffic": TrafficRequest | None,
     },
     total=False,
 )
