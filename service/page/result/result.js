@@ -177,7 +177,7 @@ export class Result {
     element("front-chart").parentElement.hidden = this.#kept && !alone;
     this.#chart.show(alone?.front ?? [], improved, this.#kind.noun, true, this.#kept);
     this.#legend("alone", alone !== null && this.#chart.sees(alone.front));
-    element("legend").querySelector(".alone").textContent = this.#kept ? "others, no longer kept" : "quick first result";
+    element("legend").querySelector(".alone").textContent = this.#kept ? "others, no longer kept" : "first result";
     this.#legend("improved", improved.length > 0 && !this.#kept);
     this.#slider.show(answer.front, this.#kind.noun);
   }
