@@ -15,6 +15,7 @@ class Basis(NamedTuple):
         timed: Whether there is a clock.
         summed: Whether the first objective is a sum.
         limited: Whether the lengths of routes can be bounded.
+        far: Whether there are costs that are not time.
         ships: Whether there are shipments.
         dimensions: The number of dimensions of demands and capacities.
     """
@@ -22,6 +23,7 @@ class Basis(NamedTuple):
     timed: bool
     summed: bool
     limited: bool
+    far: bool
     ships: bool
     dimensions: int
 
@@ -38,13 +40,22 @@ def check_vehicle(vehicle: VehicleType, part: str, basis: Basis) -> None:
     _check_trips(vehicle, part, basis)
     _check_breaks(vehicle, part, basis)
     _check_prices(vehicle, part, basis)
-    for name, given in (("longest", vehicle.longest != inf), ("shortest", vehicle.shortest > 0)):
-        if not basis.limited and given:
-            raise invalid(f"{part}/{name}", "unlimited")
+    _check_limits(vehicle, part, basis)
     if vehicle.shortest > vehicle.longest:
         raise invalid(f"{part}/shortest", "over-longest", limit=vehicle.longest)
     if vehicle.max_stops is not None and vehicle.min_stops > vehicle.max_stops:
         raise invalid(f"{part}/min_stops", "over-max-stops", limit=vehicle.max_stops)
+
+
+def _check_limits(vehicle: VehicleType, part: str, basis: Basis) -> None:
+    """Raise a refusal of bounds of routes where there is nothing that they are of."""
+    for name, given in (("longest", vehicle.longest != inf), ("shortest", vehicle.shortest > 0)):
+        if not basis.limited and given:
+            raise invalid(f"{part}/{name}", "unlimited")
+    if vehicle.max_driving < inf and not basis.timed:
+        raise invalid(f"{part}/max_driving", "untimed")
+    if vehicle.max_distance < inf and not basis.far:
+        raise invalid(f"{part}/max_distance", "only-times")
 
 
 def _check_prices(vehicle: VehicleType, part: str, basis: Basis) -> None:

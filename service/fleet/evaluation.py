@@ -320,6 +320,10 @@ def _length_broken(fleet: Fleet, route: Route, reach: float) -> Iterator[Broken]
         if is_over(vehicle.shortest, length, reach):
             detail = f"has a route of {length:g}, shorter than {vehicle.shortest:g}"
             yield Broken("shortest", detail)
+    for layer, most in enumerate(rules.most_legs(route.vehicle)):
+        if most < inf and is_over(driven := sum(legs(fleet, route, layer)), most):
+            rule: Rule = "max_driving" if layer == rules.clock else "max_distance"
+            yield Broken(rule, f"drives {driven:g}, more than {most:g}")
 
 
 def _service_broken(rules: Rules, route: Route) -> Iterator[Broken]:

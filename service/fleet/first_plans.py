@@ -119,6 +119,9 @@ class Cutter:
             raise Refusal("no-plan", reason=reason)
         if any(vehicle.breaks for vehicle in fleet.rules.vehicles):
             raise Refusal("no-plan", reason="breaks need a time_limit over 0")
+        if fleet.rules.capped:
+            reason = "max_distance and max_driving need a time_limit over 0"
+            raise Refusal("no-plan", reason=reason)
         self._fleet = fleet
         self._stop = stop
         arrays = _from_begin(fleet, arrays_of(fleet))

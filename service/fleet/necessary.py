@@ -160,6 +160,8 @@ def _bounds_of(rules: Rules, stop: int) -> list[str]:
         "window": rules.visits[stop].windows != (ALWAYS,),
         "shift": any(each.shift != ALWAYS for each in vehicles),
         "longest": any(each.longest < inf for each in vehicles),
+        "max_distance": any(each.max_distance < inf for each in vehicles),
+        "max_driving": any(each.max_driving < inf for each in vehicles),
     }
     return [name for name, given in bounds.items() if given] or ["route"]
 
@@ -204,7 +206,7 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
 
 
 def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
-    """Return whether no detour over a stop is shorter, in the limited objective.
+    """Return whether no detour over a stop is shorter, in the costs that are bounded.
 
     False if legs are forbidden, since then a detour may be the only way to a stop, if some legs
     become slower over the day than others, and if it ended before all detours were tried.
@@ -212,10 +214,16 @@ def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     rules = fleet.rules
     if fleet.forbids or (fleet.day is not None and fleet.day[rules.limited or 0].varies):
         return False
-    if rules.limited is None or fleet.lines:
+    if fleet.lines:
         return True
-    costs = fleet.costs[rules.limited]
-    slack = 1e-9 * fleet.largest_legs[rules.limited]
+    layers = {*rules.capped, *(() if rules.limited is None else (rules.limited,))}
+    return all(_has_no_detours(fleet, layer, ended) for layer in layers)
+
+
+def _has_no_detours(fleet: Fleet, layer: int, ended: Callable[[], bool]) -> bool:
+    """Return whether no detour over a stop is shorter; False if it ended before all were tried."""
+    costs, slack = fleet.costs[layer], 1e-9 * fleet.largest_legs[layer]
     return all(
-        not ended() and (costs[:, [k]] + costs[[k]] >= costs - slack).all() for k in range(rules.n)
+        not ended() and (costs[:, [k]] + costs[[k]] >= costs - slack).all()
+        for k in range(fleet.rules.n)
     )

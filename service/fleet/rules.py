@@ -36,6 +36,8 @@ Rule = Literal[
     "capacity",
     "max_stops",
     "max_trips",
+    "max_distance",
+    "max_driving",
     "window",
     "shift",
     "longest",
@@ -108,11 +110,18 @@ class Rules:
         _check_shipments(self)
         check_groups(self.groups, self.depots, self.shipped)
 
+    @property
+    def _costly_layers(self) -> set[int]:
+        """The numbers of the costs that objectives are of."""
+        pairs = zip(self.over, self.layers, strict=True)
+        return {layer for over, layer in pairs if over in ("sum", "max")}
+
     def _basis(self) -> Basis:
         return Basis(
             timed=self.clock is not None,
             summed=self.over[0] != "max",
             limited=self.limited is not None,
+            far=self.clock != 0 or 1 in self._costly_layers,
             ships=bool(self.shipments),
             dimensions=self.dimensions,
         )
@@ -232,6 +241,18 @@ class Rules:
         services = tuple(self.service(vehicle, stop) for stop in range(self.n))
         return Pace(self.vehicles[vehicle].speed_factor, services)
 
+    def most_legs(self, vehicle: int) -> tuple[float, float]:
+        """Return the most of both costs of a route's legs, by a type of vehicles."""
+        each = self.vehicles[vehicle]
+        time, distance = each.max_driving, each.max_distance
+        return (time, distance) if self.clock == 0 else (distance, time)
+
+    @cached_property
+    def capped(self) -> tuple[int, ...]:
+        """The numbers of the costs of legs that some type of vehicles bounds by themselves."""
+        most = np.min([self.most_legs(each) for each in range(len(self.vehicles))], axis=0)
+        return tuple(np.flatnonzero(np.isfinite(most)).tolist())
+
     def servers(self, stop: int) -> frozenset[int]:
         """Return the types of vehicles that may visit a stop: by its skills, and if it names some.
 
@@ -265,7 +286,7 @@ class Rules:
     @property
     def has_bounds(self) -> bool:
         """Whether anything bounds a time or the length of a route."""
-        return bool(self.spans) or self.has_longest
+        return bool(self.spans or self.capped) or self.has_longest
 
 
 def _check_objectives(rules: Rules) -> None:

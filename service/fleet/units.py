@@ -57,6 +57,8 @@ class Units:
                 shift=_scaled_span(vehicle.shift, time),
                 longest=_scaled_bound(vehicle.longest, time),
                 shortest=_scaled(vehicle.shortest, time),
+                max_driving=_scaled_bound(vehicle.max_driving, time),
+                max_distance=_scaled_bound(vehicle.max_distance, int(shifts[rules.clock == 0])),
                 fixed=_scaled(vehicle.fixed, extra),
                 max_overtime=_scaled(vehicle.max_overtime, time),
                 leaves_by=_scaled_bound(vehicle.leaves_by, time),

@@ -88,6 +88,8 @@ class VehicleType:
         service_factor: By what the service of a stop is multiplied.
         per_distance: The price of each unit of the first costs of their legs.
         per_time: The price of each unit of the time of their routes.
+        max_distance: The most of the costs of a route's legs that are not time.
+        max_driving: The most time that a route's legs take, without visits and waiting.
     """
 
     start: int | None = None
@@ -112,11 +114,18 @@ class VehicleType:
     service_factor: float = 1.0
     per_distance: float = 1.0
     per_time: float = 0.0
+    max_distance: float = inf
+    max_driving: float = inf
 
     @property
     def is_bounded_below(self) -> bool:
         """Whether a route may have too few stops, or be too short."""
         return self.min_stops > 1 or self.shortest > 0
+
+    @property
+    def is_capped(self) -> bool:
+        """Whether the legs of a route are bounded by themselves."""
+        return min(self.max_distance, self.max_driving) < inf
 
     @property
     def way(self) -> Span:

@@ -241,6 +241,12 @@ class VehicleItem(StrictModel):
     shortest: Cost = Field(
         default=0.0, description="the least time or length of a route, measured as `longest` is"
     )
+    max_distance: PositiveNumber | None = optional(
+        "the most that a route's legs cost in the objective that is not time, such as metres"
+    )
+    max_driving: PositiveNumber | None = optional(
+        "the most time that a route drives, in the clock's unit: without service and waiting"
+    )
     fixed: Cost = Field(default=0.0, description="added to the first length if one is used")
     per_distance: Cost = Field(
         default=1.0,
@@ -259,6 +265,12 @@ class VehicleItem(StrictModel):
     service_factor: ServiceFactor = Field(
         default=1.0, description="by what the service of each stop that one visits is multiplied"
     )
+
+    @property
+    def limits_on_driving(self) -> list[str]:
+        """The names of the limits on driving that it has."""
+        limits = {"max_distance": self.max_distance, "max_driving": self.max_driving}
+        return [name for name, limit in limits.items() if limit is not None]
 
     def vehicle_types(self, part: str, ids: Mapping[str, int]) -> list[VehicleType]:
         """Return the type of vehicles, whose part of the request is `part`: once for each shift.
@@ -285,6 +297,8 @@ class VehicleItem(StrictModel):
                 fixed=self.fixed,
                 per_distance=self.per_distance,
                 per_time=self.per_time,
+                max_distance=inf if self.max_distance is None else self.max_distance,
+                max_driving=inf if self.max_driving is None else self.max_driving,
                 speed_factor=self.speed_factor,
                 service_factor=self.service_factor,
                 skills=tuple(self.skills),

@@ -170,6 +170,8 @@ def varied_fleet(seed: int) -> Fleet:
             service_factor=numbers[1] if timed else 1.0,
             per_distance=numbers[2] if summed else 1.0,
             per_time=numbers[3] - 0.25 if timed and summed else 0.0,
+            max_distance=20.0 * numbers[3] if rules.clock != 0 and seed % 3 == 0 else inf,
+            max_driving=15.0 * numbers[2] if timed and seed % 3 == 1 else inf,
         )
 
     def served(visit: Visit) -> Visit:

@@ -118,6 +118,37 @@ def test_stops_come_in_the_order_that_was_asked_for(thread: str) -> None:
     assert [route["stops"] for route in plan["routes"]] == [expected]
 
 
+BIKE = {"id": "bike", "start": "depot", "end": "depot"}
+TYPES = {
+    # A vehicle of a high fixed cost and a low one for each kilometre drives the long routes alone.
+    "vroom#1344, a short route": (
+        {"job": {"at": NEAR}},
+        {"fixed": 10},
+        {"per_distance": 3},
+        "bike",
+    ),
+    "vroom#1344, a long route": ({"job": {"at": FAR}}, {"fixed": 10}, {"per_distance": 3}, "van"),
+    # Vehicles differ in their speed.
+    "vroom#394": ({"job": {"at": FAR}}, {}, {"speed_factor": 0.5}, "van"),
+    # A beginner takes longer for a visit, and so does who comes with a trailer.
+    "vroom#336": ({"job": {"at": FAR, "service": 9}}, {"service_factor": 1.3}, {}, "bike"),
+    "vroom#879": (
+        {"job": {"at": FAR, "services": [{"vehicle": "bike", "service": 3}]}},
+        *({"fixed": 2}, {}, "van"),
+    ),
+    # No route drives longer than its vehicle may.
+    "vroom#918": ({"job": {"at": FAR}}, {"fixed": 5}, {"max_driving": 39}, "van"),
+}
+
+
+@pytest.mark.parametrize("thread", TYPES)
+def test_the_vehicle_drives_that_was_asked_for(thread: str) -> None:
+    stops, van, bike, expected = TYPES[thread]
+    request = fleet(stops, van=van)
+    request["vehicles"].append({**BIKE, **bike})
+    assert [route["vehicle"] for route in planned(request)["routes"]] == [expected]
+
+
 def test_a_vehicle_leaves_early_and_waits_at_the_stops() -> None:
     """vroom#1019: vehicles start at a given time and are at each stop as soon as they can."""
     stops = {"job": {"at": EAST, "window": [60, 480]}}
@@ -153,18 +184,28 @@ def test_the_urgent_are_visited_early() -> None:
     assert plan["measures"]["weighted_arrival"] == 50 * 10 + 30
 
 
+def begun_with(stop: str, request: Json) -> tuple[int, ReplanSource]:
+    """Return the number of a route that has visited a stop, and a request to replan the rest."""
+    task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
+    front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
+    plan = json.loads(front.json(id="", status="done"))["front"][0]
+    begun = next(i for i, route in enumerate(plan["routes"]) if stop in route["stops"])
+    changes = {"plan": 0, "now": 30, "routes": [{"route": begun, "done": [stop]}]}
+    stored = StoredFront("", encode_task(task), front)
+    return begun, ReplanSource(json.dumps(changes).encode(), stored)
+
+
+def test_a_vehicle_under_way_whose_driving_is_limited_is_not_replanned() -> None:
+    _, source = begun_with("west", fleet(SIDES, van={"max_driving": 100}))
+    with pytest.raises(Refusal, match="routes/0 must not be under way"):
+        parse_replan(source, LIMITS, {})
+
+
 def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> None:
     """vroom#800: the day goes on, and the rest keeps what was asked for."""
     stops = {"west": {"at": WEST}, "east": {"at": EAST}, "far": {"at": FAR}}
     groups = {"together": [["west", "far"]], "apart": [{"stops": ["east", "west"]}]}
-    task = parse_task(
-        TaskSource("fleet", json.dumps(fleet(stops, 2, **groups)).encode()), LIMITS, {}
-    )
-    front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
-    plan = json.loads(front.json(id="", status="done"))["front"][0]
-    begun = next(i for i, route in enumerate(plan["routes"]) if "west" in route["stops"])
-    changes = {"plan": 0, "now": 30, "routes": [{"route": begun, "done": ["west"]}]}
-    source = ReplanSource(json.dumps(changes).encode(), StoredFront("", encode_task(task), front))
+    begun, source = begun_with("west", fleet(stops, 2, **groups))
     rest = parse_replan(source, LIMITS, {})
     [after, *_] = json.loads(
         run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch()).json(id="", status="done")

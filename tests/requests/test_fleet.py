@@ -201,6 +201,24 @@ def test_factors_of_times_need_a_clock(member: str) -> None:
         fleet_of(request)
 
 
+@pytest.mark.parametrize(
+    ("member", "clock", "fault"),
+    [
+        ("max_driving", None, "needs the name of the objective"),
+        ("max_distance", "time", "needs an objective whose costs are not time"),
+    ],
+)
+def test_limits_on_driving_need_what_they_are_of(
+    member: str, clock: str | None, fault: str
+) -> None:
+    request = changed("clock", clock)
+    request["objectives"] = [{"name": "time", "from": "great_circle"}, {"measure": "vehicles"}]
+    request["objectives"][1]["name"] = "vehicles"
+    request["vehicles"] = [{"id": "van", "start": 0, "end": 0, member: 2}]
+    with pytest.raises(Refusal, match=f"vehicles/0/{member} {fault}"):
+        fleet_of(request)
+
+
 def test_times_are_refused_without_a_clock() -> None:
     request = changed("clock", None)
     for vehicle in request["vehicles"]:

@@ -91,7 +91,7 @@ def test_what_an_earlier_version_did_not_write_of_vehicles_has_its_default() -> 
     length = int.from_bytes(rest[:8])
     header = json.loads(rest[8 : 8 + length])
     for row in header["subject"]["rules"]["vehicles"]["$rows"]:
-        del row[-4:]
+        del row[-6:]
     shorter = json.dumps(header).encode()
     old = line + b"\n" + len(shorter).to_bytes(8) + shorter + rest[8 + length :]
     assert same(task, decode_task(old))

@@ -113,6 +113,8 @@ class VehicleRequest(TypedDict, total=False):
     initial_load: ArrayLike
     longest: float | None
     shortest: float
+    max_distance: float | None
+    max_driving: float | None
     fixed: float
     per_distance: float
     per_time: float

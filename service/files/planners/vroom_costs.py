@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from service.files.fleets import Stop, Vehicle, measured, speed_between
+from service.files.fleets import Stop, Vehicle, have_times, measured, speed_between
 from service.files.places import note_places
 from service.files.planners.vroom_members import note_others, note_unused
 from service.files.planners.vroom_mixed import (
@@ -63,7 +63,6 @@ def objectives_of(
     costs = [each.get("costs") or {} for each in items]
     note_others(source, costs, _OF)
     rates = VroomRates(rides[0].per_hour, rides[0].per_km, any(each.get("fixed") for each in costs))
-    limited = _limit(source, items, timed)
     matrices = _matrices(source, problem)
     if matrices is None:
         _check_places(source, located[0], items)
@@ -72,7 +71,7 @@ def objectives_of(
         layers = _measured(source, located[0]) if cut is None else _layers(cut)
         found = mixed_objectives(source, rides, vehicles, layers), 1.0
     elif cut is None:
-        by_time = timed or limited == "max_travel_time"
+        by_time = timed or any(each.get("max_travel_time") is not None for each in items)
         found = _by_places(source, located[0], rates, rides[0].speed, by_time)
     else:
         found = _by_matrices(source, cut, rates, rides[0].speed)
@@ -80,7 +79,11 @@ def objectives_of(
     for vehicle in vehicles:
         if "fixed" in vehicle and unit != 1:
             vehicle["fixed"] = round(vehicle["fixed"] / unit, 6)
-    _add_limits(source, items, vehicles, limited, objectives[1])
+    known = cut is not None and cut.given.get("distances")
+    metres = cut.matrix("distances") if cut is not None and known else None
+    clocked = have_times(located[0], vehicles)
+    limiting = _limiting(source, objectives, metres, clocked)
+    _add_limits(source, items, vehicles, objectives, limiting)
     return objectives
 
 
@@ -264,37 +267,52 @@ def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[
     return profile, given
 
 
-def _limit(source: Source, vehicles: Sequence[Mapping[str, Any]], timed: bool) -> str | None:
-    """Return the member that limits routes; note a limit that cannot be said.
-
-    A limit is on the length of a route in the second objective, or beside times, on its time with
-    service and waiting, which VROOM's limits are not.
-    """
-    given = [name for name in _LIMITS if any(each.get(name) is not None for each in vehicles)]
-    if timed:
-        for name in given:
-            why = "beside times a limit is on service and waiting, too"
-            note_unused(source, name, "vehicles", why)
-        return None
-    for name in given[1:]:
-        note_unused(source, name, "vehicles", f"{given[0]} is the limit on routes")
-    return given[0] if given else None
-
-
 def _add_limits(
     source: Source,
     items: Sequence[Mapping[str, Any]],
     vehicles: Sequence[Vehicle],
-    name: str | None,
-    second: Mapping[str, Any],
+    objectives: Objectives,
+    limiting: Mapping[str, str],
 ) -> None:
-    """Add the limits on routes, if the second objective is what they limit."""
-    if name is None:
-        return
-    in_metres = second.get("from") == "great_circle" and "speed" not in second
-    if in_metres != (name == "max_distance"):
-        note_unused(source, name, "vehicles", "the longest route is of another unit")
-        return
-    for item, vehicle in zip(items, vehicles, strict=True):
-        if item.get(name) is not None:
-            vehicle["longest"] = item[name]
+    """Add the limits on routes; note those of which there is no objective.
+
+    Args:
+        source: The file.
+        items: VROOM's vehicles.
+        vehicles: The vehicles, whose members are changed.
+        objectives: Both objectives.
+        limiting: The members of vehicles that say VROOM's limits.
+    """
+    for name in _LIMITS:
+        given = [item.get(name) for item in items]
+        if all(limit is None for limit in given):
+            continue
+        if name not in limiting:
+            note_unused(source, name, "vehicles", f"{objectives[0]['name']} is no distance")
+            continue
+        for limit, vehicle in zip(given, vehicles, strict=True):
+            if limit is not None:
+                vehicle[limiting[name]] = limit
+
+
+def _limiting(source: Source, objectives: Objectives, metres: Any, timed: bool) -> dict[str, str]:
+    """Return the members of vehicles that say VROOM's limits, which are on driving alone.
+
+    Args:
+        source: The file.
+        objectives: Both objectives, of which the second is the longest route.
+        metres: The matrix of distances, if there is one.
+        timed: Whether the second is the clock's.
+    """
+
+    def is_distance(objective: Mapping[str, Any]) -> bool:
+        if "matrix" in objective:
+            return metres is not None and objective["matrix"] == metres
+        straight = objective["from"] == "great_circle" and not source.bounds.roads
+        return "speed" not in objective and (straight or objective["from"] == "road_distance")
+
+    first, second = objectives
+    members = {"max_distance": "max_distance"} if is_distance(first) else {}
+    if timed:
+        return {**members, "max_travel_time": "max_driving"}
+    return {**members, "max_distance" if is_distance(second) else "max_travel_time": "longest"}

@@ -25,7 +25,7 @@ from service.fleet.search.route import (
     tail_at,
 )
 from service.fleet.search.spots import Place, nowhere
-from service.fleet.search.values import Values, grown_cost, values_of
+from service.fleet.search.values import Values, drives_too_far, grown_cost, values_of
 from service.fleet.search.working_plan import (
     TRY,
     TYPE,
@@ -167,16 +167,18 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
     to, away = leg(problem, profile, at, delivery, 0), leg(problem, profile, delivery, b, 0)
     detour = to + away - leg(problem, profile, at, b, 0)
     first = begun.first + detour
-    if first >= 0.5 * problem.forbidden:
-        return best
     second = way(problem, profile, at, delivery, b, 1) - leg(problem, profile, at, b, 1)
-    second += begun.second + plan.value[slot, SECOND]
+    if first >= 0.5 * problem.forbidden or _is_too_far(
+        problem, plan, slot, first, second + begun.second
+    ):
+        return best
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0:
         onto = plan.ahead[plan.next[begun.before]]
         loaded += problem.demand[pickup, 0] * (begun.carried + to)
         loaded += onto * begun.first + plan.ahead[after] * detour
     first, end = first + plan.value[slot, FIRST], 0.0
+    second += begun.second + plan.value[slot, SECOND]
     if problem.clock >= 0:
         time, end = _timed(problem, plan, slot, begun, delivery)
         if time == np.inf:
@@ -193,6 +195,14 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
     if cost < best.cost and (problem.tried[kind] or problem.choice or direction.lateness > 0):
         cost = _tried(state, pickup, slot, begun.before, at)
     return Place(cost, slot, begun.before, -1, -1, at) if cost < best.cost else best
+
+
+@inlined
+def _is_too_far(
+    problem: Problem, plan: WorkingPlan, slot: int, first: float, second: float
+) -> bool:
+    """Return whether a route's legs are too far with so much more of both costs."""
+    return problem.capped and drives_too_far(problem, plan, slot, first, second)
 
 
 @inlined

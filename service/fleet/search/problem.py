@@ -105,6 +105,8 @@ class Problem(NamedTuple):
     bounded_below: bool  # whether a route may have too few stops, or be too short
     min_stops: Indices  # (v,)
     shortest: Array  # (v,)
+    capped: bool  # whether the costs of legs are bounded by themselves
+    most_legs: Array  # (v, 2), the most of both costs of a route's legs
     tried: Flags  # (v,), whether only a trial says what a stop costs in a route
 
 
@@ -194,6 +196,8 @@ def problem_of(fleet: Fleet) -> Problem:
         bounded_below=any(vehicle.is_bounded_below for vehicle in vehicles),
         min_stops=np.array([vehicle.min_stops for vehicle in vehicles]),
         shortest=_floats([vehicle.shortest for vehicle in vehicles]),
+        capped=bool(rules.capped),
+        most_legs=np.array([rules.most_legs(each) for each in range(len(vehicles))]),
         tried=np.array([_is_tried(fleet, vehicle) for vehicle in vehicles]),
     )
 

@@ -20,7 +20,7 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.rests import rested
 from service.fleet.search.routes_of_day import drive_over_the_day
-from service.fleet.search.values import lacking, route_cost, values_of
+from service.fleet.search.values import drives_too_far, lacking, route_cost, values_of
 from service.fleet.search.working_plan import (
     USED,
     State,
@@ -101,6 +101,8 @@ def measure(state: State, slot: int) -> bool:
     fits = gather(problem, plan, slot, start)
     first, second = _sum_legs(problem, plan, slot, start)
     fits &= first < problem.forbidden
+    if problem.capped:
+        fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     if problem.clock >= 0:
         fits &= _drive(problem.day, problem, plan, slot, fits)
@@ -186,6 +188,8 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
         fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]
     plan.size[slot] += 1
     fits &= plan.value[slot, FIRST] < problem.forbidden
+    if problem.capped:
+        fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
     fits &= _set_cost(state, slot, len(problem.demand) + 2 * slot + 1)
     plan.plain[slot] = plan.cost[slot]
     return fits

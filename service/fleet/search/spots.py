@@ -23,7 +23,7 @@ from service.fleet.search.route import (
     tail_at,
 )
 from service.fleet.search.spots_of_day import cost_over_the_day
-from service.fleet.search.values import Values, grown_cost
+from service.fleet.search.values import Values, drives_too_far, grown_cost
 from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
@@ -144,7 +144,7 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
         return np.inf
     second = way(problem, profile, a, via, stop, 1) + way(problem, profile, stop, onward, b, 1)
     second -= plan.step[after, 1]
-    if _costs_too_much(state, slot, first, second, most):
+    if _legs_too_much(state, slot, first, second, most):
         return np.inf
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0 and not problem.reloads:
@@ -171,12 +171,14 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
 
 
 @inlined
-def _costs_too_much(state: State, slot: int, first: float, second: float, most: float) -> bool:
-    """Return whether the legs alone cost at least `most`, by which a route grows with a stop.
+def _legs_too_much(state: State, slot: int, first: float, second: float, most: float) -> bool:
+    """Return whether the legs alone are too far, or cost at least `most`, with a stop more.
 
     Where legs grow, and nothing is better late than early, all that is measured grows.
     """
     problem, plan, direction = state
+    if problem.capped and drives_too_far(problem, plan, slot, first, second):
+        return True
     if not problem.grows or first < 0 or second < 0:
         return False
     cost = 0.0 if problem.clock == 0 else direction.costs[0] * first

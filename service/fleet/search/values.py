@@ -90,6 +90,20 @@ def lacking(state: State, kind: int, size: int, values: Values) -> float:
     return cost
 
 
+@compiled
+def drives_too_far(
+    problem: Problem, plan: WorkingPlan, slot: int, first: float, second: float
+) -> bool:
+    """Return whether a route's legs, with so much more of both costs, are over what they may be."""
+    node, end = len(problem.demand) + 2 * slot, len(problem.demand) + 2 * slot + 1
+    while node != end:
+        node = plan.next[node]
+        first += plan.step[node, 0]
+        second += plan.step[node, 1]
+    most = problem.most_legs[problem.kind[slot]]
+    return _is_over(first, most[0]) or _is_over(second, most[1])
+
+
 @inlined
 def values_of(plan: WorkingPlan, slot: int) -> Values:
     """Return the values of a route."""

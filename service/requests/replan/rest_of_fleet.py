@@ -189,6 +189,8 @@ class _Rest:
     def _on_the_way(self, way: Way) -> VehicleType:
         """Return a vehicle on its way as a type of its own."""
         vehicle = self._rules.vehicles[way.type]
+        if vehicle.is_capped:
+            raise invalid(way.part, "capped-on-the-way")
         position = way.position
         if position is None:
             position = self._all.n + list(self._all.new).index(f"{way.part}/position")

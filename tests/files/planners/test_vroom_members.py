@@ -195,14 +195,8 @@ NOTED = {
     "max_load of breaks of vehicles": problem(
         {"breaks": [{"id": 1, "service": 60, "time_windows": [[0, 900]], "max_load": [1]}]}
     ),
-    "max_travel_time of vehicles was not used: beside times": problem(
-        {"max_travel_time": 900, "time_window": [0, 9000]}
-    ),
-    "max_distance of vehicles was not used: max_travel_time is the limit": problem(
-        {"max_travel_time": 900, "max_distance": 9000}
-    ),
-    "max_distance of vehicles was not used: the longest route": problem(
-        {"max_distance": 9000}, **CARS
+    "max_distance of vehicles was not used: total time is no distance": problem(
+        {"max_distance": 9000}, matrices={"car": {"durations": SECONDS}}
     ),
     "priority of jobs": problem(job={"priority": 5}),
     "pickup of jobs": problem({"capacity": [9]}, {"pickup": [1], "delivery": [1]}),
@@ -246,19 +240,35 @@ def test_what_is_picked_up_alone_is_the_demand() -> None:
     assert "pickup" not in notes(reading)
 
 
+SHIFT = {"time_window": [0, 36_000]}
+
+
 @pytest.mark.parametrize(
-    ("vehicle", "members"),
+    ("vehicle", "members", "limits"),
     [
-        ({"max_distance": 9000}, {}),
-        ({"max_travel_time": 9000}, {}),
-        ({"max_travel_time": 9000}, CARS),
+        ({"max_distance": 9000}, {}, {"longest": 9000}),
+        ({"max_travel_time": 900}, {}, {"longest": 900}),
+        ({"max_travel_time": 900}, CARS, {"longest": 900}),
+        ({"max_distance": 9000}, CARS, {"max_distance": 9000}),
+        (
+            {"max_travel_time": 900, "max_distance": 9000},
+            *(CARS, {"longest": 900, "max_distance": 9000}),
+        ),
+        ({"max_travel_time": 900, **SHIFT}, {}, {"max_driving": 900}),
+        (
+            {"max_travel_time": 900, "max_distance": 9000, **SHIFT},
+            *(CARS, {"max_driving": 900, "max_distance": 9000}),
+        ),
     ],
 )
-def test_a_limit_is_on_routes_where_the_longest_is_of_its_unit(
-    vehicle: Members, members: Members
+def test_limits_on_driving_are_said_by_what_they_are_of(
+    vehicle: Members, members: Members, limits: Members
 ) -> None:
     reading = read(problem(vehicle, **members))
-    assert [each["longest"] for each in reading.request["vehicles"]] == [9000, 9000]
+    for each in reading.request["vehicles"]:
+        names = ("longest", "max_distance", "max_driving")
+        assert {name: each[name] for name in names if name in each} == limits
+    assert "max_" not in notes(reading)
     parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
 
 

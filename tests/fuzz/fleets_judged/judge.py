@@ -81,7 +81,7 @@ class Judge:
             times = best[0]
         compared = self._compared(times, path)
         reach = 0.0 if times is None else 1e-9 * times.end
-        if wrong := _wrong_length(vehicle, compared, reach):
+        if wrong := _wrong_length(vehicle, compared, reach) or self._too_far(vehicle, path):
             return wrong
         if times is not None:  # visits begin as early as the departure allows
             times = min(best, key=lambda each: sum(each.begins))
@@ -205,6 +205,22 @@ class Judge:
         wanted = [(stop["due"][0], begin) for stop, begin in visits if _is_pair(stop.get("due"))]
         return float(sum(due - begin for due, begin in wanted if is_later(due, begin)))
 
+    def _too_far(self, vehicle: Json, path: list[int]) -> str:
+        """Return whether the legs of a route are over their limits, as the rule; else ""."""
+        others = [
+            each["matrix"]
+            for each in self.objectives
+            if "matrix" in each and not self._is_clock(each)
+        ]
+        if self.clock is None:
+            others = others[:1]
+        else:
+            driven = _way(self.clock["matrix"], path) / vehicle.get("speed_factor", 1.0)
+            if is_later(driven, vehicle.get("max_driving", inf)):
+                return "max_driving"
+        most = vehicle.get("max_distance", inf)
+        return "max_distance" if any(is_later(_way(each, path), most) for each in others) else ""
+
     def _driven(self, objective: Json, vehicle: Json, path: list[int]) -> float:
         """Return what the legs of a path cost a vehicle."""
         return float(sum(self._leg(objective, vehicle, a, b) for a, b in pairwise(path)))
@@ -284,6 +300,10 @@ class Judge:
             for each in judged.best
         ):
             yield f"arrivals {route['arrivals']} are {best.arrivals}"
+
+
+def _way(matrix: Any, path: list[int]) -> float:
+    return float(sum(matrix[a][b] for a, b in pairwise(path)))
 
 
 def _wrong_length(vehicle: Json, length: float, reach: float) -> str:

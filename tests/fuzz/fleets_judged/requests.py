@@ -46,6 +46,8 @@ def random_fleet(rng: random.Random) -> Json:
         _add_groups(rng, request, [*range(depots, n)])
     if rng.random() < 0.4:
         _add_differences(rng, request, depots, timed)
+    if rng.random() < 0.2:
+        _add_limits(rng, request, timed)
     return request
 
 
@@ -187,6 +189,17 @@ def _add_differences(rng: random.Random, request: Json, depots: int, timed: bool
     for stop in request["stops"][depots:] if timed else ():
         if rng.random() < 0.3:
             stop["services"] = [{"vehicle": "0", "service": _number(rng, 0, 8, 1)}]
+
+
+def _add_limits(rng: random.Random, request: Json, timed: bool) -> None:
+    """Bound how far vehicles drive, and how long."""
+    clock, objectives = request.get("clock"), request["objectives"]
+    far = any("matrix" in each and each["name"] != clock for each in objectives)
+    for vehicle in request["vehicles"]:
+        if far and rng.random() < 0.6:
+            vehicle["max_distance"] = _number(rng, 20, 90, 1)
+        if timed and rng.random() < 0.6:
+            vehicle["max_driving"] = _number(rng, 20, 90, 1)
 
 
 def _differences(rng: random.Random, timed: bool) -> Json:
