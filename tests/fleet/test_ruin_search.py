@@ -36,7 +36,7 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
     fleet_of: Callable[[int], Fleet],
 ) -> None:
-    tried = same = 0
+    tried = whole = 0
     for seed in range(third(90)):
         fleet = fleet_of(seed)
         expected = exact_front(fleet)
@@ -48,5 +48,7 @@ def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
         least = [np.multiply(each, 1 - 1e-12) for each in expected]
         assert all(any(all(map(le, each, point)) for each in least) for point in points)
         tried += 1
-        same += len(expected) == len(points) and np.allclose(sorted(points), expected)
-    assert same >= 0.95 * tried > 5
+        # Equal lengths differ by a rounding where routes are summed in another order.
+        most = [np.multiply(each, 1 + 1e-12) for each in expected]
+        whole += all(any(all(map(le, point, each)) for point in points) for each in most)
+    assert whole >= 0.95 * tried > 5
