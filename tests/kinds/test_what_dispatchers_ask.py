@@ -201,6 +201,13 @@ def test_a_vehicle_under_way_whose_driving_is_limited_is_not_replanned() -> None
         parse_replan(source, LIMITS, {})
 
 
+def test_limits_on_driving_are_refused_where_costs_change_over_the_day() -> None:
+    request = fleet(SIDES, van={"max_driving": 100})
+    request["objectives"][0] |= {"unit": "s", "over_the_day": [[0, 1], [36_000, 1.5]]}
+    with pytest.raises(Refusal, match="vehicles/0/max_driving cannot be given where costs change"):
+        planned(request)
+
+
 def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> None:
     """vroom#800: the day goes on, and the rest keeps what was asked for."""
     stops = {"west": {"at": WEST}, "east": {"at": EAST}, "far": {"at": FAR}}
