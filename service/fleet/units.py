@@ -38,6 +38,7 @@ class Units:
             return cls(fleet, shifts)
         extra = int(shifts[0])
         time = 0 if rules.limited is None else int(shifts[rules.limited])
+        away = int(shifts[1 if rules.clock == 0 else 0])
         visits = tuple(
             replace(
                 visit,
@@ -58,7 +59,7 @@ class Units:
                 longest=_scaled_bound(vehicle.longest, time),
                 shortest=_scaled(vehicle.shortest, time),
                 max_driving=_scaled_bound(vehicle.max_driving, time),
-                max_distance=_scaled_bound(vehicle.max_distance, int(shifts[rules.clock == 0])),
+                max_distance=_scaled_bound(vehicle.max_distance, away),
                 fixed=_scaled(vehicle.fixed, extra),
                 max_overtime=_scaled(vehicle.max_overtime, time),
                 leaves_by=_scaled_bound(vehicle.leaves_by, time),
