@@ -80,8 +80,8 @@ class PlanItem(BaseModel):
     )
     measures: dict[str, float] = Field(
         description="what plans are compared by, as far as the request allows: vehicles, driving,"
-        " service, waiting, lateness, overtime, longest, shortest, imbalance, unassigned,"
-        " load_distance"
+        " service, waiting, lateness, earliness, weighted_arrival, overtime, longest, shortest,"
+        " imbalance, unassigned, load_distance, overlap, changes"
     )
     routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
     unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")

@@ -17,6 +17,7 @@ class Stay(NamedTuple):
     windows: tuple[Span, ...]
     service: float
     due: float
+    hold: float = inf  # which no later departure may make the visit miss, due or earlier
 
 
 class Placed(NamedTuple):
@@ -141,7 +142,7 @@ def _rest(states: list[list[_State]], breaks: Sequence[Break], place: int, *, af
 
 def _served(states: list[_State], stay: Stay) -> list[_State]:
     """Return the states after a visit in any window that is not over."""
-    windows, service, due = stay
+    windows, service, due, _ = stay
     if not service and due == inf and windows == _ALWAYS:
         return states
     found: list[_State] = []

@@ -4,7 +4,7 @@ Every plan is checked with this code, which shares nothing with the engine that 
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import accumulate
 from math import inf
@@ -13,8 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
-from service.fleet.plans import Plan, Route, path_of
-from service.fleet.rounding import excess, is_over
+from service.fleet.of_times import OF_TIMES, changes
+from service.fleet.overlap import overlap
+from service.fleet.plans import Plan, Route
+from service.fleet.rounding import is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of
 from service.fleet.times import Schedule
@@ -27,7 +29,7 @@ def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
     By the clock's costs that is its duration, by others the sum of its legs; the first one is at
     the prices of its vehicle. The imbalance of a plan is that of the lengths that routes have here.
     """
-    times = None if fleet.rules.clock is None else schedule(fleet, route)
+    times = _times_of(fleet, route)
     pairs = zip(fleet.rules.over, fleet.rules.layers, strict=True)
     first, *others = (_length(fleet, route, times, over, layer) for over, layer in pairs)
     vehicle = fleet.rules.vehicles[route.vehicle]
@@ -35,6 +37,11 @@ def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
     if times is not None and vehicle.per_time:
         first += vehicle.per_time * times.duration
     return (first, *others)
+
+
+def _times_of(fleet: Fleet, route: Route) -> Schedule | None:
+    """Return the times of a route, if the fleet has a clock."""
+    return None if fleet.rules.clock is None else schedule(fleet, route)
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, ...]:
@@ -55,6 +62,8 @@ def joined_lengths(
     lengths[0] += fixed_costs(rules, plan)
     paid = rules.over.index("unassigned") if "unassigned" in rules.over else 0
     lengths[paid] += lost_prizes(rules, plan)
+    if "changes" in rules.over:
+        lengths[rules.over.index("changes")] += len(rules.promises - {*plan.visited()})
     return tuple(lengths)
 
 
@@ -95,6 +104,9 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     - `longest`, `shortest`, `imbalance`: the longest and the shortest route, and their difference,
       by the clock; without a clock in the objective that is a maximum, or in the first one if
       `imbalance` is an objective
+    - `overlap`: how much neighbours count that do not ride with each other, from 0 to 1
+    - `changes`: the number of promised stops that are left out, or that another vehicle visits, or
+      later than with the tolerance
     - `unassigned`: the prizes of the stops that are left out
     - `load_distance`: the sum over all legs of the first costs times the load, in its first
       dimension
@@ -109,6 +121,13 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
         found |= {"longest": longest, "shortest": shortest, "imbalance": longest - shortest}
     if any(visit.prize is not None for visit in rules.visits):
         found["unassigned"] = lost_prizes(rules, plan)
+    if rules.promises:
+        kept = rules.promises & {*plan.visited()}
+        found["changes"] = len(rules.promises - kept) + sum(
+            changes(rules, route, _times_of(fleet, route)) for route in plan.routes
+        )
+    if "overlap" in rules.over:
+        found["overlap"] = sum(overlap(fleet, route) for route in plan.routes)
     if rules.dimensions:
         found["load_distance"] = sum(load_distance(fleet, route) for route in plan.routes)
     return found
@@ -133,7 +152,7 @@ def _times(fleet: Fleet, plan: Plan, schedules: list[Schedule]) -> dict[str, flo
     }
     for name in (name for name, is_allowed in allowed.items() if is_allowed):
         columns = zip(plan.routes, schedules, strict=True)
-        found[name] = sum(_OF_TIMES[name](rules, route, times) for route, times in columns)
+        found[name] = sum(OF_TIMES[name](rules, route, times) for route, times in columns)
     return found
 
 
@@ -168,14 +187,16 @@ def _length(
         case "unassigned":
             return 0.0
         case "overtime" | "lateness" | "earliness" | "weighted_arrival" if times is not None:
-            return _OF_TIMES[over](fleet.rules, route, times)
+            return OF_TIMES[over](fleet.rules, route, times)
         case "load_distance":
             return load_distance(fleet, route)
+        case "overlap":
+            return overlap(fleet, route)
+        case "changes":
+            return changes(fleet.rules, route, times)
         case "imbalance" if fleet.rules.limited is not None:
             layer = fleet.rules.limited
-    if layer == fleet.rules.clock and times is not None:
-        return times.duration
-    return sum(legs(fleet, route, layer))
+    return cost_length(fleet, route, layer)
 
 
 def cost_length(fleet: Fleet, route: Route, layer: int) -> float:
@@ -195,37 +216,6 @@ def load_distance(fleet: Fleet, route: Route) -> float:
     loads += [load for trip in others for load in _loads(fleet.rules, trip, 0, ())]
     loads = loads[vehicle.start is None : len(loads) - (vehicle.end is None)]
     return sum(cost * load for cost, load in zip(legs(fleet, route, 0), loads, strict=True))
-
-
-def lateness(_: Rules, __: Route, times: Schedule) -> float:
-    """Return the sum of the times by which the visits of a route begin after they are due."""
-    return times.lateness
-
-
-def earliness(rules: Rules, route: Route, times: Schedule) -> float:
-    """Return the sum of the times by which the visits of a route begin before they are wanted."""
-    begins = zip(path_of(rules, route), times.begins, strict=True)
-    return sum(excess(rules.visits[stop].wanted, begin) for stop, begin in begins)
-
-
-def weighted_arrival(rules: Rules, route: Route, times: Schedule) -> float:
-    """Return the sum over the visits of a route of their urgency times when they begin.
-
-    Times count from the begin of the first shift.
-    """
-    begins = zip(path_of(rules, route), times.begins, strict=True)
-    visits = ((stop, begin) for stop, begin in begins if stop not in rules.depots)
-    return sum(rules.visits[stop].urgency * (begin - rules.begin) for stop, begin in visits)
-
-
-def overtime(rules: Rules, route: Route, times: Schedule) -> float:
-    """Return how much later than its shift a route ends."""
-    return excess(times.end, rules.vehicles[route.vehicle].shift[1])
-
-
-_OF_TIMES: Mapping[str, Callable[[Rules, Route, Schedule], float]] = {
-    each.__name__: each for each in (overtime, lateness, earliness, weighted_arrival)
-}
 
 
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:

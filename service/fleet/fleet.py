@@ -246,8 +246,9 @@ class Fleet:
         """The unit of each of m objectives, shape (m,), 1 if that would be 0.
 
         It is the largest leg, of lateness and earliness by the clock and of imbalance in the costs
-        by which routes are compared; otherwise one vehicle, the largest prize, the most overtime of
-        a vehicle, the largest leg with the largest capacity, or with the sum of all urgencies.
+        by which routes are compared; otherwise one vehicle, one change, the overlap of a mean stop,
+        the largest prize, the most overtime of a vehicle, the largest leg with the largest
+        capacity, or with the sum of all urgencies.
         Times are those of the slowest vehicle, and the first unit is at the highest prices.
         """
         rules = self.rules
@@ -271,8 +272,10 @@ class Fleet:
     def _unit(self, over: Over | Measure, layer: int) -> float:
         legs, rules = self._slowest_legs, self.rules
         match over:
-            case "vehicles":
+            case "vehicles" | "changes":
                 return 1.0
+            case "overlap":
+                return 1.0 / max(1, len(rules.clients))
             case "unassigned":
                 return max(visit.prize or 0.0 for visit in rules.visits)
             case "overtime":

@@ -24,6 +24,8 @@ Measure = Literal[
     "load_distance",
     "earliness",
     "weighted_arrival",
+    "overlap",
+    "changes",
 ]
 _OF_BEGINS = ("earliness", "weighted_arrival")  # measures of when each visit begins
 Leave = Literal["late", "early"]
@@ -76,6 +78,8 @@ class Rules:
             and of a measure it says nothing.
         clock: The number of the costs that are time. Service, windows and shifts are in its unit.
         slack: How long before a window closes a vehicle must reach the stop.
+        tolerance: How much later than in a plan that is driven or was promised a visit may begin
+            without a change; None for any time.
         leave: Whether a vehicle leaves as late as makes nothing later, or as early as it may.
         groups: The groups of stops that share a vehicle, or must not, or have an order.
 
@@ -90,6 +94,7 @@ class Rules:
     layers: tuple[int, ...] = (0, 1)
     clock: int | None = None
     slack: float = 0.0
+    tolerance: float | None = None
     leave: Leave = "late"
     groups: Groups = NO_GROUPS
 
@@ -203,10 +208,31 @@ class Rules:
         """The begin of the first shift: weighted arrivals count from then."""
         return min(vehicle.shift[0] for vehicle in self.vehicles)
 
-    @property
-    def weighs_begins(self) -> bool:
-        """Whether an objective depends on when each visit begins, not only on late ones."""
-        return any(over in _OF_BEGINS for over in self.over)
+    @cached_property
+    def of_begins(self) -> tuple[Over | Measure, ...]:
+        """The objectives that depend on when each visit begins, not only on late ones."""
+        measures = _OF_BEGINS if self.tolerance is None else (*_OF_BEGINS, "changes")
+        return tuple(over for over in self.over if over in measures)
+
+    @cached_property
+    def promises(self) -> frozenset[int]:
+        """The stops of a plan that is driven or was promised."""
+        return frozenset(i for i, each in enumerate(self.visits) if each.promised_to is not None)
+
+    @cached_property
+    def promised_until(self) -> tuple[float, ...]:
+        """When each visit begins at the latest so that it is not later than promised."""
+        if self.tolerance is None:
+            return (inf,) * self.n
+        return tuple(visit.promised_by + self.tolerance for visit in self.visits)
+
+    @cached_property
+    def holds(self) -> tuple[float, ...]:
+        """When each visit begins at the latest so that its vehicle may leave later than it must."""
+        if "changes" not in self.over:
+            return tuple(visit.due for visit in self.visits)
+        pairs = zip(self.visits, self.promised_until, strict=True)
+        return tuple(min(visit.due, until) for visit, until in pairs)
 
     @cached_property
     def spans(self) -> tuple[Span, ...]:
@@ -319,6 +345,7 @@ def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
         "lateness": ("no-due", any(visit.due < inf for visit in rules.visits)),
         "earliness": ("no-due-from", any(visit.wanted for visit in rules.visits)),
         "load_distance": ("no-loads", rules.dimensions > 0),
+        "changes": ("no-promises", bool(rules.promises)),
     }
     code, is_given = needed.get(measure, ("", True))
     if not is_given:
@@ -326,7 +353,7 @@ def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
     if measure == "weighted_arrival" and rules.clock is None:
         raise invalid(part, "untimed")
     for index, vehicle in enumerate(rules.vehicles):
-        if vehicle.breaks and measure in _OF_BEGINS:
+        if vehicle.breaks and measure in rules.of_begins:
             where = f"vehicles/{index}/breaks"
             raise invalid(where, "breaks-of-measure", measure=measure, other=f"/{part}")
 

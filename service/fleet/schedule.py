@@ -25,9 +25,9 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
     """Return the times of a route whose vehicle is done as early as possible.
 
     Of the ways to be done then, it takes one of the least lateness. It leaves as late as neither
-    delays its end nor makes a visit later than due, and no later than it must; or as early as it
-    may, if the rules say so. Over the day it leaves when the route takes the least time instead:
-    see `times_over_the_day`.
+    delays its end nor makes a visit later than due, or than promised if changes count, and no later
+    than it must; or as early as it may, if the rules say so. Over the day it leaves when the route
+    takes the least time instead: see `times_over_the_day`.
 
     Raises:
         ValueError: The fleet has no clock.
@@ -102,6 +102,7 @@ def _timed(
             later.late
             or is_over(later.end, best.end)
             or is_over(later.lateness, best.lateness, best.end)
+            or _delays(stays, best, later)
         ):
             break
         best = later
@@ -128,7 +129,9 @@ def _drive(
     time, waiting, slack, late, lateness, tightest = departure, 0.0, inf, 0.0, 0.0, -1
     arrivals, used, begins = [], [], []
     # Every solution of the search comes through here: branches cost less than calls of max().
-    for place, ((windows, service, due), leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
+    for place, ((windows, service, due, hold), leg) in enumerate(
+        zip(stays, [*driven, 0.0], strict=True)
+    ):
         number = allowed[place]
         if windows[number][1] < time:
             number = _open_window(windows, number, time, reach)
@@ -141,9 +144,9 @@ def _drive(
             begin = opens
         begins.append(begin)
         until = closes
-        if due < inf:
+        if hold < inf:
             lateness += excess(begin, due, reach)
-            until = min(closes, max(due, begin))
+            until = min(closes, max(hold, begin))
         if until - begin + waiting < slack:
             slack = until - begin + waiting
             tightest = place if until == closes and number + 1 < len(windows) else -1
@@ -156,6 +159,12 @@ def _drive(
     late = max(late, excess(end, last, reach))
     found = tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest
     return Schedule(*found, tuple(begins))
+
+
+def _delays(stays: Sequence[Stay], first: Schedule, later: Schedule) -> bool:
+    """Return whether a visit begins later than at first, and than what no departure may miss."""
+    columns = zip(stays, first.begins, later.begins, strict=True)
+    return any(is_over(then, max(stay.hold, begin), later.end) for stay, begin, then in columns)
 
 
 def _open_window(windows: Sequence[Span], number: int, time: float, reach: float) -> int:
@@ -172,7 +181,12 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
     """
     vehicle, visits = rules.vehicles[route.vehicle], rules.visits
     stays = [
-        Stay(rules.windows[stop], rules.service(route.vehicle, stop), visits[stop].due)
+        Stay(
+            rules.windows[stop],
+            rules.service(route.vehicle, stop),
+            visits[stop].due,
+            rules.holds[stop],
+        )
         for stop in route.stops
     ]
     if len(trips) > 1:

@@ -47,6 +47,7 @@ class Units:
                 windows=tuple(_scaled_span(window, time) for window in visit.windows),
                 due=_scaled_bound(visit.due, time),
                 wanted=_scaled(visit.wanted, time),
+                promised_by=_scaled_bound(visit.promised_by, time),
                 release=_scaled(visit.release, time),
                 prize=None if visit.prize is None else _scaled(visit.prize, extra),
             )
@@ -72,13 +73,15 @@ class Units:
             for vehicle in rules.vehicles
         )
         slack = _scaled(rules.slack, time)
-        scaled = replace(rules, visits=visits, vehicles=vehicles, slack=slack)
+        tolerance = None if rules.tolerance is None else _scaled(rules.tolerance, time)
+        scaled = replace(rules, visits=visits, vehicles=vehicles, slack=slack, tolerance=tolerance)
         return cls(fleet.scaled(scaled, shifts), shifts)
 
     def points(self, points: Array) -> Array:
         """Return points, shape (..., m), in these units; infinite where these are too small."""
         rules = self.fleet.rules
-        numbers = {"vehicles": None, "unassigned": 0, "load_distance": 0}
+        numbers = dict.fromkeys(("vehicles", "overlap", "changes"))
+        numbers |= {"unassigned": 0, "load_distance": 0}
         timed = dict.fromkeys(
             ("overtime", "lateness", "imbalance", "earliness", "weighted_arrival"), rules.limited
         )

@@ -27,6 +27,9 @@ class Visit:
             the difference.
         urgency: What a unit of time until the visit begins counts in weighted arrivals.
         services: How long the visit takes by each type of vehicles; empty where all take `service`.
+        promised_to: The type of vehicles that should visit it, as it does in a plan that is driven
+            or was promised; -1 if that has gone, and None if the stop was not in that plan.
+        promised_by: When the visit begins in that plan.
     """
 
     demand: tuple[int, ...] = ()
@@ -40,6 +43,8 @@ class Visit:
     wanted: float = 0.0
     urgency: float = 1.0
     services: tuple[float, ...] = ()
+    promised_to: int | None = None
+    promised_by: float = inf
 
     def service_by(self, vehicle: int) -> float:
         """Return how long the visit takes by a type of vehicles, before its factor."""

@@ -311,8 +311,10 @@ class _Search:
         """Return the least length of the route in an objective, shape (p, s)."""
         rules = self._fleet.rules
         match over:
-            case "vehicles" | "unassigned" | "earliness" | "weighted_arrival":
-                return np.full(known.end.shape, 1.0 if over == "vehicles" else 0.0)
+            case "vehicles":
+                return np.ones(known.end.shape)
+            case "unassigned" | "earliness" | "weighted_arrival" | "overlap" | "changes":
+                return np.zeros(known.end.shape)
             case "lateness":
                 return known.lateness
             case "overtime":

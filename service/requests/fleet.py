@@ -22,6 +22,7 @@ from service.requests.fields import (
     OneEach,
     SearchFields,
     SomeItems,
+    optional,
 )
 from service.requests.fleet_fields import (
     ApartItem,
@@ -35,6 +36,7 @@ from service.requests.fleet_fields import (
     VehicleItem,
 )
 from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
+from service.requests.promises import PromisedItem, promised_plan
 from service.requests.stop_fields import (
     check_unique,
     find_index,
@@ -91,6 +93,10 @@ class FleetRequest(SearchFields):
         description="whether a vehicle leaves as late as it can without being done later, or as"
         " early as its shift and its load allow",
     )
+    promised: PromisedItem | None = optional(
+        "a plan that is driven or was promised: the search starts from it, and the measure"
+        " `changes` counts what is not kept of it"
+    )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
     @property
@@ -121,11 +127,15 @@ class FleetRequest(SearchFields):
         ids = {stop.id: index for index, stop in enumerate(labels.stops)}
         check_unique([item.id for item in self.vehicles], "vehicles")
         vehicles, names = self._vehicles(ids)
+        plan = self.promised and promised_plan(self.promised, vehicles, names, ids)
+        if plan:
+            vehicles, names = plan.types.vehicles, plan.names
         types = types_by_id(names)
+        visits = tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops))
         costs, layers = self._layers()
         self._check_day()
         rules = Rules(
-            visits=tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops)),
+            visits=plan.visits(visits, self.slack) if plan else visits,
             vehicles=vehicles,
             shipments=tuple(
                 item.shipment(f"shipments/{i}", ids) for i, item in enumerate(self.shipments)
@@ -134,11 +144,21 @@ class FleetRequest(SearchFields):
             layers=layers,
             clock=self._clock(costs, layers),
             slack=self.slack,
+            tolerance=self._tolerance,
             leave=self.leave,
             groups=self._groups(ids),
         )
         stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops))
-        return UnmeasuredFleet(rules, names, stops, clock=self._named_clock)
+        driven = plan.routes if plan else ()
+        return UnmeasuredFleet(rules, names, stops, driven, clock=self._named_clock)
+
+    @property
+    def _tolerance(self) -> float | None:
+        """How much later than promised a visit may begin; None for any time."""
+        tolerance = None if self.promised is None else self.promised.tolerance
+        if tolerance is not None and self.clock is None:
+            raise invalid("promised/tolerance", "untimed")
+        return tolerance
 
     def _check_day(self) -> None:
         """Raise a refusal where costs change over the day without a clock in seconds."""

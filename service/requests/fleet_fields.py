@@ -346,8 +346,11 @@ class FleetObjectiveItem(DayObjectiveItem):
         " vehicles that are used, the prizes of the stops that are left out, the overtime beyond"
         " shifts, the lateness after stops are due, the earliness before they are, the weighted"
         " arrival, which is the time until each visit begins times its urgency, each summed up over"
-        " the plan; the imbalance, by which the longest route is longer than the shortest; or the"
-        " load distance, the first costs of each leg times the load",
+        " the plan; the imbalance, by which the longest route is longer than the shortest; the load"
+        " distance, the first costs of each leg times the load; the overlap, from 0 to 1, which is"
+        " the share of neighbours that do not ride with each other, weighted by nearness; or the"
+        " changes: how many stops of the plan in `promised` are left out, or visited by another"
+        " vehicle or later than with its tolerance",
     )
     over: Over = Field(
         default="sum",

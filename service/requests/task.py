@@ -38,7 +38,8 @@ class VehicleName:
     Args:
         id: Its id.
         shift: The number of its shift, if those of its id have several.
-        route: The number of its route in the plan that is driven, if it is on its way.
+        route: The number of its route in the plan that is driven, if it is on its way, or if
+            changes of that plan count.
     """
 
     id: str

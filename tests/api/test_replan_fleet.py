@@ -272,3 +272,40 @@ def test_objectives_that_do_not_fit_each_other_are_refused_where_they_stand(
     problem = response.json()
     assert problem["errors"][0]["pointer"] == pointer, problem
     assert sentence in problem["detail"]
+
+
+def test_a_replanned_fleet_trades_length_against_changes(
+    client: httpx.Client, front: dict[str, Any]
+) -> None:
+    """vroom#800: orders come in during the day, and the plan should not be turned over."""
+    driven, number = front["front"][full_plan(front)], full_plan(front)
+    new = [{"id": f"new-{i}", "location": PLACES[i][::1], "demand": [1]} for i in (3, 9)]
+    changes = {"name": "changed", "tolerance": 200}
+    response = replan(client, front, plan=number, now=0, add=new, changes=changes)
+    assert response.status_code == 200, response.text
+    rest = response.json()
+    assert rest["objectives"][-1] == {
+        "name": "changed",
+        "unit": None,
+        "over": "sum",
+        "measure": "changes",
+    }
+    before = {
+        stop: (i, arrival)
+        for i, route in enumerate(driven["routes"])
+        for stop, arrival in zip(route["stops"], route["arrivals"], strict=True)
+        if stop != "depot"
+    }
+    counts = []
+    for plan in rest["front"]:
+        visits = [
+            (stop, route.get("route"), arrival)
+            for route in plan["routes"]
+            for stop, arrival in zip(route["stops"], route["arrivals"], strict=True)
+            if stop in before
+        ]
+        assert len(visits) == len(before)
+        changed = [i != before[stop][0] or at > before[stop][1] + 200 for stop, i, at in visits]
+        assert plan["lengths"][2] == plan["measures"]["changes"] == sum(changed)
+        counts.append(sum(changed))
+    assert min(counts) <= 2 < max(counts)

@@ -30,6 +30,9 @@ MIXED: Sequence[tuple[Objectives, tuple[int, ...]]] = (
     (("sum", "earliness"), (0, 0)),
     (("sum", "weighted_arrival"), (0, 0)),
     (("sum", "lateness", "earliness"), (0, 0, 0)),
+    (("sum", "overlap"), (0, 0)),
+    (("sum", "changes"), (0, 0)),
+    (("sum", "lateness", "changes"), (0, 0, 0)),
     (("sum", "max", "lateness", "vehicles"), (0, 1, 0, 0)),
     (("sum", "sum", "unassigned", "imbalance"), (0, 1, 0, 0)),
 )
@@ -253,14 +256,10 @@ def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 
     )
     depots = {end for each in types for end in (0, each.end, *each.reload) if end is not None}
     visits = tuple(Visit() if stop in depots else visit() for stop in range(n + 2))
-    if {"earliness", "weighted_arrival"} & {*over}:
+    if {"earliness", "weighted_arrival", "changes"} & {*over}:
         types = tuple(dataclasses.replace(each, breaks=()) for each in types)
         visits = tuple(
-            dataclasses.replace(
-                each, wanted=min(each.due, float(whole(1, 60))), urgency=float(whole(0, 4))
-            )
-            if stop not in depots
-            else each
+            each if stop in depots else _weighed(each, np.random.default_rng([seed, stop]))
             for stop, each in enumerate(visits)
         )
     rules = Rules(
@@ -271,8 +270,21 @@ def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 
         clock=whole(0, 2),
         slack=float(whole(1, 15)) if likely(0.25) else 0.0,
         leave="early" if likely(0.2) else "late",
+        tolerance=float(whole(0, 10)) if "changes" in over and likely(0.6) else None,
     )
     return Fleet(rules=rules, costs=costs)
+
+
+def _weighed(visit: Visit, random: np.random.Generator) -> Visit:
+    """Return a visit that should not begin before a time, has an urgency, and is promised."""
+    wanted, promised, urgency, vehicle = random.integers((1, 1, 0, -1), (60, 60, 4, 2)).tolist()
+    return dataclasses.replace(
+        visit,
+        wanted=min(visit.due, float(wanted)),
+        urgency=float(urgency),
+        promised_to=vehicle,
+        promised_by=float(promised) if random.random() < 0.8 else inf,
+    )
 
 
 def every_plan(rules: Rules) -> Iterator[Plan]:

@@ -41,13 +41,17 @@ def fleet(stops: dict[str, Json], vans: int = 1, **members: Any) -> Json:
     }
 
 
-def planned(request: Json) -> Json:
-    """Return the plan of a front with the least first length."""
+def front_of(request: Json) -> list[Json]:
+    """Return the plans of a front, by ascending first length."""
     task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
     document = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
-    front: Json = json.loads(document.json(id="", status="done"))
-    plan: Json = front["front"][0]
-    return plan
+    front: list[Json] = json.loads(document.json(id="", status="done"))["front"]
+    return front
+
+
+def planned(request: Json) -> Json:
+    """Return the plan of a front with the least first length."""
+    return front_of(request)[0]
 
 
 def routes(plan: Json) -> list[set[str]]:
@@ -206,6 +210,81 @@ def test_limits_on_driving_are_refused_where_costs_change_over_the_day() -> None
     request["objectives"][0] |= {"unit": "s", "over_the_day": [[0, 1], [36_000, 1.5]]}
     with pytest.raises(Refusal, match="vehicles/0/max_driving cannot be given where costs change"):
         planned(request)
+
+
+STREETS = {  # stops a, b, ... from west to east on both sides of the depot
+    name: {"at": at} for name, at in zip("abcdef", (-12, -11, -10, 10, 11, 12), strict=True)
+}
+COMPACT = {
+    # Stops of a vehicle form a cluster, even if that is a little longer.
+    "vroom#1288": fleet(STREETS, 2, van={"max_stops": 3}, against={"measure": "overlap"}),
+    # Points close to each other belong on one path.
+    "vroom#1066": fleet(STREETS, 3, van={"max_stops": 3}, against={"measure": "overlap"}),
+    # Each vehicle has an area of its own; next-door orders share a vehicle, within its hours.
+    "vrp#171": fleet(
+        {name: {**stop, "window": [0, 90]} for name, stop in STREETS.items()},
+        2,
+        van={"shift": [0, 100], "max_stops": 3},
+        against={"measure": "overlap"},
+    ),
+    # Vehicles spread over the area, in place of several at the same locations.
+    "PyVRP#822": fleet(
+        {name: {**stop, "demand": [1]} for name, stop in STREETS.items()},
+        2,
+        van={"capacity": [3]},
+        against={"measure": "overlap"},
+    ),
+}
+
+
+@pytest.mark.parametrize("thread", COMPACT)
+def test_the_least_overlap_is_among_the_plans(thread: str) -> None:
+    last = front_of(COMPACT[thread])[-1]
+    assert routes(last) == [{"a", "b", "c"}, {"d", "e", "f"}]
+    assert 0 < last["measures"]["overlap"] == last["lengths"][1] < 0.35
+
+
+def test_a_promised_plan_is_kept_or_changed_for_a_shorter_one() -> None:
+    """vroom#1324: planned again with one order more, and as little else changes as can be."""
+    promised = {
+        "routes": [
+            {
+                "vehicle": "van",
+                "stops": ["depot", "west", "east", "depot"],
+                "arrivals": [0, 10, 30, 40],
+            },
+            {"vehicle": "van", "stops": ["near", "far"], "arrivals": [1, 20]},
+        ],
+        "tolerance": 2,
+    }
+    stops = {"west": {"at": WEST}, "east": {"at": EAST}, "near": {"at": NEAR}, "far": {"at": FAR}}
+    added = {**stops, "new": {"at": FAR + 1}}
+    request = fleet(added, 2, promised=promised, against={"measure": "changes"})
+    plans = front_of(request)
+    kept = plans[-1]
+    assert kept["measures"]["changes"] == kept["lengths"][1] == 0
+    assert {each["route"]: each["stops"][1:-1] for each in kept["routes"]} == {
+        0: ["west", "east"],
+        1: ["near", "far", "new"],
+    }
+    shortest = plans[0]
+    assert shortest["lengths"][0] < kept["lengths"][0]
+    assert shortest["lengths"][1] > 0
+
+
+@pytest.mark.parametrize(("tolerance", "changed"), [(None, 0), (20, 0), (15, 1)])
+def test_a_later_visit_is_a_change_beyond_the_tolerance(
+    tolerance: float | None, changed: int
+) -> None:
+    """The new stop in the west comes first, as it closes early: the east is visited 20 later."""
+    route = {"vehicle": "van", "stops": ["east"], "arrivals": [EAST]}
+    promised = {"routes": [route], "tolerance": tolerance}
+    stops = {"east": {"at": EAST}, "west": {"at": WEST, "window": [0, 12]}}
+    request = fleet(
+        stops, promised=promised, van={"shift": [0, 99]}, against={"measure": "changes"}
+    )
+    [plan] = front_of(request)
+    assert plan["measures"]["changes"] == changed
 
 
 def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> None:

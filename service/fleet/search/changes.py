@@ -83,4 +83,5 @@ def restore(state: State) -> None:
             before = stop
         plan.next[before], plan.previous[end] = end, before
         first += plan.saved_size[number]
-        measure(state, slot)
+    for number in range(counts[SAVED]):  # once all know again which stops ride with them
+        measure(state, plan.saved[number])

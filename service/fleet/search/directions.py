@@ -335,6 +335,8 @@ class Directions:
             load_distance=by_measure.get("load_distance", 0.0),
             earliness=by_measure.get("earliness", 0.0),
             arrival=by_measure.get("weighted_arrival", 0.0),
+            overlap=by_measure.get("overlap", 0.0),
+            changes=by_measure.get("changes", 0.0),
             longest=longest,
             penalty=penalty,
             beyond=0.0,

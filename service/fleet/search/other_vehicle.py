@@ -116,7 +116,7 @@ def _cost_by(state: State, slot: int, other: int) -> float:
     alike = problem.profile[slot] == problem.profile[other]
     for end in range(2):
         alike &= problem.place[n + 2 * slot + end] == problem.place[n + 2 * other + end]
-    if alike and problem.clock < 0:
+    if alike and problem.clock < 0 and not problem.weighs:
         return route_cost(state, problem.kind[other], values_of(plan, slot))
     return _tried(state, slot, other)
 

@@ -26,6 +26,7 @@ from service.fleet.search.route import (
 )
 from service.fleet.search.spots import Place, nowhere
 from service.fleet.search.values import Values, drives_too_far, grown_cost, values_of
+from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import (
     TRY,
     TYPE,
@@ -188,9 +189,8 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
     kind = problem.kind[slot]
     if _is_over(first if problem.limited == 0 else second, problem.longest[kind], end):
         return best
-    late = max(0.0, end - problem.shift_end[kind])
-    # With a visit more, others may begin later: the earliness may fall.
-    values = Values(first, second, late, known.lateness, loaded, 0.0, known.arrival)
+    late, weighed = max(0.0, end - problem.shift_end[kind]), weighed_with(state, pickup, slot, at)
+    values = Values(first, second, late, known.lateness, loaded, weighed)
     cost = grown_cost(state, slot, 2, values)
     if cost < best.cost and (problem.tried[kind] or problem.choice or direction.lateness > 0):
         cost = _tried(state, pickup, slot, begun.before, at)

@@ -10,6 +10,7 @@ from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.search.day import FleetDay, day_of
+from service.fleet.search.extras import Extras, extras_of
 from service.fleet.vehicles import VehicleType
 from service.jit import by_reference
 
@@ -19,11 +20,13 @@ Nodes = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 
 MEASURES: tuple[str, ...] = (*get_args(Over), *get_args(Measure))
-MAX, VEHICLES, UNASSIGNED, IMBALANCE = map(
-    MEASURES.index, ("max", "vehicles", "unassigned", "imbalance")
+MAX, VEHICLES, UNASSIGNED, IMBALANCE, OF_PROMISES = map(
+    MEASURES.index, ("max", "vehicles", "unassigned", "imbalance", "changes")
 )
 # The columns of the values of a route.
 FIRST, SECOND, OVERTIME, LATENESS, LOADED, RELEASED, EARLINESS, ARRIVAL = range(8)
+OVERLAP, CHANGES, WEIGHED = 8, 9, 10
+COLUMNS = 11
 _NEAR = 100  # stops that are near a stop, at most
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
@@ -56,10 +59,12 @@ class Problem(NamedTuple):
     opens: Array  # (n,), the begin of the first, or its end if that is before
     closes: Array  # (n,), the end of the last
     due: Array  # (n,)
+    weighs: bool  # whether an objective is one of those in weighed.py
     timely: bool  # whether an objective depends on when each visit begins
     wanted: Array  # (n,), before which a visit is early
     urgency: Array  # (n,), 0 for depots
     begin: float  # from when on weighted arrivals count
+    extras: Extras
     prize: Array  # (n,), infinite where a stop must be visited
     near: Nodes  # (n, k), the nearest stops of each stop to visit, from the nearest on
     clients: Nodes  # (c,), the stops to visit
@@ -114,6 +119,7 @@ def problem_of(fleet: Fleet) -> Problem:
     """Return the arrays of a fleet."""
     rules, loads = fleet.rules, loads_of(fleet.rules)
     visits, vehicles, windows = rules.visits, rules.vehicles, _windows(rules)
+    weighs = bool(rules.of_begins) or bool({"overlap", "changes"} & {*rules.over})
     opens, closes = windows[:, 0, 0], windows[:, -1, 1]
     clients = np.array(rules.clients, np.int32)
     delivery, pickup = _shipped(rules)
@@ -147,10 +153,12 @@ def problem_of(fleet: Fleet) -> Problem:
         opens=np.minimum(opens, closes),
         closes=closes.copy(),
         due=_floats([visit.due for visit in visits]),
-        timely=rules.weighs_begins,
+        weighs=weighs,
+        timely=bool(rules.of_begins),
         wanted=_floats([visit.wanted for visit in visits]),
         urgency=_floats([visit.urgency for visit in visits]),
         begin=rules.begin,
+        extras=extras_of(fleet),
         prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
         near=_nearest(fleet, clients),
         clients=clients,
@@ -192,7 +200,7 @@ def problem_of(fleet: Fleet) -> Problem:
         rivals=_rivals(rules),
         ordered=bool(rules.groups.ordered),
         earlier=_earlier(rules),
-        grows=not (rules.weighs_begins or any(vehicle.is_bounded_below for vehicle in vehicles)),
+        grows=not (weighs or any(vehicle.is_bounded_below for vehicle in vehicles)),
         bounded_below=any(vehicle.is_bounded_below for vehicle in vehicles),
         min_stops=np.array([vehicle.min_stops for vehicle in vehicles]),
         shortest=_floats([vehicle.shortest for vehicle in vehicles]),
@@ -277,7 +285,7 @@ def _is_tried(fleet: Fleet, vehicle: VehicleType) -> bool:
     brings.
     """
     rules = fleet.rules
-    if rules.weighs_begins or fleet.day is not None:
+    if rules.of_begins or fleet.day is not None:
         return True
     if not vehicle.reload:
         return bool(vehicle.breaks)
@@ -305,6 +313,8 @@ def _column(rules: Rules, objective: int) -> int:
         "load_distance": LOADED,
         "earliness": EARLINESS,
         "weighted_arrival": ARRIVAL,
+        "overlap": OVERLAP,
+        "changes": CHANGES,
     }
     if over == "imbalance":
         assert rules.swept is not None
@@ -329,9 +339,8 @@ class Direction(NamedTuple):
     """What the search minimises: a weighted sum over routes, with limits on routes and plans.
 
     The weighted sum is that of legs or durations, vehicles, fixed costs, overtime, lateness, load
-    times distance, earliness and weighted arrivals, and of the prizes of stops outside. What
-    exceeds a limit is multiplied by `penalty`. A plan also pays for what its lengths exceed bounds
-    by.
+    times distance and the measures in weighed.py, and of the prizes of stops outside. What exceeds
+    a limit is multiplied by `penalty`. A plan also pays for what its lengths exceed bounds by.
     """
 
     costs: tuple[float, float]  # without prices
@@ -343,6 +352,8 @@ class Direction(NamedTuple):
     load_distance: float
     earliness: float
     arrival: float
+    overlap: float
+    changes: float
     longest: float  # the limit on the length of a route in the swept costs
     penalty: float
     beyond: float  # price of each unit by which a route is too long or ends too late, if it may

@@ -11,6 +11,7 @@ from service.fleet.search.reloads import SELDOM, load_anew
 from service.fleet.search.route import measure, measure_with
 from service.fleet.search.ruin import uniform
 from service.fleet.search.spots import Place, Spot, put, take_back
+from service.fleet.search.weighed import promised_stops
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
@@ -165,7 +166,8 @@ def set_prices(state: State) -> None:
     for number in range(len(problem.tasks)):
         stop = problem.tasks[number]
         required = problem.prize[stop] == np.inf
-        plan.price[stop] = direction.required if required else direction.prize * problem.prize[stop]
+        price = direction.required if required else direction.prize * problem.prize[stop]
+        plan.price[stop] = price + direction.changes * promised_stops(problem, stop)
 
 
 @inlined

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at, weigh_begins
+from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
@@ -21,6 +21,7 @@ from service.fleet.search.problem import (
 from service.fleet.search.rests import rested
 from service.fleet.search.routes_of_day import drive_over_the_day
 from service.fleet.search.values import drives_too_far, lacking, route_cost, values_of
+from service.fleet.search.weighed import weigh
 from service.fleet.search.working_plan import (
     USED,
     State,
@@ -107,6 +108,8 @@ def measure(state: State, slot: int) -> bool:
     if problem.clock >= 0:
         fits &= _drive(problem.day, problem, plan, slot, fits)
         _backward(problem, plan, slot, start)
+    if problem.weighs and fits:
+        weigh(state, slot)
     fits &= _set_cost(state, slot, start + 1)
     plan.plain[slot] = plan.cost[slot]
     if fits and problem.rests[problem.kind[slot]] > 0:
@@ -126,8 +129,6 @@ def _drive(
     if day is None:
         duration, in_time = _forward(problem, plan, slot, start)
         plan.value[slot, problem.clock] = duration
-        if problem.timely and fits and in_time:
-            weigh_begins(problem, plan, start, plan.ready[start + 1] - duration)
         return in_time
     in_time = drive_over_the_day(day, problem, plan, slot)
     _set_heads(problem, plan, slot, start)
@@ -173,7 +174,8 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
     apart from those of measure(), which is due when the plan is kept.
     """
     problem, plan, direction = state
-    if problem.clock >= 0 or problem.ships or problem.reloads or direction.load_distance > 0:
+    whole = problem.ships or problem.reloads or problem.weighs or direction.load_distance > 0
+    if problem.clock >= 0 or whole:
         return measure(state, slot)
     mark_used(plan, slot)
     kind, profile, fits = problem.kind[slot], problem.profile[slot], True
@@ -322,7 +324,7 @@ def _latest_departure(problem: Problem, plan: WorkingPlan, start: int, profile: 
     while node != start:
         service = service_at(problem, profile, node)
         begin = plan.ready[node] - service
-        limit = min(time - service, max(problem.due[node], begin))
+        limit = min(time - service, max(problem.extras.holds[node], begin))
         latest = _reached_by(problem, node, begin) if problem.narrow else begin
         for number in range(problem.windows.shape[1]):
             if problem.windows[node, number, 0] <= limit:

@@ -6,6 +6,7 @@ from service.fleet.search.problem import (
     FIRST,
     IMBALANCE,
     MAX,
+    OF_PROMISES,
     SECOND,
     UNASSIGNED,
     VEHICLES,
@@ -15,6 +16,7 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.route import measure
 from service.fleet.search.values import at_prices
+from service.fleet.search.weighed import promised_stops
 from service.fleet.search.working_plan import (
     OUTSIDE,
     USED,
@@ -109,6 +111,16 @@ def write_point(problem: Problem, plan: WorkingPlan, point: Array) -> None:
         point[0] += problem.fixed[problem.kind[plan.used[number]]]
     for number in range(plan.counts[OUTSIDE]):
         point[paid] += problem.prize[plan.outside[number]]
+        if problem.extras.promises:
+            _count_promises(problem, plan.outside[number], point)
+
+
+@compiled
+def _count_promises(problem: Problem, stop: int, point: Array) -> None:
+    """Count the promises of a stop that is left out among the changes of a point."""
+    for objective in range(len(problem.over)):
+        if problem.over[objective] == OF_PROMISES:
+            point[objective] += promised_stops(problem, stop)
 
 
 @inlined

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at, weighed_with
+from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.problem import (
     FIRST,
@@ -24,6 +24,7 @@ from service.fleet.search.route import (
 )
 from service.fleet.search.spots_of_day import cost_over_the_day
 from service.fleet.search.values import Values, drives_too_far, grown_cost
+from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
@@ -161,8 +162,8 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
         return np.inf
     overtime = max(0.0, end - problem.shift_end[kind])
     late = plan.value[slot, LATENESS]
-    early, arrival = weighed_with(problem, plan, slot, stop, before)
-    values = Values(first, second, overtime, late, loaded, early, arrival)
+    weighed = weighed_with(state, stop, slot, before)
+    values = Values(first, second, overtime, late, loaded, weighed)
     cost = grown_cost(state, slot, 1, values)
     if cost < most and not problem.tried[kind] and (problem.choice or direction.lateness > 0):
         later = _lateness(problem, plan, slot, stop, before)

@@ -3,11 +3,11 @@
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import weighed_with
 from service.fleet.search.day import FleetDay, Moment, driven, slice_of
 from service.fleet.search.problem import FIRST, LATENESS, LOADED, RELEASED, SECOND, Problem
 from service.fleet.search.route import head_at, joined, stay, tail_at
 from service.fleet.search.values import Values, grown_cost
+from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import State, WorkingPlan, service_at
 from service.jit import compiled, inlined
 
@@ -48,8 +48,8 @@ def cost_over_the_day(
     first = length if day.clock == 0 else first
     second = length if day.clock == 1 else second
     overtime = max(0.0, end - problem.shift_end[kind])
-    early, arrival = weighed_with(problem, plan, slot, stop, before)
-    values = Values(first, second, overtime, plan.value[slot, LATENESS], loaded, early, arrival)
+    late, weighed = plan.value[slot, LATENESS], weighed_with(state, stop, slot, before)
+    values = Values(first, second, overtime, late, loaded, weighed)
     return grown_cost(state, slot, 1, values)
 
 

@@ -4,13 +4,12 @@ from typing import NamedTuple
 
 from service.fleet.rounding import is_over
 from service.fleet.search.problem import (
-    ARRIVAL,
-    EARLINESS,
     FIRST,
     LATENESS,
     LOADED,
     OVERTIME,
     SECOND,
+    WEIGHED,
     Problem,
 )
 from service.fleet.search.working_plan import State, WorkingPlan
@@ -27,8 +26,7 @@ class Values(NamedTuple):
     overtime: float
     lateness: float
     loaded: float  # loads times distances
-    early: float
-    arrival: float  # weighted
+    weighed: float  # the cost of the measures in weighed.py
 
 
 @inlined
@@ -46,8 +44,8 @@ def route_cost(state: State, kind: int, values: Values) -> float:
     )
     if problem.priced:
         cost += direction.fixed * at_prices(problem, kind, values.first, values.second)
-    if problem.timely:
-        cost += direction.earliness * values.early + direction.arrival * values.arrival
+    if problem.weighs:
+        cost += values.weighed
     if direction.beyond > 0:
         cost += direction.beyond * beyond_rules(problem, kind, values)
     length = values.first if problem.swept == 0 else values.second
@@ -114,6 +112,5 @@ def values_of(plan: WorkingPlan, slot: int) -> Values:
         value[OVERTIME],
         value[LATENESS],
         value[LOADED],
-        value[EARLINESS],
-        value[ARRIVAL],
+        value[WEIGHED],
     )

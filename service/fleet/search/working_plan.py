@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service.fleet.search.problem import Array, Direction, Indices, Nodes, Problem
+from service.fleet.search.problem import COLUMNS, Array, Direction, Indices, Nodes, Problem
 from service.jit import by_reference, compiled, inlined
 
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
@@ -39,8 +39,9 @@ class WorkingPlan(NamedTuple):
     tried: Indices  # (n + 2 r,), by node: the latest stop that was tried after it
     size: Nodes  # (r,), by slot: stops
     load: Indices  # (r, d)
-    value: Array  # (r, 8): length in both costs, overtime, lateness, load times distance, release,
-    # earliness and weighted arrivals
+    value: Array  # (r, x): length in both costs, overtime, and the other columns of problem.py
+    met: Array  # (r,), what the overlap grows by with the stop that was tried last
+    met_at: Indices  # (r,), and the number of that stop
     cost: Array  # (r,), under the direction
     plain: Array  # (r,), the same without breaks
     trips: Indices  # (r,)
@@ -101,7 +102,9 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         tried=np.zeros(nodes, np.int64),
         size=np.zeros(r, np.int32),
         load=np.zeros((r, d), np.int64),
-        value=np.zeros((r, 8)),
+        value=np.zeros((r, COLUMNS)),
+        met=np.zeros(r),
+        met_at=np.zeros(r, np.int64),
         cost=np.zeros(r),
         plain=np.zeros(r),
         trips=np.ones(r, np.int64),

@@ -54,12 +54,14 @@ class DaySoFar:
     Args:
         ways: The vehicles on their way, in the order of the request.
         numbers: The number of the route of each in the plan.
-        waiting: The routes whose vehicles have not left.
+        waiting: The routes whose vehicles have not left, by their numbers in the plan.
+        arrivals: When each stop is reached in the plan; nothing without a clock.
     """
 
     ways: tuple[Way, ...]
     numbers: tuple[int, ...]
-    waiting: tuple[Route, ...]
+    waiting: Mapping[int, Route]
+    arrivals: Mapping[int, float]
 
     @property
     def done(self) -> frozenset[int]:
@@ -81,7 +83,7 @@ def day_of(
     Raises:
         Refusal: The request names a plan, a route or a stop that is not there, or one twice.
     """
-    routes, departures = _driven(request, stored, fleet, ids)
+    routes, departures, arrivals = _driven(request, stored, fleet, ids)
     numbers: list[int] = []
     ways = []
     for index, item in enumerate(request.routes):
@@ -95,14 +97,14 @@ def day_of(
         if item.leaves is not None and fleet.rules.clock is None:
             raise invalid(f"{part}/leaves", "fleet-has-no-clock")
         ways.append(_way(item, part, fleet, route, departure, ids))
-    waiting = tuple(route for number, route in enumerate(routes) if number not in numbers)
-    return DaySoFar(tuple(ways), tuple(numbers), waiting)
+    waiting = {number: route for number, route in enumerate(routes) if number not in numbers}
+    return DaySoFar(tuple(ways), tuple(numbers), waiting, arrivals)
 
 
 def _driven(
     request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
-) -> tuple[list[Route], list[float | None]]:
-    """Return the routes of the plan that is driven, and when the vehicle of each leaves."""
+) -> tuple[list[Route], list[float | None], dict[int, float]]:
+    """Return the routes of the plan that is driven, and when each vehicle leaves and arrives."""
     plans = stored.found.split()
     if not plans:
         raise not_replannable(stored.id, "it has no plan")
@@ -112,6 +114,7 @@ def _driven(
     types = {name: index for index, name in enumerate(fleet.vehicles)}
     routes: list[Route] = []
     departures: list[float | None] = []
+    arrivals: dict[int, float] = {}
     for item in from_json(plans[number])["routes"]:
         kind = types[VehicleName(item["vehicle"], item.get("shift"), item.get("route"))]
         vehicle = fleet.rules.vehicles[kind]
@@ -120,7 +123,8 @@ def _driven(
         last = len(stops) - (0 if vehicle.end is None else 1)
         routes.append(Route(kind, tuple(stops[first:last])))
         departures.append(item["arrivals"][0] if "arrivals" in item else None)
-    return routes, departures
+        arrivals |= zip(stops, item.get("arrivals", ()), strict=False)
+    return routes, departures, arrivals
 
 
 def _way(
@@ -194,3 +198,26 @@ def _position(
     if position not in done and position not in rules.depots:
         raise invalid(where, "not-a-position", came=item.position)
     return position
+
+
+def removed_stops(
+    request: ReplanFleetRequest, day: DaySoFar, rules: Rules, ids: Mapping[str, int]
+) -> frozenset[int]:
+    """Return the stops that the request takes out of the plan.
+
+    Raises:
+        Refusal: One is not a stop, done or a depot, or only half of a shipment.
+    """
+    removed = []
+    for index, reference in enumerate(request.remove):
+        part = f"remove/{index}"
+        stop = find_index(reference, ids, part, len(ids))
+        if stop in rules.depots or stop in day.done:
+            code = "removed-depot" if stop in rules.depots else "removed-done"
+            raise invalid(part, code, came=reference)
+        removed.append(stop)
+    for each in rules.shipments:
+        halves = [stop for stop in (each.pickup, each.delivery) if stop in removed]
+        if len(halves) == 1 and each.pickup not in day.done:
+            raise invalid(f"remove/{removed.index(halves[0])}", "half-a-shipment")
+    return frozenset(removed)

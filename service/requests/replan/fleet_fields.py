@@ -12,6 +12,8 @@ from service.requests.fields import (
     NonNegativeInteger,
     SearchFields,
     StrictModel,
+    Text,
+    optional,
 )
 from service.requests.fleet_fields import FleetStopItem
 from service.requests.replan.fields import CostEntry, NewCosts, NewStop
@@ -78,7 +80,23 @@ class FleetChanges(StrictModel):
     )
 
 
+class ChangesItem(StrictModel):
+    """An objective that counts the stops which change vehicle, or are visited later."""
+
+    name: Text = Field(default="changes", description="the name of the objective")
+    tolerance: Cost | None = optional(
+        "how much later than in the plan that is driven a visit may begin, in the clock's unit,"
+        " without being a change; null: only changes of vehicles count"
+    )
+
+
 class ReplanFleetRequest(FleetChanges, SearchFields):
     """The changes since a fleet was planned, and the options of the front of the rest."""
+
+    changes: ChangesItem | None = optional(
+        "one more objective: how many stops of the plan that is driven are left out, or visited by"
+        " another vehicle or later than with this tolerance. Where that is an objective already:"
+        " its tolerance from now on"
+    )
 
     geometry: Geometry = Field(default="straight", description=GEOMETRY)

@@ -23,6 +23,13 @@ from service.requests.limits import (
     lower_defaults,
 )
 from service.requests.parser import actor_for_plans
+from service.requests.replan.changes import (
+    NamedType,
+    by_route,
+    objectives_with,
+    promised_begin,
+    tolerance_of,
+)
 from service.requests.replan.costs import (
     AllStops,
     all_stops,
@@ -30,11 +37,10 @@ from service.requests.replan.costs import (
     changed_sources,
     extended_sources,
 )
-from service.requests.replan.day import DaySoFar, Way, day_of
+from service.requests.replan.day import Way, day_of, removed_stops
 from service.requests.replan.fields import NewStop
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.way import ReplanSource, StoredFront
-from service.requests.stop_fields import find_index
 from service.requests.stops import Labels, Source, Stops, locations_of
 from service.requests.task import Task, UnmeasuredFleet, VehicleName, types_by_id
 from service.requests.validation import parse_json, too_many_cities
@@ -97,10 +103,14 @@ class _Rest:
         ids = {stop.id: index for index, stop in enumerate(labels.stops)}
         self._day = day_of(request, stored, fleet, ids)
         self._all = _all_stops(request, labels)
-        self._removed = _removed(request, self._day, fleet.rules, ids)
+        self._removed = removed_stops(request, self._day, fleet.rules, ids)
         gone = self._day.done | self._removed
         self._left = [stop for stop in fleet.rules.clients if stop not in gone]
         self._carried = self._carriers()
+        self._objectives, self._over = objectives_with(
+            request.changes, labels.objectives, fleet.rules
+        )
+        self._tolerance = tolerance_of(request.changes, self._over, fleet.rules)
         self.names, self._types, self._old = self._vehicles()
         if not self._types:
             raise Refusal("no-plan", errors=[Fault("no-vehicle-left")])
@@ -126,7 +136,7 @@ class _Rest:
         """The names of the stops of the rest, and of the objectives."""
         return Labels(
             tuple(self._all.stops[stop] for stop in self._place),
-            self._known.objectives,
+            self._objectives,
             tuple(self._all.parts[stop] for stop in self._place),
         )
 
@@ -137,10 +147,11 @@ class _Rest:
             visits=tuple(self._visit(stop) for stop in self._place),
             vehicles=tuple(self._placed(vehicle) for vehicle in self._types),
             shipments=tuple(self._shipments()),
-            over=self._rules.over,
-            layers=self._rules.layers,
+            over=self._over,
+            layers=(*self._rules.layers, 0)[: len(self._over)],
             clock=self._rules.clock,
             slack=self._rules.slack if self._request.slack is None else self._request.slack,
+            tolerance=self._tolerance,
             leave=self._rules.leave,
             groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
         )
@@ -167,7 +178,8 @@ class _Rest:
 
         First those on their way, then those that have not left.
         """
-        found: list[tuple[VehicleName, VehicleType, int]] = []
+        found: list[NamedType] = []
+        waiting: list[NamedType] = []
         for number, way in zip(self._day.numbers, self._day.ways, strict=True):
             name = replace(self._fleet.vehicles[way.type], route=number)
             if not way.broken_down:
@@ -178,7 +190,10 @@ class _Rest:
             begin, end = max(vehicle.shift[0], self._now), vehicle.shift[1]
             if count > 0 and begin <= end and begin <= vehicle.leaves_by:
                 later = replace(vehicle, count=count, shift=(begin, end))
-                found.append((self._fleet.vehicles[index], later, index))
+                waiting.append((self._fleet.vehicles[index], later, index))
+        if "changes" in self._over or any(name.route is not None for name, _, _ in waiting):
+            waiting = list(by_route(waiting, self._day.waiting))
+        found += waiting
         names, types, old = zip(*found, strict=True) if found else ((), (), ())
         return tuple(names), list(types), list(old)
 
@@ -226,7 +241,31 @@ class _Rest:
             visit = self._known_visit(stop)
         services = visit.services and tuple(visit.services[old] for old in self._old)
         servers, release = self._servers(stop, visit), self._release(stop, visit)
-        return replace(visit, vehicles=servers, release=release, services=services)
+        vehicle, begin = self._promise(stop)
+        return replace(
+            visit,
+            vehicles=servers,
+            release=release,
+            services=services,
+            promised_to=vehicle,
+            promised_by=begin,
+        )
+
+    def _promise(self, stop: int) -> tuple[int | None, float]:
+        """Return the vehicle that visits a stop in the plan so far, and when, if changes count."""
+        if "changes" not in self._over or stop not in self._promised_to:
+            return None, inf
+        visit, arrival = self._rules.visits[stop], self._day.arrivals.get(stop)
+        begin = promised_begin(self._rules, visit, arrival, self._tolerance or 0.0)
+        return self._promised_to[stop], begin
+
+    @cached_property
+    def _promised_to(self) -> dict[int, int]:
+        """The type of vehicles of each stop in the plan so far; -1 for one that is gone."""
+        found = dict.fromkeys(self._left, -1)
+        for index, stops in self._routes_left():
+            found |= dict.fromkeys(stops, index)
+        return found
 
     def _known_visit(self, stop: int) -> Visit:
         """Return what a stop of the front asks for, also of shipments on board."""
@@ -328,13 +367,19 @@ class _Rest:
 
     def _driven(self) -> Iterator[Route]:
         """Yield what is left of the routes of the plan."""
+        for index, stops in self._routes_left():
+            yield from self._rest_of_route(index, stops)
+
+    def _routes_left(self) -> Iterator[tuple[int, tuple[int, ...]]]:
+        """Yield the types of vehicles that may still drive their routes, with what is left."""
         working = [way for way in self._day.ways if not way.broken_down]
         for index, way in enumerate(working):
-            yield from self._rest_of_route(index, way.left)
-        for route in self._day.waiting:
-            for index in range(len(working), len(self._types)):
-                if self._old[index] == route.vehicle:
-                    yield from self._rest_of_route(index, route.stops)
+            yield index, way.left
+        for number, route in self._day.waiting.items():
+            types = range(len(working), len(self._types))
+            own = [i for i in types if self.names[i].route == number]
+            for index in own or [i for i in types if self._old[i] == route.vehicle]:
+                yield index, route.stops
 
     def _rest_of_route(self, vehicle: int, stops: Sequence[int]) -> Iterator[Route]:
         reload = self._types[vehicle].reload
@@ -355,26 +400,3 @@ def _all_stops(request: ReplanFleetRequest, labels: Labels) -> AllStops:
         if isinstance(way.position, NewStop):
             items[f"routes/{index}/position"] = way.position
     return all_stops(labels.stops, items)
-
-
-def _removed(
-    request: ReplanFleetRequest, day: DaySoFar, rules: Rules, ids: Mapping[str, int]
-) -> frozenset[int]:
-    """Return the stops that the request takes out of the plan.
-
-    Raises:
-        Refusal: One is not a stop, done or a depot, or only half of a shipment.
-    """
-    removed = []
-    for index, reference in enumerate(request.remove):
-        part = f"remove/{index}"
-        stop = find_index(reference, ids, part, len(ids))
-        if stop in rules.depots or stop in day.done:
-            code = "removed-depot" if stop in rules.depots else "removed-done"
-            raise invalid(part, code, came=reference)
-        removed.append(stop)
-    for each in rules.shipments:
-        halves = [stop for stop in (each.pickup, each.delivery) if stop in removed]
-        if len(halves) == 1 and each.pickup not in day.done:
-            raise invalid(f"remove/{removed.index(halves[0])}", "half-a-shipment")
-    return frozenset(removed)

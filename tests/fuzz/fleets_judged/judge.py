@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from itertools import accumulate, pairwise
+from itertools import accumulate, pairwise, permutations
 from math import inf, isclose
 from typing import Any, NamedTuple
 
@@ -189,7 +189,33 @@ class Judge:
                 return self._load_distance(vehicle, stops, path)
             case "imbalance":
                 return self._compared(times, path)
+            case "overlap":
+                return self._overlap(stops)
         return 0.0
+
+    def _overlap(self, stops: tuple[int, ...]) -> float:
+        """Return the share of neighbours, of all stops, that do not ride with the stops of a route.
+
+        There are so few stops that each has all others as neighbours.
+        """
+        apart = {(a, b): self._apart(a, b) for a, b in permutations(self.clients, 2)}
+        ways = [way for way in apart.values() if way < inf]
+        mean = sum(ways) / len(ways) if any(ways) else 1.0
+        near = {pair: 1 / (1 + (way / mean) ** 2) for pair, way in apart.items()}
+        missing = (near[a, b] for a, b in near if a in stops and b not in stops)
+        return sum(missing) / (sum(near.values()) or 1.0)
+
+    def _apart(self, a: int, b: int) -> float:
+        """Return how far two stops are apart by the first costs; infinite without a way."""
+        matrices = [each["matrix"] for each in self.objectives if "matrix" in each]
+        if isinstance(self.request.get("clock"), dict):
+            matrices.append(self.clock["matrix"])
+        ways = [
+            matrices[0][i][j]
+            for i, j in ((a, b), (b, a))
+            if all(each[i][j] is not None for each in matrices)
+        ]
+        return float(min(ways, default=inf))
 
     def _of_times(self, measure: str, vehicle: Json, path: list[int], times: Timeline) -> float:
         begins = zip(path, times.begins, strict=True)

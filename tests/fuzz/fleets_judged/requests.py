@@ -10,7 +10,7 @@ from tests.fuzz.fleets_judged.timeline import Json
 
 _MEASURES = (
     *("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"),
-    *("earliness", "weighted_arrival"),
+    *("earliness", "weighted_arrival", "overlap"),
 )
 _TIMED = ("overtime", "lateness", "earliness", "weighted_arrival")
 
