@@ -131,6 +131,8 @@ Measure = Literal[
     "load_distance",
     "earliness",
     "weighted_arrival",
+    "overlap",
+    "changes",
 ]
 
 
@@ -191,6 +193,22 @@ ClockRequest = TypedDict(
     },
     total=False,
 )
+
+
+class PromisedRouteRequest(TypedDict, total=False):
+    """A route of a plan that is driven or was promised, as answers have them."""
+
+    vehicle: Required[str]
+    shift: int
+    stops: Required[Sequence[int | str] | ArrayLike]
+    arrivals: ArrayLike
+
+
+class PromisedRequest(TypedDict, total=False):
+    """A plan that is driven or was promised."""
+
+    routes: Required[Sequence[PromisedRouteRequest]]
+    tolerance: float | None
 
 
 class LayerRequest(TypedDict, total=False):
@@ -273,6 +291,13 @@ class NewFleetStopRequest(TypedDict, total=False):
     vehicle: str | None
     urgency: float
     prize: float | None
+
+
+class ChangesRequest(TypedDict, total=False):
+    """An objective that counts the stops which change vehicle, or are visited later."""
+
+    name: str
+    tolerance: float | None
 
 
 class OfferedOrderRequest(TypedDict, total=False):

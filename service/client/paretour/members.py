@@ -11,6 +11,7 @@ from paretour.frames import Costs, Frame
 from paretour.member_parts import (
     ApartRequest,
     BeforeRequest,
+    ChangesRequest,
     ClockRequest,
     CostEntryRequest,
     DepartureRangeRequest,
@@ -22,6 +23,7 @@ from paretour.member_parts import (
     NewStopRequest,
     ObjectiveRequest,
     OfferedOrderRequest,
+    PromisedRequest,
     RobotRequest,
     RouteOnTheWayRequest,
     ShipmentRequest,
@@ -82,6 +84,7 @@ class FleetRequest(SearchOptions, total=False):
     clock: str | ClockRequest | None
     slack: float
     leave: Literal["late", "early"]
+    promised: PromisedRequest | None
     geometry: Literal["straight", "roads"]
 
 
@@ -154,6 +157,7 @@ class ReplanFleetRequest(SearchOptions, total=False):
     add: Sequence[NewFleetStopRequest]
     remove: Sequence[int | str] | ArrayLike
     costs: Sequence[CostEntryRequest]
+    changes: ChangesRequest | None
     geometry: Literal["straight", "roads"]
 
 
