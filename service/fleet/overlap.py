@@ -15,6 +15,7 @@ from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Route
 
 _NEIGHBOURS = 6
+_UNIT = 2.0**-44  # of weights: sums of them are exact, in any order
 _REMEMBERED = 8  # latest fleets
 Nodes = NDArray[np.int32]
 
@@ -24,7 +25,7 @@ class Nearness(NamedTuple):
 
     Attributes:
         stops: The stops to visit that are nearest by the first costs, shape (n, k).
-        weights: How near they are, shape (n, k). The sum of all is 1.
+        weights: How near they are, shape (n, k). The sum of all is 1, but for a rounding.
     """
 
     stops: Nodes
@@ -52,7 +53,8 @@ def nearness(fleet: Fleet) -> Nearness:
     near = np.isfinite(away)
     mean = away[near].mean() if near.any() else 0.0
     weights = 1 / (1 + (away / (mean or 1.0)) ** 2)
-    return Nearness(stops, weights / (weights.sum() or 1.0))
+    shares = weights / (weights.sum() or 1.0)
+    return Nearness(stops, np.rint(shares / _UNIT) * _UNIT)
 
 
 def overlap(fleet: Fleet, route: Route) -> float:
