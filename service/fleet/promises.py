@@ -43,7 +43,7 @@ def types_by_route(vehicles: Sequence[VehicleType], routes: Sequence[int]) -> Ty
         for place, kind in enumerate(routes):
             if kind == number:
                 of_routes[place] = len(found)
-                found.append(replace(vehicle, count=1))
+                found.append(replace(vehicle, count=1, home=vehicle.start))
                 old.append(number)
         if left := vehicle.count - used[number]:
             found.append(replace(vehicle, count=left))

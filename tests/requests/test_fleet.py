@@ -82,6 +82,12 @@ def changed(path: str, value: Any) -> dict[str, Any]:
     return request
 
 
+def promised(vehicle: str, *stops: str, tolerance: Any = None, **members: Any) -> dict[str, Any]:
+    """Return a promised plan of one route."""
+    route = {"vehicle": vehicle, "stops": list(stops), **members}
+    return {"routes": [route], "tolerance": tolerance}
+
+
 HUGE = 10**400
 REFUSED = [
     ("stops", [], "/stops"),
@@ -116,6 +122,14 @@ REFUSED = [
     ("together", [["stop-5", "stop-3"]], "/together/0"),
     ("before", [{"first": ["stop-5"], "then": []}], "/before/0/then"),
     ("apart", [{"stops": ["stop-5", "stop-9"]}], "/apart/0/stops/1"),
+    ("promised", {"routes": []}, "/promised/routes"),
+    ("promised", promised("car", "stop-1"), "/promised/routes/0/vehicle"),
+    ("promised", promised("van", "stop-1", shift=1), "/promised/routes/0/shift"),
+    ("promised", promised("van", "stop-1", "stop-1"), "/promised/routes/0/stops/1"),
+    ("promised", promised("van", "stop-1", "stop-0", "stop-2"), "/promised/routes/0/stops/1"),
+    ("promised", promised("van", "stop-1", tolerance=9), "/promised/routes/0/arrivals"),
+    ("promised", promised("van", "stop-1", arrivals=[1, 2]), "/promised/routes/0/arrivals"),
+    ("promised", {"routes": 3 * promised("van", "stop-1")["routes"]}, "/promised/routes/2/vehicle"),
     ("vehicles/0/shortest", 300, "/vehicles/0/shortest"),
     ("vehicles", [], "/vehicles"),
     ("vehicles/0/count", 0, "/vehicles/0/count"),
@@ -235,6 +249,8 @@ def test_schemas_have_names_and_limits() -> None:
         "BreakItem",
         "ApartItem",
         "BeforeItem",
+        "PromisedRouteItem",
+        "PromisedItem",
         "ServiceItem",
         "SliceItem",
         "VehicleItem",

@@ -64,7 +64,8 @@ def by_route(types: Sequence[NamedType], routes: Mapping[int, Route]) -> Iterato
     """
     alike: dict[tuple[VehicleName, VehicleType], list[tuple[int, int]]] = {}
     for name, vehicle, old in types:
-        key = replace(name, route=None), replace(vehicle, count=1)
+        home = vehicle.start if name.route is None else vehicle.home
+        key = replace(name, route=None), replace(vehicle, count=1, home=home)
         alike.setdefault(key, []).append((old, vehicle.count))
     for (name, vehicle), known in alike.items():
         left = sum(count for _, count in known)
