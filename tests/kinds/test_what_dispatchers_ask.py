@@ -287,6 +287,42 @@ def test_a_later_visit_is_a_change_beyond_the_tolerance(
     assert plan["measures"]["changes"] == changed
 
 
+def test_a_replanned_fleet_trades_length_against_changes() -> None:
+    """vroom#800: orders fall out during the day, and the plan should not be turned over."""
+    stops = {name: {"at": at} for name, at in zip("abcde", (-12, -11, 3, 11, 12), strict=True)}
+    request = fleet(stops, 2, van={"max_stops": 3, "shift": [0, 200], "fixed": 9})
+    task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
+    front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
+    plans = json.loads(front.json(id="", status="done"))["front"]
+    number = next(i for i, plan in enumerate(plans) if len(plan["routes"]) == 2)
+    changes = {
+        "plan": number,
+        "now": 0,
+        "remove": ["d", "e"],
+        "changes": {"name": "changed", "tolerance": 1},
+    }
+    source = ReplanSource(json.dumps(changes).encode(), StoredFront("", encode_task(task), front))
+    rest = parse_replan(source, LIMITS, {})
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    answer = json.loads(document.json(id="", status="done"))
+    assert answer["objectives"][2]["measure"] == "changes"
+    before = {
+        stop: (i, arrival)
+        for i, route in enumerate(plans[number]["routes"])
+        for stop, arrival in zip(route["stops"], route["arrivals"], strict=True)
+    }
+    for plan in answer["front"]:
+        changed = sum(
+            route.get("route") != before[stop][0] or arrival > before[stop][1] + 1
+            for route in plan["routes"]
+            for stop, arrival in zip(route["stops"], route["arrivals"], strict=True)
+            if stop != "depot"
+        )
+        assert plan["lengths"][2] == plan["measures"]["changes"] == changed
+    counts = {plan["lengths"][2] for plan in answer["front"]}
+    assert min(counts) == 0 < max(counts)
+
+
 def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> None:
     """vroom#800: the day goes on, and the rest keeps what was asked for."""
     stops = {"west": {"at": WEST}, "east": {"at": EAST}, "far": {"at": FAR}}
