@@ -19,6 +19,7 @@ from tests.helpers.fleets import (
     mixed_fleet,
     random_fleet,
     shipping_fleet,
+    tidy_fleet,
     varied_fleet,
 )
 from tests.helpers.sampled import third
@@ -31,7 +32,7 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
 
 
 @pytest.mark.parametrize(
-    "fleet_of", [random_fleet, bounded_fleet, mixed_fleet, shipping_fleet, varied_fleet]
+    "fleet_of", [random_fleet, bounded_fleet, mixed_fleet, shipping_fleet, tidy_fleet, varied_fleet]
 )
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
     fleet_of: Callable[[int], Fleet],

@@ -30,9 +30,6 @@ MIXED: Sequence[tuple[Objectives, tuple[int, ...]]] = (
     (("sum", "earliness"), (0, 0)),
     (("sum", "weighted_arrival"), (0, 0)),
     (("sum", "lateness", "earliness"), (0, 0, 0)),
-    (("sum", "overlap"), (0, 0)),
-    (("sum", "changes"), (0, 0)),
-    (("sum", "lateness", "changes"), (0, 0, 0)),
     (("sum", "max", "lateness", "vehicles"), (0, 1, 0, 0)),
     (("sum", "sum", "unassigned", "imbalance"), (0, 1, 0, 0)),
 )
@@ -194,6 +191,37 @@ def varied_fleet(seed: int) -> Fleet:
     return Fleet(rules=varied_rules, costs=fleet.costs)
 
 
+def tidy_fleet(seed: int) -> Fleet:
+    """Return a fleet with overlap and changes of a promised plan among its objectives."""
+    over: Objectives = (("sum", "overlap"), ("sum", "changes"), ("sum", "changes", "overlap"))[
+        seed % 3
+    ]
+    fleet, random = _bounded(seed, ("sum", "sum"), (0, 0)), np.random.default_rng([seed, 2])
+    rules = fleet.rules
+    tolerance = float(random.integers(0, 10)) if random.random() < 0.6 else None
+
+    def promised(visit: Visit) -> Visit:
+        by = float(random.integers(1, 60)) if random.random() < 0.8 else inf
+        return dataclasses.replace(visit, promised_to=int(random.integers(-1, 2)), promised_by=by)
+
+    visits = [
+        promised(visit) if stop in rules.clients and stop != rules.clients[1] else visit
+        for stop, visit in enumerate(rules.visits)
+    ]
+    breaks = {} if tolerance is None else {"breaks": ()}
+    vehicles = tuple(dataclasses.replace(each, **breaks) for each in rules.vehicles)
+    layers = (0,) * len(over)
+    changed = dataclasses.replace(
+        rules,
+        visits=tuple(visits),
+        vehicles=vehicles,
+        over=over,
+        layers=layers,
+        tolerance=tolerance,
+    )
+    return fleet.under(changed)
+
+
 def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 2) -> Fleet:
     random = np.random.default_rng(seed)
     n = int(random.integers(least, least + 2))
@@ -256,10 +284,14 @@ def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 
     )
     depots = {end for each in types for end in (0, each.end, *each.reload) if end is not None}
     visits = tuple(Visit() if stop in depots else visit() for stop in range(n + 2))
-    if {"earliness", "weighted_arrival", "changes"} & {*over}:
+    if {"earliness", "weighted_arrival"} & {*over}:
         types = tuple(dataclasses.replace(each, breaks=()) for each in types)
         visits = tuple(
-            each if stop in depots else _weighed(each, np.random.default_rng([seed, stop]))
+            dataclasses.replace(
+                each, wanted=min(each.due, float(whole(1, 60))), urgency=float(whole(0, 4))
+            )
+            if stop not in depots
+            else each
             for stop, each in enumerate(visits)
         )
     rules = Rules(
@@ -270,21 +302,8 @@ def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 
         clock=whole(0, 2),
         slack=float(whole(1, 15)) if likely(0.25) else 0.0,
         leave="early" if likely(0.2) else "late",
-        tolerance=float(whole(0, 10)) if "changes" in over and likely(0.6) else None,
     )
     return Fleet(rules=rules, costs=costs)
-
-
-def _weighed(visit: Visit, random: np.random.Generator) -> Visit:
-    """Return a visit that should not begin before a time, has an urgency, and is promised."""
-    wanted, promised, urgency, vehicle = random.integers((1, 1, 0, -1), (60, 60, 4, 2)).tolist()
-    return dataclasses.replace(
-        visit,
-        wanted=min(visit.due, float(wanted)),
-        urgency=float(urgency),
-        promised_to=vehicle,
-        promised_by=float(promised) if random.random() < 0.8 else inf,
-    )
 
 
 def every_plan(rules: Rules) -> Iterator[Plan]:
