@@ -51,7 +51,7 @@ SUBJECT = {
     *("second_coordinates", "robots", "over"),
     *("done", "position", "add", "remove", "costs", "now", "tour", "pose", "blocked", "freed"),
     *("plan", "routes"),
-    *("together", "apart", "before", "slack", "leave"),
+    *("together", "apart", "before", "slack", "leave", "promised", "changes"),
 }
 NO_STOPS, NO_EARTH = "cities in planes lie nowhere", "a robot's map is not on the earth"
 PLANS = "a plan has a tour for each vehicle: GET /front/{id} has them all"
