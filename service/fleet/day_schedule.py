@@ -97,7 +97,7 @@ def _times_from(chain: _Chain, departure: float, reach: float = 0.0) -> Schedule
     """
     time, waiting, late, lateness = departure, 0.0, 0.0, 0.0
     arrivals, used, begins, leaves = [], [], [], []
-    for place, (windows, service, due) in enumerate(chain.stays):
+    for place, (windows, service, due, _) in enumerate(chain.stays):
         number = 0
         while number + 1 < len(windows) and is_over(time, windows[number][1], reach):
             number += 1
@@ -134,7 +134,7 @@ def _candidates(chain: _Chain, first: Schedule) -> Array:
     """Return the departures after which something changes on the way, ascending."""
     times = np.array([chain.last, max(chain.shift_end, first.end)])  # when the last visit ends
     for place in range(len(chain.stays) - 1, -1, -1):
-        windows, service, due = chain.stays[place]
+        windows, service, due, _ = chain.stays[place]
         if place < len(chain.legs):
             leg = chain.legs[place]
             times = np.concatenate(
@@ -155,7 +155,7 @@ def _ends(chain: _Chain, departures: Array, reach: float) -> tuple[Array, NDArra
     late = np.zeros(len(time), np.bool_)
     lateness = np.zeros(len(time))
     slack = ROUNDING * reach
-    for place, (windows, service, due) in enumerate(chain.stays):
+    for place, (windows, service, due, _) in enumerate(chain.stays):
         (opens, closes), *others = windows
         begin = np.maximum(time, opens)
         for later_opens, later_closes in others:

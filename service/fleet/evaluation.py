@@ -15,7 +15,7 @@ import numpy as np
 from service.fleet.fleet import Array, Fleet
 from service.fleet.of_times import OF_TIMES, changes
 from service.fleet.overlap import overlap
-from service.fleet.plans import Plan, Route
+from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rounding import is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from service.fleet.plans import Route, path_of
 from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Rules
-from service.fleet.schedule import Schedule
+from service.fleet.times import Schedule
 
 
 def lateness(_: Rules, __: Route, times: Schedule) -> float:

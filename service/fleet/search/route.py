@@ -106,7 +106,7 @@ def measure(state: State, slot: int) -> bool:
         fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     if problem.clock >= 0:
-        fits &= _drive(problem.day, problem, plan, slot, fits)
+        fits &= _drive(problem.day, problem, plan, slot)
         _backward(problem, plan, slot, start)
     if problem.weighs and fits:
         weigh(state, slot)
@@ -118,9 +118,7 @@ def measure(state: State, slot: int) -> bool:
 
 
 @inlined
-def _drive(
-    day: FleetDay | None, problem: Problem, plan: WorkingPlan, slot: int, fits: bool
-) -> bool:
+def _drive(day: FleetDay | None, problem: Problem, plan: WorkingPlan, slot: int) -> bool:
     """Write the times up to each node of a route and how long it takes; return whether it is kept.
 
     One branch is left where this is compiled: that of the type of the day.
