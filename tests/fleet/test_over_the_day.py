@@ -6,9 +6,10 @@ from math import inf
 import numpy as np
 import pytest
 
-from service.fleet.evaluation import first_broken, overtime, points_of, violations
+from service.fleet.evaluation import first_broken, points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
+from service.fleet.of_times import overtime
 from service.fleet.plans import FleetFront, Route
 from service.fleet.schedule import legs, schedule
 from service.fleet.search.search import RuinSearch
