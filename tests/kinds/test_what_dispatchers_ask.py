@@ -213,25 +213,25 @@ def test_limits_on_driving_are_refused_where_costs_change_over_the_day() -> None
 
 
 STREETS = {  # stops a, b, ... from west to east on both sides of the depot
-    name: {"at": at} for name, at in zip("abcdef", (-12, -11, -10, 10, 11, 12), strict=True)
+    name: {"at": at} for name, at in zip("abde", (-12, -11, 11, 12), strict=True)
 }
 COMPACT = {
     # Stops of a vehicle form a cluster, even if that is a little longer.
-    "vroom#1288": fleet(STREETS, 2, van={"max_stops": 3}, against={"measure": "overlap"}),
+    "vroom#1288": fleet(STREETS, 2, van={"max_stops": 2}, against={"measure": "overlap"}),
     # Points close to each other belong on one path.
-    "vroom#1066": fleet(STREETS, 3, van={"max_stops": 3}, against={"measure": "overlap"}),
+    "vroom#1066": fleet(STREETS, 3, van={"max_stops": 2}, against={"measure": "overlap"}),
     # Each vehicle has an area of its own; next-door orders share a vehicle, within its hours.
     "vrp#171": fleet(
         {name: {**stop, "window": [0, 90]} for name, stop in STREETS.items()},
         2,
-        van={"shift": [0, 100], "max_stops": 3},
+        van={"shift": [0, 100], "max_stops": 2},
         against={"measure": "overlap"},
     ),
     # Vehicles spread over the area, in place of several at the same locations.
     "PyVRP#822": fleet(
         {name: {**stop, "demand": [1]} for name, stop in STREETS.items()},
         2,
-        van={"capacity": [3]},
+        van={"capacity": [2]},
         against={"measure": "overlap"},
     ),
 }
@@ -240,8 +240,8 @@ COMPACT = {
 @pytest.mark.parametrize("thread", COMPACT)
 def test_the_least_overlap_is_among_the_plans(thread: str) -> None:
     last = front_of(COMPACT[thread])[-1]
-    assert routes(last) == [{"a", "b", "c"}, {"d", "e", "f"}]
-    assert 0 < last["measures"]["overlap"] == last["lengths"][1] < 0.35
+    assert routes(last) == [{"a", "b"}, {"d", "e"}]
+    assert 0 < last["measures"]["overlap"] == last["lengths"][1] < 0.5
 
 
 def test_a_promised_plan_is_kept_or_changed_for_a_shorter_one() -> None:
