@@ -107,10 +107,9 @@ class _Rest:
         gone = self._day.done | self._removed
         self._left = [stop for stop in fleet.rules.clients if stop not in gone]
         self._carried = self._carriers()
-        self._objectives, self._over = objectives_with(
-            request.changes, labels.objectives, fleet.rules
-        )
-        self._tolerance = tolerance_of(request.changes, self._over, fleet.rules)
+        known, changes = labels.objectives, request.changes
+        self._objectives, self._over = objectives_with(changes, known, fleet.rules)
+        self._tolerance = tolerance_of(changes, self._over, fleet.rules)
         self.names, self._types, self._old = self._vehicles()
         if not self._types:
             raise Refusal("no-plan", errors=[Fault("no-vehicle-left")])
@@ -178,8 +177,7 @@ class _Rest:
 
         First those on their way, then those that have not left.
         """
-        found: list[NamedType] = []
-        waiting: list[NamedType] = []
+        found, waiting = list[NamedType](), list[NamedType]()
         for number, way in zip(self._day.numbers, self._day.ways, strict=True):
             name = replace(self._fleet.vehicles[way.type], route=number)
             if not way.broken_down:
