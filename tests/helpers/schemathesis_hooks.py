@@ -16,8 +16,9 @@ _BY_NAME = ("weights", "at_most", "prefer")  # of objectives, which a schema doe
 
 @schemathesis.hook
 def filter_case(context: Any, case: Any) -> bool:  # noqa: ARG001
-    """Leave out forms: no schema describes the bytes of a file of matrices or of a map."""
-    return case.media_type != "multipart/form-data"
+    """Leave out forms, whose bytes no schema describes, and orders, which fit some fleets only."""
+    offered = case.path.endswith("/offers") and case.meta.generation.mode.is_positive
+    return not offered and case.media_type != "multipart/form-data"
 
 
 @schemathesis.hook
@@ -33,21 +34,27 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     here nowhere.
     """
     (case.headers or {}).pop("Webhook-Url", None)
-    if case.path == "/tour" and case.meta.generation.mode.is_positive:
-        _choose_in_one_way(case)
-    if case.path.endswith("/questions") and case.meta.generation.mode.is_positive:
-        (case.query or {}).pop("picks", None)  # which are of options that the front has
+    positive = case.meta.generation.mode.is_positive
+    if positive:
+        _fit_to_fronts(case)
     if (case.query or {}).get("geometry") == "roads":  # there is no routing engine
         case.query["geometry"] = "straight"
-    if "plan" in (case.query or {}) and case.meta.generation.mode.is_positive:
-        del case.query["plan"]  # fronts are of tours
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
-    if case.path.endswith("/replan") and case.meta.generation.mode.is_positive:
-        _change_nothing(case.body)
     if isinstance(case.body, dict) and _depend_on_objectives(case.body):
         case.body["preferences"] = len(case.body["preferences"])
-    _correct_body(case.body, positive=case.meta.generation.mode.is_positive)
+    _correct_body(case.body, positive=positive)
+
+
+def _fit_to_fronts(case: Any) -> None:
+    """Leave out what not every front has."""
+    if case.path == "/tour":
+        _choose_in_one_way(case)
+    if case.path.endswith("/questions"):
+        (case.query or {}).pop("picks", None)  # which are of options that the front has
+    if case.path.endswith("/replan"):
+        _change_nothing(case.body)
+    (case.query or {}).pop("plan", None)  # fronts are of tours
 
 
 def _correct_body(body: Any, *, positive: bool) -> None:
