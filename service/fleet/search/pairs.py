@@ -12,7 +12,6 @@ from service.fleet.search.insertion import blinks, new_slot
 from service.fleet.search.problem import (
     FIRST,
     LOADED,
-    RELEASED,
     SECOND,
     Problem,
 )
@@ -23,6 +22,7 @@ from service.fleet.search.route import (
     measure,
     stay,
     tail_at,
+    times_of,
 )
 from service.fleet.search.spots import Place, nowhere
 from service.fleet.search.values import Values, drives_too_far, grown_cost, values_of
@@ -221,14 +221,7 @@ def _timed(
         return np.inf, 0.0
     onward = leg(problem, profile, delivery, problem.place[after], problem.clock)
     span, kept = joined(span, onward, tail_at(plan, after))
-    departs = max(span.early, plan.value[slot, RELEASED])
-    end = departs + span.time
-    if not kept or _is_over(departs, span.late, end):
-        return np.inf, 0.0
-    if problem.early:
-        begin = max(problem.departs[problem.kind[slot]], plan.value[slot, RELEASED])
-        return end - begin, end
-    return span.time, end
+    return times_of(problem, plan, slot, span, -np.inf) if kept else (np.inf, 0.0)
 
 
 @compiled

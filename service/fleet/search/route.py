@@ -86,6 +86,32 @@ def tail_at(plan: WorkingPlan, node: int) -> Span:
 
 
 @inlined
+def times_of(
+    problem: Problem, plan: WorkingPlan, slot: int, span: Span, released: float
+) -> tuple[float, float]:
+    """Return the time that a whole route takes, and when it ends.
+
+    Args:
+        problem: The fleet.
+        plan: Where the route is changed.
+        slot: The route.
+        span: The changed route.
+        released: When the stop that is new in it is ready to be loaded.
+
+    Returns:
+        The time, infinite where the vehicle would have to leave too late, and the end.
+    """
+    released = max(released, plan.value[slot, RELEASED])
+    departs = max(span.early, released)
+    end = departs + span.time
+    if _is_over(departs, span.late, end):
+        return np.inf, 0.0
+    if problem.early:
+        return end - max(problem.departs[problem.kind[slot]], released), end
+    return span.time, end
+
+
+@inlined
 def _set_span(rows: Array, node: int, span: Span) -> None:
     rows[node, 0], rows[node, 1], rows[node, 2] = span.time, span.early, span.late
 

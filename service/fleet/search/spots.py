@@ -21,6 +21,7 @@ from service.fleet.search.route import (
     measure,
     stay,
     tail_at,
+    times_of,
 )
 from service.fleet.search.spots_of_day import cost_over_the_day
 from service.fleet.search.values import Values, drives_too_far, grown_cost
@@ -211,18 +212,8 @@ def _timed(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot) -> tuple[
         return np.inf, 0.0
     away = way(problem, profile, stop, onward, problem.place[after], problem.clock)
     span, kept = joined(span, away, tail_at(plan, after))
-    departs = max(span.early, plan.value[slot, RELEASED])
-    if not problem.reloads:
-        departs = max(departs, problem.release[stop])
-    end = departs + span.time
-    if not kept or _is_over(departs, span.late, end):
-        return np.inf, 0.0
-    if problem.early:
-        begin = max(problem.departs[problem.kind[slot]], plan.value[slot, RELEASED])
-        if not problem.reloads:
-            begin = max(begin, problem.release[stop])
-        return end - begin, end
-    return span.time, end
+    released = -np.inf if problem.reloads else problem.release[stop]
+    return times_of(problem, plan, slot, span, released) if kept else (np.inf, 0.0)
 
 
 @inlined

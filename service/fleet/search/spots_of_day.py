@@ -2,16 +2,13 @@
 
 import numpy as np
 
-from service.fleet.rounding import is_over
 from service.fleet.search.day import FleetDay, Moment, driven, slice_of
-from service.fleet.search.problem import FIRST, LATENESS, LOADED, RELEASED, SECOND, Problem
-from service.fleet.search.route import head_at, joined, stay, tail_at
+from service.fleet.search.problem import FIRST, LATENESS, LOADED, SECOND, Problem
+from service.fleet.search.route import head_at, joined, stay, tail_at, times_of
 from service.fleet.search.values import Values, grown_cost
 from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import State, WorkingPlan, service_at
 from service.jit import compiled, inlined
-
-_is_over = inlined(is_over)
 
 
 @compiled
@@ -83,15 +80,5 @@ def _timed(
     if not kept:
         return np.inf, 0.0
     span, kept = joined(span, away, tail_at(plan, after))
-    departs = max(span.early, plan.value[slot, RELEASED])
-    if not problem.reloads:
-        departs = max(departs, problem.release[stop])
-    end = departs + span.time
-    if not kept or _is_over(departs, span.late, end):
-        return np.inf, 0.0
-    if problem.early:
-        begin = max(problem.departs[problem.kind[slot]], plan.value[slot, RELEASED])
-        if not problem.reloads:
-            begin = max(begin, problem.release[stop])
-        return end - begin, end
-    return span.time, end
+    released = -np.inf if problem.reloads else problem.release[stop]
+    return times_of(problem, plan, slot, span, released) if kept else (np.inf, 0.0)
