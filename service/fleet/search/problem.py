@@ -157,7 +157,7 @@ def problem_of(fleet: Fleet) -> Problem:
         timely=bool(rules.of_begins),
         wanted=_floats([visit.wanted for visit in visits]),
         urgency=_floats([visit.urgency for visit in visits]),
-        begin=rules.begin,
+        begin=float(rules.begin),
         extras=extras_of(fleet),
         prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
         near=_nearest(fleet, clients),
