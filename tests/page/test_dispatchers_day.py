@@ -170,6 +170,7 @@ def test_what_was_said_once_is_remembered_for_the_next_file(
     desk.fill("#everyday-depot", "A3")
     expect(page.locator("#everyday-depot")).to_have_value("A3 (depot)")
     page.reload()
+    expect(page.locator("#everyday-depot")).to_have_value("A3 (depot)")
     desk.open(tmp_path, {"orders.csv": ORDERS})
     expect(page.locator("#everyday-said")).to_contain_text(
         "As last time: depot A3 (depot), 7 min at each stop. No shifts are given"
