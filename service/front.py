@@ -114,6 +114,8 @@ class Front:
         reached: Over a day, all lengths of each tour up to each of its places, and to its end,
             shape (k, n + 1, m).
         clock: Over a day, the index of the objective that is seconds.
+        means: Where costs spread, the mean lengths of each tour, shape (k, m).
+        p90: Where costs spread, the lengths that nine days of ten do not exceed, shape (k, m).
         leg_paths: Over a map with detours, the number of the path that each leg of each tour takes,
             shape (k, legs).
     """
@@ -134,6 +136,8 @@ class Front:
     departures: Array | None = None
     reached: Array | None = None
     clock: int = 0
+    means: Array | None = None
+    p90: Array | None = None
     leg_paths: NDArray[np.int8] | None = None
 
     @property

@@ -64,6 +64,14 @@ class TourItem(BaseModel):
         description="where costs change over the day: when the tour begins, in seconds of the day",
     )
     lengths: Lengths
+    means: Lengths | SkipJsonSchema[None] = Field(
+        default=None,
+        description="where costs spread: the mean lengths; those in `lengths` may be percentiles",
+    )
+    p90: Lengths | SkipJsonSchema[None] = Field(
+        default=None,
+        description="where costs spread: the lengths that nine days of ten do not exceed",
+    )
     tour: list[int]
     arrivals: list[Lengths] | SkipJsonSchema[None] = Field(
         default=None,

@@ -85,6 +85,8 @@ def _rows(
         "kept": front.kept,
         "departure": front.departures,
         "lengths": front.points,
+        "means": front.means,
+        "p90": front.p90,
         "tour": front.tours,
         "arrivals": arrivals,
         "times": front.times,

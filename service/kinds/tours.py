@@ -19,6 +19,7 @@ from service.kinds.kind import Tools
 from service.kinds.tour_document import encode_front
 from service.over_the_day.plan import plan_over_the_day
 from service.planner import plan
+from service.reliability.plan import plan_reliably
 from service.replanning.replan import replan
 from service.requests.limits import Limits, within_network
 from service.requests.parser import check_instance
@@ -115,13 +116,7 @@ def _plan(
 
     of_fronts = watch.converting(encoded)
 
-    def planned(instance: Instance, options: PlanOptions, watch: Watch[Front]) -> Front:
-        if task.earlier is not None:
-            return replan(actor, instance, task.earlier, options, watch)
-        if tools.search is not None:
-            return plan(actor, instance, options, watch, tools.search)
-        return plan(actor, instance, options, watch)
-
+    planned = partial(_planned, task, tools)
     try:
         if day is not None:
             under_means = partial(planned, instance)
@@ -130,9 +125,23 @@ def _plan(
             legs = surveyed.legs
             planning = PlanWithDetours(legs, options, task.earlier, of_fronts)
             return planning.run(planned)
+        if task.stops is not None and task.stops.spreads:
+            return plan_reliably(planned, instance, task.stops.spreads, options, of_fronts)
         return planned(instance, options, of_fronts)
     except NoTour as refusal:
         raise refusal.named(task.city_names) from None
+
+
+def _planned(
+    task: Task, tools: Tools, instance: Instance, options: PlanOptions, watch: Watch[Front]
+) -> Front:
+    """Plan or replan the front of an instance, whose costs are certain and the same all day."""
+    actor = tools.actors[task.actor]
+    if task.earlier is not None:
+        return replan(actor, instance, task.earlier, options, watch)
+    if tools.search is not None:
+        return plan(actor, instance, options, watch, tools.search)
+    return plan(actor, instance, options, watch)
 
 
 def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> NDArray[np.float64]:

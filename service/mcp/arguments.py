@@ -21,7 +21,7 @@ _MOST_TEXT = 2**20  # characters of a file
 _RARE = {
     "FrontRequest": "size reference_point seed preferences repairs arrivals bound actor clock"
     " initial_tours augment geometry",
-    "DayObjectiveItem": "over_the_day slices traffic",
+    "DayObjectiveItem": "over_the_day slices traffic days",
     "FleetRequest": "size reference_point seed geometry",
     "FleetStopItem": "windows due release skills vehicle",
     "VehicleItem": "shift shifts max_overtime longest fixed skills max_stops reload max_trips"

@@ -21,10 +21,12 @@ from service.requests.fields import (
     one_of,
     optional,
 )
+from service.requests.spread_fields import SpreadFields
 from service.requests.stop_fields import OF_A_SPEED, NamedStop, ObjectiveItem
 from service.requests.stops import (
     FixedSource,
     Hours,
+    Matrix,
     Measured,
     OverTheDay,
     Slices,
@@ -125,11 +127,8 @@ OF_SOURCES: Mapping[str, JsonValue] = {
 }
 
 
-class DayObjectiveItem(ObjectiveItem):
-    """An objective, whose costs may change over the day.
-
-    It has exactly one source of costs: matrix, coordinates, from or slices.
-    """
+class TimedObjectiveItem(ObjectiveItem):
+    """An objective, whose costs may change over the day."""
 
     model_config = one_of(*SOURCES, **OF_SOURCES)
 
@@ -211,6 +210,32 @@ class DayObjectiveItem(ObjectiveItem):
         return Slices(np.array(begins), np.stack(matrices))
 
 
+class DayObjectiveItem(SpreadFields, TimedObjectiveItem):
+    """An objective, whose costs may change over the day, or spread from day to day.
+
+    It has exactly one source of costs: matrix, coordinates, from, slices or days.
+    """
+
+    model_config = one_of(
+        *(*SOURCES, "days"),
+        **OF_SOURCES,
+        days={"properties": {"over_the_day": ABSENT, "spread": ABSENT}},
+    )
+
+    choices: ClassVar[str] = "matrix, coordinates, from, slices and days"
+
+    @property
+    def sources(self) -> list[str]:
+        """The names of the members that are sources of costs."""
+        return [*super().sources, *(["days"] if self.days else [])]
+
+    def fixed_source(self, part: str, stops: Sequence[Stop]) -> FixedSource:
+        """Return the source of costs that are the same all day: of several days, their means."""
+        if self.sources == ["days"]:
+            return Matrix(self.costs_of_days(part, len(stops)).mean(axis=0))
+        return super().fixed_source(part, stops)
+
+
 class DayFields(StrictModel):
     """The fields of a request for tours whose costs change over the day."""
 
@@ -227,7 +252,7 @@ class DayFields(StrictModel):
 def read_hours(
     request: DayFields,
     stops: Sequence[StopItem],
-    items: Sequence[DayObjectiveItem],
+    items: Sequence[TimedObjectiveItem],
     objectives: Sequence[Objective],
 ) -> Hours | None:
     """Return when tours begin and how long visits take; None without a departure.
@@ -250,7 +275,7 @@ def read_hours(
 
 
 def _check_no_day(
-    request: DayFields, stops: Sequence[StopItem], items: Sequence[DayObjectiveItem]
+    request: DayFields, stops: Sequence[StopItem], items: Sequence[TimedObjectiveItem]
 ) -> None:
     """Raise a refusal where a request has no departure, but needs one."""
     changing = any(item.changes for item in items)
@@ -259,7 +284,7 @@ def _check_no_day(
 
 
 def _clock(
-    request: DayFields, items: Sequence[DayObjectiveItem], objectives: Sequence[Objective]
+    request: DayFields, items: Sequence[TimedObjectiveItem], objectives: Sequence[Objective]
 ) -> int:
     names = [objective.name for objective in objectives]
     if request.clock is not None:

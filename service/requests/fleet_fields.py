@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.fleet.rules import Measure, Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
-from service.requests.day_fields import OF_SOURCES, SOURCES, DayObjectiveItem
+from service.requests.day_fields import OF_SOURCES, SOURCES, TimedObjectiveItem
 from service.requests.fields import (
     ABSENT,
     AsInteger,
@@ -315,7 +315,7 @@ class VehicleItem(StrictModel):
         ]
 
 
-class ClockItem(DayObjectiveItem):
+class ClockItem(TimedObjectiveItem):
     """The source of travel times that are not an objective, maybe over the day."""
 
     name: Text = Field(default="time", description="of the times, which are not an objective")
@@ -327,7 +327,7 @@ Clock = Annotated[
 ]
 
 
-class FleetObjectiveItem(DayObjectiveItem):
+class FleetObjectiveItem(TimedObjectiveItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
     It has exactly one of matrix, coordinates, from, slices and measure.

@@ -10,6 +10,7 @@ from pydantic import Field
 from service.errors import Fault, Refusal, invalid
 from service.instance import PLANE, Kind
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
+from service.reliability.spread import Spread
 from service.requests.arrays import array_field, check_costs, stack_matrices
 from service.requests.day_fields import DayFields, DayObjectiveItem, StopItem, read_hours
 from service.requests.fields import (
@@ -32,6 +33,7 @@ from service.requests.fields import (
 )
 from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
+from service.requests.spread_fields import read_spreads
 from service.requests.stop_fields import (
     StopReference,
     find_index,
@@ -118,7 +120,7 @@ class FrontRequest(DayFields, PlanRequest):
     @property
     def kind(self) -> Kind:
         """The kind of instance that an actor has to read."""
-        if self.departure is not None:
+        if self.departure is not None or self.spreads:
             return "matrices"
         if self.stops:
             return kind_of(self.sources)
@@ -175,12 +177,18 @@ class FrontRequest(DayFields, PlanRequest):
             raise invalid("bound", "bound-of-the-day")
         return hours
 
+    @cached_property
+    def spreads(self) -> tuple[Spread | None, ...]:
+        """How the costs of each objective spread; empty if none do."""
+        timed = self.departure is not None
+        return read_spreads(self.objectives, self.n, timed=timed, bound=self.bound)
+
     @property
     def subject(self) -> Stops:
         """The stops of a checked request, in which the ends of tours are indexes."""
         stops = () if self.labels is None else self.labels.stops
         locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
-        return Stops(locations, self.sources, self.ends, self.hours)
+        return Stops(locations, self.sources, self.ends, self.hours, self.spreads)
 
 
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)

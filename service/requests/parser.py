@@ -10,6 +10,7 @@ from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Instance, Kind, least_lengths
 from service.objectives import OBJECTIVES
+from service.reliability.spread import percentiles
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import CoverageRequest, parse_coverage_request
 from service.requests.fields import PlanFields
@@ -52,7 +53,8 @@ def front_task(
             every tour has a forbidden leg.
         InvalidInstance: The costs cannot be planned.
     """
-    name = choose_actor(actors, stops.kind, request.requested_actor, len(stops.sources))
+    searched = len(stops.sources) + percentiles(stops.spreads)
+    name = choose_actor(actors, stops.kind, request.requested_actor, searched)
     task = Task(
         subject=stops,
         options=within_network(

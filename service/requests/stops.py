@@ -15,6 +15,7 @@ from service.errors import CityNames
 from service.instance import CLOSED, Instance, Kind, RouteEnds
 from service.objectives import Objective
 from service.over_the_day.day import Day
+from service.reliability.spread import Spread
 from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]
@@ -191,12 +192,14 @@ class Stops:
         sources: The source of the costs of each objective.
         ends: Whether tours are closed, and the fixed ends of open routes.
         hours: When tours begin, if their costs depend on that.
+        spreads: How the costs of each objective spread; empty if none do.
     """
 
     locations: Array
     sources: Sequence[Source]
     ends: RouteEnds = CLOSED
     hours: Hours | None = None
+    spreads: tuple[Spread | None, ...] = ()
 
     @property
     def n(self) -> int:
@@ -216,7 +219,7 @@ class Stops:
     @property
     def kind(self) -> Kind:
         """The kind of instance that they become."""
-        return "matrices" if self.hours is not None else kind_of(self.sources)
+        return "matrices" if self.hours or self.spreads else kind_of(self.sources)
 
     @property
     def changes(self) -> bool:
@@ -242,7 +245,7 @@ class Stops:
             return self.day.instance
         ends = self.ends._asdict()
         planes = [source.points for source in self.sources if isinstance(source, Plane)]
-        if len(planes) == len(self.sources):
+        if len(planes) == len(self.sources) and not self.spreads:
             return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
         return Instance(matrices=cost_matrices(self), **ends)
 

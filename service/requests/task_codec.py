@@ -23,6 +23,7 @@ from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds
 from service.objectives import Objective
+from service.reliability.spread import Spread
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.notes.note import Note
 from service.requests.stops import (
@@ -47,7 +48,7 @@ _TYPES: Mapping[str, type[Any]] = {
     for each in (
         *(Task, PlanOptions, EarlierTours, Labels),
         *(Stops, Matrix, Plane, Measured, Changed),
-        *(OverTheDay, Slices, Traffic, Hours),
+        *(OverTheDay, Slices, Traffic, Hours, Spread),
         *(Coverage, SharedCoverage, UnmeasuredFleet, Rules, Groups, Objective),
     )
 }

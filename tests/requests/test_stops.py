@@ -199,12 +199,12 @@ def test_an_id_stands_where_an_index_may() -> None:
         (
             {"objectives": [WAY, {"name": "risk"}]},
             "/objectives/1",
-            "objectives/1 must have one of matrix, coordinates, from and slices, got none",
+            "objectives/1 must have one of matrix, coordinates, from, slices and days, got none",
         ),
         (
             {"objectives": [WAY, {**RISK, "coordinates": POINTS}]},
             "/objectives/1",
-            "must have one of matrix, coordinates, from and slices, got matrix and coordinates",
+            "must have one of matrix, coordinates, from, slices and days, got matrix and",
         ),
         (
             {"objectives": [WAY, {**RISK, "matrix": COSTS[:3]}]},

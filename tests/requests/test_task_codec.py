@@ -25,6 +25,10 @@ STOPS = [{"id": name, "location": [24.9 + i / 100, 60.1]} for i, name in enumera
 OBJECTIVES = [{"name": "t", "unit": "s", "from": "road_time"}, {"name": "r", "matrix": COSTS}]
 RUSH = [{**OBJECTIVES[0], "over_the_day": [[0, 1], [9, 2]]}]
 SLICED = [{"name": "s", "slices": [{"from": 0, "matrix": COSTS}, {"from": 5, "matrix": COSTS}]}]
+SPREAD = [
+    {**OBJECTIVES[0], "spread": COSTS, "percentile": 90},
+    {"name": "d", "days": [{"matrix": COSTS}, {"matrix": COSTS}], "percentile": 75},
+]
 SERVED = [STOPS[0], {**STOPS[1], "service": 3}, STOPS[2]]
 DAY = {"departure": {"earliest": 1, "latest": 4}, "clock": "t", "preferences": 3}
 ROUTE = {"closed": False, "start": None, "end": "b", "arrivals": True, "geometry": "roads"}
@@ -42,6 +46,7 @@ REQUESTS: list[tuple[TaskKind, dict[str, Any]]] = [
     ("front", {"matrices": [COSTS, COSTS], "preferences": [10, 80], "reference_point": [99, 99]}),
     ("front", {"stops": STOPS, "objectives": OBJECTIVES, **ROUTE}),
     ("front", {"stops": SERVED, "objectives": RUSH + SLICED, **DAY}),
+    ("front", {"stops": STOPS, "objectives": SPREAD}),
     ("coverage", {**GRID, **PLACES, "closed": False, "end": 1}),
     ("coverage", {**GRID, **LAID_OUT}),
     ("coverage", {**GRID, **PLACES, **ROBOTS, "over": ["max", "sum"]}),

@@ -43,7 +43,13 @@ class TrafficRequest(TypedDict, total=False):
     at: Required[ArrayLike]
 
 
-# An objective, whose costs may change over the day.
+class MatrixRequest(TypedDict, total=False):
+    """The costs of one day."""
+
+    matrix: Required[Costs]
+
+
+# An objective, whose costs may change over the day, or spread from day to day.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
@@ -56,6 +62,9 @@ ObjectiveRequest = TypedDict(
         "over_the_day": ArrayLike,
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
+        "spread": float | Costs | None,
+        "days": Sequence[MatrixRequest],
+        "percentile": int | None,
     },
     total=False,
 )

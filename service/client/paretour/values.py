@@ -72,6 +72,10 @@ class Uncovered:
     regions: tuple[UncoveredRegion, ...]
 
 
+def _of_lengths(tour: Mapping[str, Any]) -> Any:
+    return floats(len(tour["lengths"]))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Tour:
     """A tour of a front.
@@ -90,6 +94,8 @@ class Tour:
         kept: The share of the driven tour's remaining legs that it keeps, if it was replanned.
         departure: Over the day, when it begins, in seconds of the day.
         times: Over the day, when it reaches each city, and when it ends, shape (n + 1,).
+        means: Where costs spread, its mean lengths, shape (m,).
+        p90: Where costs spread, the lengths that nine days of ten do not exceed, shape (m,).
     """
 
     front: str
@@ -109,6 +115,8 @@ class Tour:
     times: Array | None = field(
         default=None, metadata={"read": lambda tour: floats(len(tour["tour"]) + 1)}
     )
+    means: Array | None = field(default=None, metadata={"read": _of_lengths})
+    p90: Array | None = field(default=None, metadata={"read": _of_lengths})
 
     def __repr__(self) -> str:
         return f"<Tour of {len(self.tour)} cities: lengths {numbers(self.lengths)}>"
@@ -136,6 +144,8 @@ class Front(StoredFront[Tour]):
         uncovered: Over a map, the free cells that no path leads to.
         departures: Over the day, when each tour begins, in seconds of the day, shape (k,).
         times: Over the day, when each reaches each city, and when it ends, shape (k, n + 1).
+        means: Where costs spread, the mean lengths of each tour, shape (k, m).
+        p90: Where costs spread, the lengths that nine days of ten do not exceed, shape (k, m).
     """
 
     tours: NDArray[np.int64]
@@ -152,6 +162,8 @@ class Front(StoredFront[Tour]):
     uncovered: Uncovered | None = None
     departures: Array | None = None
     times: Array | None = None
+    means: Array | None = None
+    p90: Array | None = None
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -184,6 +196,8 @@ class Front(StoredFront[Tour]):
             kept=None if self.kept is None else float(self.kept[number]),
             departure=None if self.departures is None else float(self.departures[number]),
             times=None if self.times is None else self.times[number],
+            means=None if self.means is None else self.means[number],
+            p90=None if self.p90 is None else self.p90[number],
         )
 
     def _counted(self) -> str:
@@ -234,6 +248,8 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         uncovered=answer.maybe("uncovered", value_of(Uncovered)),
         departures=column(items, "departure") if _have(items, "departure") else None,
         times=rows(items, "times", floats, cities + 1) if _have(items, "times") else None,
+        means=rows(items, "means", floats, m) if _have(items, "means") else None,
+        p90=rows(items, "p90", floats, m) if _have(items, "p90") else None,
     )
 
 

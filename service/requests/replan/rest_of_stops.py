@@ -25,6 +25,7 @@ from service.requests.replan.way import (
     ReplanSource,
     RestOfWay,
     earlier_front,
+    not_replannable,
     rest_of_way,
 )
 from service.requests.stop_fields import read_objectives, read_sources
@@ -56,9 +57,12 @@ def rest_of_stops(
             cannot be replanned so.
         InvalidInstance: The costs cannot be planned.
     """
+    if earlier.spreads:
+        raise not_replannable(source.front.id, "its costs spread from day to day")
     request = parse_json(ReplanRequest, source.body)
     front = earlier_front(source.front, task, earlier)
     check_fields(request, on_map=False)
+    _check_certain(request)
     items: dict[str, NewStop | list[int]] = {
         f"add/{index}": item for index, item in enumerate(request.add)
     }
@@ -157,3 +161,11 @@ def _all_costs(
     names = [objective.name for objective in objectives]
     sources, changed = changed_sources(sources, names, request.costs, stops)
     return objectives, sources, changed
+
+
+def _check_certain(request: ReplanRequest) -> None:
+    """Raise a refusal of objectives whose costs spread."""
+    for index, item in enumerate(request.objectives):
+        for name in ("spread", "days", "percentile"):
+            if name in item.model_fields_set:
+                raise invalid(f"objectives/{index}/{name}", "spread-of-rest")

@@ -1,0 +1,1 @@
+"""Plan tours whose costs spread: by their mean, or by what nine days of ten do not exceed."""

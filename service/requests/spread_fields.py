@@ -1,0 +1,123 @@
+"""The fields of requests about costs that spread: how far, and what tours are measured by."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Discriminator, Field, Tag
+
+from service.errors import invalid
+from service.objectives import MOST_OBJECTIVES
+from service.reliability.spread import Spread
+from service.requests.arrays import check_costs, cost_matrix
+from service.requests.fields import AsInteger, CostRows, StrictModel, optional
+
+Array = NDArray[np.float64]
+_LEAST_DAYS, _MOST_DAYS = 2, 50
+_MOST_FACTOR = 10.0
+_Factor = Annotated[float, Field(ge=0, le=_MOST_FACTOR, allow_inf_nan=False)]
+_SpreadOf = Annotated[
+    Annotated[_Factor, Tag("[factor]")] | Annotated[CostRows, Tag("[matrix]")],
+    Discriminator(lambda value: "[matrix]" if isinstance(value, list) else "[factor]"),
+]
+
+
+class MatrixItem(StrictModel):
+    """The costs of one day."""
+
+    matrix: CostRows = Field(description="the costs from each stop (row) to each (column)")
+
+
+class SpreadFields(StrictModel):
+    """The fields of an objective whose costs spread from day to day."""
+
+    spread: _SpreadOf | None = optional(
+        "how far the costs of each leg deviate from their mean, independently of other legs: as a"
+        " share of the cost, or as a matrix of standard deviations in the objective's unit"
+    )
+    days: Annotated[list[MatrixItem], Field(max_length=_MOST_DAYS, fail_fast=True)] = Field(
+        default_factory=list,
+        description="in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of"
+        " each leg, and a tour is measured on each day",
+    )
+    percentile: Annotated[int, Field(ge=50, le=99), AsInteger] | None = optional(
+        "the length of a tour is what so many days of a hundred do not exceed, such as 90; by"
+        " default it is the mean"
+    )
+
+    @property
+    def changes(self) -> bool:
+        """Whether its costs change over the day."""
+        return False
+
+    def spread_of(self, part: str, n: int) -> Spread | None:
+        """Return how the costs between n stops spread; None if they do not.
+
+        Raises:
+            Refusal: A percentile has no spread, a matrix is not of these stops, or the spread comes
+                beside costs that change over the day.
+        """
+        if self.spread is None and not self.days:
+            if self.percentile is not None:
+                raise invalid(f"{part}/percentile", "no-spread")
+            return None
+        if self.changes:
+            raise invalid(f"{part}/{'days' if self.days else 'spread'}", "spread-over-the-day")
+        if self.days:
+            if self.spread is not None:
+                raise invalid(f"{part}/spread", "not-beside", member="days")
+            return Spread(days=self.costs_of_days(part, n), percent=self.percentile)
+        if isinstance(self.spread, list):
+            deviations = _matrix(self.spread, f"{part}/spread", n)
+            return Spread(deviations=deviations, percent=self.percentile)
+        return Spread(factor=self.spread, percent=self.percentile)
+
+    def costs_of_days(self, part: str, n: int) -> Array:
+        """Return the costs of each day, shape (d, n, n).
+
+        Raises:
+            Refusal: There are too few days, or a matrix is not of these stops.
+        """
+        if len(self.days) < _LEAST_DAYS:
+            came = len(self.days)
+            raise invalid(f"{part}/days", "too-few-days", least=_LEAST_DAYS, came=came)
+        days = enumerate(self.days)
+        return np.stack([_matrix(each.matrix, f"{part}/days/{d}/matrix", n) for d, each in days])
+
+
+def read_spreads(
+    items: Sequence[SpreadFields], n: int, *, timed: bool, bound: bool
+) -> tuple[Spread | None, ...]:
+    """Return the spread of each objective; nothing if no costs spread.
+
+    Args:
+        items: The objectives.
+        n: The number of stops.
+        timed: Whether tours depart at times of the day.
+        bound: Whether a bound is asked for.
+
+    Raises:
+        Refusal: As `spread_of`, or the objectives and percentiles are too many, or there are times
+            of the day or a bound.
+    """
+    spreads = tuple(item.spread_of(f"objectives/{m}", n) for m, item in enumerate(items))
+    if not any(spreads):
+        return ()
+    if timed:
+        raise invalid("departure", "departure-of-spread")
+    if bound:
+        raise invalid("bound", "bound-of-spread")
+    percents = [m for m, each in enumerate(spreads) if each is not None and each.percent]
+    if len(items) + len(percents) > MOST_OBJECTIVES:
+        part = f"objectives/{percents[-1]}/percentile"
+        raise invalid(part, "too-many-percentiles", limit=MOST_OBJECTIVES)
+    return spreads
+
+
+def _matrix(rows: list[list[float | None]], part: str, n: int) -> Array:
+    if len(rows) != n:
+        raise invalid(part, "row-each", stops=n, came=len(rows))
+    matrix = cost_matrix(rows, part)
+    check_costs(matrix, part)
+    return matrix
