@@ -28,6 +28,11 @@ def amount(value: float, unit: str | None) -> str:
     return f"{value:.6g}" + (f" {unit}" if unit else "")
 
 
+def on_most_days(mean: float, most: float, unit: str | None) -> str:
+    """Return the mean of a length that spreads, and what nine days of ten do not exceed."""
+    return f"{amount(mean, unit)} on average; nine days of ten within {amount(most, unit)}"
+
+
 def duration(time: float, unit: str | None) -> str:
     """Return a duration in words, as "45 min" or "1 h 30 min"; the number in other units."""
     if unit not in SECONDS:

@@ -1,7 +1,7 @@
 """Make rows for CSV, tables and sentences from fronts, with names, units and ids."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from paretour.kinds import Kind
 from rich.markup import escape
 from rich.table import Table
 
+from service.amounts.said import on_most_days
 from service.cli.data import csv_text
 from service.cli.inputs import Ids, ids_in
 from service.cli.terminal_chart import LABELS
@@ -191,9 +192,11 @@ def named_points(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) ->
 def tour_as_json(tour: Tour) -> str:
     """Return a tour as the service answers it, without the front's id."""
     flat = len(tour.lengths) == OBJECTIVES
+    spreads = (("means", tour.means), ("p90", tour.p90))
     members = {
         **({"angle": tour.angle, "balance": tour.balance} if flat else {}),
         "lengths": tour.lengths.tolist(),
+        **{name: each.tolist() for name, each in spreads if each is not None},
         "tour": tour.tour.tolist(),
     }
     return json.dumps(members if tour.stops is None else {**members, "stops": tour.stops})
@@ -211,11 +214,23 @@ def lengths_as_text(front: FrontOfAnyKind, lengths: NDArray[np.float64]) -> str:
 
 
 def tour_summary(front: Front, tour: Tour) -> str:
-    """Return a line about a tour of a front: its lengths, of two after its balance and angle."""
-    lengths = lengths_as_text(front, tour.lengths)
+    """Return a line about a tour of a front: its lengths, of two after its balance and angle.
+
+    Of lengths that spread it says their means, and what nine days of ten do not exceed.
+    """
+    lengths = "".join((lengths_as_text(front, tour.lengths), *_spreading(front, tour)))
     if len(tour.lengths) > OBJECTIVES:
         return lengths
     return f"balance {tour.balance:.3f}, angle {tour.angle:.2f}, {lengths}"
+
+
+def _spreading(front: Front, tour: Tour) -> Iterator[str]:
+    """Yield the end of a sentence for each length that spreads."""
+    if tour.means is None or tour.p90 is None:
+        return
+    for each, mean, most in zip(front.objectives or (), tour.means, tour.p90, strict=True):
+        if most > mean:
+            yield printable(f"; {each.name} {on_most_days(mean, most, each.unit)}")
 
 
 def front_summary(front: FrontOfAnyKind, item: str = "tour") -> str:

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from paretour import FrontOfAnyKind, Refused
+from paretour import Front, FrontOfAnyKind, Refused
 from paretour.choice import knee
 from paretour.display import shown
 from paretour.kinds import kind_of
 from paretour.questions import Option, Question
 from paretour.remedies import in_words
 
-from service.amounts.said import amount
+from service.amounts.said import amount, on_most_days
 from service.mcp.routes import (
     Way,
     fairest,
@@ -298,9 +298,18 @@ def _noun(front: FrontOfAnyKind) -> str:
 
 def _known(front: FrontOfAnyKind, number: int) -> Named:
     """Return the lengths of a tour or plan, its times of day, and the measures of a plan."""
-    measures = measures_of(front, number)
     found = {"lengths": _lengths(front, number), **hours_of(front, number)}
-    return {**found, **({"measures": measures} if measures else {})}
+    more = {"on_most_days": _on_most_days(front, number), "measures": measures_of(front, number)}
+    return {**found, **{name: member for name, member in more.items() if member}}
+
+
+def _on_most_days(front: FrontOfAnyKind, number: int) -> dict[str, str]:
+    """Return a sentence for each length of a tour that spreads, by the name of its objective."""
+    if not isinstance(front, Front) or front.means is None or front.p90 is None:
+        return {}
+    pairs = zip(front.means[number], front.p90[number], strict=True)
+    said = zip(names_of(front), _units(front), pairs, strict=True)
+    return {name: on_most_days(*pair, unit) for name, unit, pair in said if pair[0] < pair[1]}
 
 
 def _lengths(front: FrontOfAnyKind, number: int) -> dict[str, float]:

@@ -25,6 +25,7 @@ from service.cli.output import (
     tour_as_json,
     tour_summary,
 )
+from service.mcp.summaries import tour_text
 from tests.helpers.answers import FRONT, NAMED
 from tests.helpers.version_before import ANSWERS
 
@@ -83,6 +84,17 @@ def test_a_summary_and_json_of_a_tour_have_names_and_ids() -> None:
     tour = NAMED_FRONT.nearest(60)
     assert tour_summary(NAMED_FRONT, tour) == "balance 0.000, angle 60.00, way 1 m, risk [red]$ 2"
     assert json.loads(tour_as_json(tour)) == NAMED["front"][0]  # type: ignore[index]
+
+
+def test_a_tour_says_its_mean_and_nine_days_of_ten() -> None:
+    spread = {"means": [1680.0, 2.0], "p90": [2040.0, 2.0]}
+    items = [{**item, **spread} for item in NAMED["front"]]  # type: ignore[attr-defined]
+    seconds = [{"name": "time", "unit": "s"}, NAMED["objectives"][1]]  # type: ignore[index]
+    front = parse_front(NAMED | {"front": items, "objectives": seconds})
+    tour, said = front.nearest(60), "28 min on average; nine days of ten within 34 min"
+    assert tour_summary(front, tour).endswith(f"risk [red]$ 2; time {said}")
+    assert json.loads(tour_as_json(tour)) == items[0]
+    assert json.loads(tour_text(front, 0, 0, None))["on_most_days"] == {"time": said}
 
 
 def test_a_chart_and_tables_have_names_as_they_are() -> None:
