@@ -38,6 +38,7 @@ _NAMES = (
     "networks",
     "open_routes",
     "page",
+    "public",
     "replan",
     "roads",
     "scale",

@@ -75,6 +75,15 @@ TRI = {
     "weighted sums by LKH": (47.12, 44.40, 50.76),
 }
 
+# Rows of both, by name.
+ON_PUBLIC_SETS = {
+    "best networks, with symmetries": (
+        "the same, 64 symmetries",
+        "the best networks, with symmetries",
+    ),
+    "weighted sums by LKH": ("weighted sums by LKH", "weighted sums by LKH"),
+}
+
 # Fleets, by customers: hypervolumes of 200 instances, Bi-CVRP.
 FLEET_METHODS = ("the best that is printed", "MOEA/D", "PPLS/D-C")
 FLEETS = {

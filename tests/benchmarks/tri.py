@@ -56,12 +56,11 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
     warm_up()
-    content = ACTOR.read_bytes()
-    session = _session(content)
+    session, of_network = opened()
     for n in options.cities:
         instances = [uniform(n, seed) for seed in range(options.count)]
         for row in options.rows:
-            digest = "" if row == SUMS else sha256(content).hexdigest()
+            digest = "" if row == SUMS else of_network
             measure = partial(measured, session, ROWS[row])
             resume("tri", f"{n} cities: {row}", digest, instances, measure)
 
@@ -114,11 +113,14 @@ def _whole_front(
     return found.tours.astype(np.int64)
 
 
-def _session(content: bytes) -> onnxruntime.InferenceSession:
+def opened() -> tuple[onnxruntime.InferenceSession, str]:
+    """A session of the network on one thread, and the digest of its file."""
+    content = ACTOR.read_bytes()
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.enable_mem_pattern = False  # as the service has it
-    return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+    session = onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+    return session, sha256(content).hexdigest()
 
 
 SUMS = "weighted sums by the search"
