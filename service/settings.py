@@ -29,7 +29,7 @@ from service.api.transport.root_path import is_root_path
 from service.extensions.names import Extensions
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
-from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
+from service.roads.router import DEFAULT_PROFILES, KNOWN_PROFILES, RouterName, RouterSettings
 from service.webhooks.signature import Secret
 from service.webhooks.targets import Target, Targets
 
@@ -60,6 +60,10 @@ def _cores() -> int:
 
 def _split(value: object) -> object:
     return [word.strip() for word in value.split(",") if word] if isinstance(value, str) else value
+
+
+def _pair(value: object) -> object:
+    return tuple(value.partition(":")[::2]) if isinstance(value, str) else value
 
 
 def _names_server(value: str, *schemes: str) -> bool:
@@ -157,6 +161,11 @@ RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
 Address = Annotated[str, AfterValidator(_checked_address)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
+Profiles = Annotated[
+    tuple[Annotated[tuple[Name, Name], BeforeValidator(_pair)], ...],
+    NoDecode,
+    BeforeValidator(_split),
+]
 
 
 class Settings(BaseSettings):
@@ -264,6 +273,8 @@ class Settings(BaseSettings):
     """interface of the routing engine: valhalla or osrm"""
     router_profile: Name | None = None
     """its profile, such as auto; by default auto for valhalla, driving for osrm"""
+    router_profiles: Profiles = ()
+    """profiles that vehicles may name, as car:auto,van:auto; by default those of a Valhalla"""
     router_snap: Annotated[float, _number(_LEAST, 10_000)] = 250.0
     """the most metres from a stop to a road"""
     router_seconds: Seconds = 20.0
@@ -316,6 +327,7 @@ class Settings(BaseSettings):
         named = {name.removeprefix("router_"): value for name, value in self if "router_" in name}
         del named["traffic"]
         named["profile"] = self.router_profile or DEFAULT_PROFILES[self.router]
+        named["profiles"] = dict(self.router_profiles) or KNOWN_PROFILES[self.router]
         # Less than the request's, so that the error names the slow engine as the cause.
         named["seconds"] = min(self.router_seconds, _ROUTER_SHARE * self.request_seconds)
         return RouterSettings(router=self.router, **named)
@@ -334,8 +346,14 @@ class Settings(BaseSettings):
         """The limits of a request: the settings whose names begin with `max_`."""
         named = {name.removeprefix("max_"): value for name, value in self if name[:4] == "max_"}
         seconds = named.pop("time_limit")
-        roads = self.router_url is not None
-        return Limits(**named, seconds=seconds, roads=roads, traffic=roads and self.router_traffic)
+        roads = self.roads
+        return Limits(
+            **named,
+            seconds=seconds,
+            roads=roads is not None,
+            traffic=roads is not None and self.router_traffic,
+            profiles=() if roads is None else tuple(roads.profiles),
+        )
 
 
 PREFIX = "PARETOUR_"

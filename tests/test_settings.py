@@ -41,6 +41,8 @@ def test_a_setting_is_read_from_its_variable(monkeypatch: pytest.MonkeyPatch) ->
         ("PARETOUR_ROUTER_URL", "http://valhalla:8002/?key=a"),
         ("PARETOUR_ROUTER", "graphhopper"),
         ("PARETOUR_ROUTER_PROFILE", "../../etc"),
+        ("PARETOUR_ROUTER_PROFILES", "car"),
+        ("PARETOUR_ROUTER_PROFILES", "car:../etc"),
         ("PARETOUR_ROUTER_SNAP", "nan"),
         ("PARETOUR_ROUTER_PAIRS", "1000000"),
     ],
@@ -89,6 +91,11 @@ def test_the_routing_engine_is_that_of_the_settings(
     assert roads.profile == profile
     monkeypatch.setenv("PARETOUR_ROUTER_PROFILE", "truck")
     assert Settings().roads.profile == "truck"  # type: ignore[union-attr]
+    known = ("car", "truck", "bicycle", "foot") if router == "valhalla" else ()
+    assert Settings().limits.profiles == known
+    monkeypatch.setenv("PARETOUR_ROUTER_PROFILES", "car:auto,van:auto_short")
+    assert Settings().limits.profiles == ("car", "van")
+    assert Settings().roads.profiles == {"car": "auto", "van": "auto_short"}  # type: ignore[union-attr]
 
 
 def test_the_command_names_the_setting_that_is_wrong(

@@ -271,7 +271,7 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[Broken]:
     """Yield each rule that a route breaks by itself."""
     rules = fleet.rules
     vehicle = rules.vehicles[route.vehicle]
-    if fleet.forbids and inf in fleet.legs_along(0, path_of(rules, route)):
+    if fleet.forbids and inf in fleet.legs_along(0, path_of(rules, route), route.vehicle):
         yield Broken("way", "takes a forbidden leg")
         return
     yield from _service_broken(rules, route)

@@ -132,7 +132,7 @@ class Cutter:
             raise Refusal("no-plan", reason=reason)
         self._stock = stock_of(fleet.rules)
         self._sequences = sequences[: _MOST_ROUTES // routes]
-        self._tables = [_table(fleet.rules, arrays, each, most) for each in self._sequences]
+        self._tables = [_table(fleet, arrays, each, most) for each in self._sequences]
         steps = len(self._sequences) * routes * self._stock.states
         self._begins = most if steps * most <= _CYCLIC_STEPS else 1
         self._cuts = max(_FEWEST, int(_ALL_STEPS / (steps * self._begins)))  # there is time for
@@ -258,21 +258,22 @@ class Cutter:
         return found
 
 
-def _table(rules: Rules, arrays: FleetArrays, sequence: Indices, most: int) -> Array:
+def _table(fleet: Fleet, arrays: FleetArrays, sequence: Indices, most: int) -> Array:
     """Return the lengths of all routes along a sequence, as `route_table` does.
 
     Each type of vehicles drives and serves at its own speed.
     """
-    paces = list(map(rules.pace, range(len(rules.vehicles))))
-    if len(set(paces)) == 1 and paces[0].speed == 1:
+    paces = list(map(fleet.rules.pace, range(len(fleet.rules.vehicles))))
+    if len(set(paces)) == 1 and paces[0].speed == 1 and not fleet.profiles:
         return route_table(arrays._replace(service=np.array(paces[0].services)), sequence, most)
     tables = []
-    for kind, (speed, services) in enumerate(paces):
+    for kind, pace in enumerate(paces):
         names = ("ends", "capacity", "shift", "leaves_by", "longest")
         own = {name: getattr(arrays, name)[kind : kind + 1] for name in names}
-        costs = arrays.costs.copy()
-        costs[arrays.clock] /= speed
-        driven = arrays._replace(costs=costs, service=np.array(services), **own)
+        costs = arrays.costs.copy() if fleet.lines else fleet.costs_by(pace.profile).copy()
+        if arrays.clock >= 0:
+            costs[arrays.clock] /= pace.speed
+        driven = arrays._replace(costs=costs, service=np.array(pace.services), **own)
         tables.append(route_table(driven, sequence, most))
     return np.concatenate(tables)
 

@@ -34,12 +34,22 @@ class Fleet:
         costs: The matrices, shape (2, n, n); without stops, shape (2, 0, 0), if there are lines.
         lines: The two lines instead of them; none if there are matrices.
         day: Both costs over the day, if some change. `costs` are then their means.
+        profiles: The matrices of each profile, if types of vehicles drive by different ones.
+            `costs` are then the least of them.
     """
 
     rules: Rules
     costs: Array
     lines: tuple[Line, ...] = ()
     day: tuple[CostsOfDay, CostsOfDay] | None = None
+    profiles: tuple[Array, ...] = ()
+
+    @classmethod
+    def of_profiles(cls, rules: Rules, profiles: Sequence[Array]) -> "Fleet":
+        """Return a fleet whose types of vehicles drive by profiles, whose costs these are."""
+        if len(profiles) == 1:
+            return cls(rules=rules, costs=profiles[0])
+        return cls(rules=rules, costs=profiles[0], profiles=tuple(profiles))
 
     @classmethod
     def of_lines(cls, rules: Rules, lines: Sequence[Line]) -> "Fleet":
@@ -59,12 +69,11 @@ class Fleet:
         n = 0 if self.lines else self.rules.n
         if self.costs.shape != (LAYERS, n, n):
             raise ValueError(f"costs must have shape {(LAYERS, n, n)}, got {self.costs.shape}")
-        costs = np.where(np.eye(n, dtype=np.bool_), 0.0, self.costs)
-        if not (costs >= 0).all():
-            raise ValueError("costs must be numbers and not negative")
-        costs[:, np.isinf(costs).any(axis=0)] = inf
+        profiles = tuple(map(_checked, self.profiles or (self.costs,)))
+        costs = np.minimum.reduce(profiles) if self.profiles else profiles[0]
         costs.flags.writeable = False
         object.__setattr__(self, "costs", costs)
+        object.__setattr__(self, "profiles", profiles if self.profiles else ())
         if self.day is not None:
             first, second = (_allowed(each, np.isinf(costs[0])) for each in self.day)
             object.__setattr__(self, "day", (first, second))
@@ -77,6 +86,9 @@ class Fleet:
         """Return a fleet of some of the stops, which may repeat."""
         if self.lines:
             return Fleet.of_lines(rules, [line.chosen(stops) for line in self.lines])
+        if self.profiles:
+            rows = stops[:, np.newaxis]
+            return Fleet.of_profiles(rules, [each[:, rows, stops] for each in self.profiles])
         day = self.day and (self.day[0].among(stops), self.day[1].among(stops))
         return Fleet(rules=rules, costs=self.among(stops), day=day)
 
@@ -85,27 +97,43 @@ class Fleet:
         if self.lines:
             pairs = zip(self.lines, shifts.tolist(), strict=True)
             return Fleet.of_lines(rules, [line.scaled(shift) for line, shift in pairs])
-        costs = np.ldexp(self.costs, shifts[:, np.newaxis, np.newaxis])
+        powers = shifts[:, np.newaxis, np.newaxis]
+        if self.profiles:
+            return Fleet.of_profiles(rules, [np.ldexp(each, powers) for each in self.profiles])
+        costs = np.ldexp(self.costs, powers)
         if self.day is None:
             return Fleet(rules=rules, costs=costs)
         times = int(shifts[rules.clock or 0])
         first, second = map(CostsOfDay.scaled, self.day, shifts.tolist(), (times, times))
         return Fleet(rules=rules, costs=costs, day=(first, second))
 
-    def leg(self, layer: int, a: int, b: int) -> float:
-        """Return a cost of a leg; over the day the least one."""
-        return float(self.lines[layer].legs(a, b) if self.lines else self._least[layer, a, b])
+    def costs_by(self, profile: int) -> Array:
+        """Return both costs of the legs by a profile; of lines and over the day, `costs`."""
+        return self.profiles[profile] if self.profiles else self.costs
+
+    @cached_property
+    def _each_profile(self) -> tuple["Fleet", ...]:
+        """A fleet of each profile alone, if there are some."""
+        return tuple(Fleet(rules=self.rules, costs=costs) for costs in self.profiles)
+
+    def leg(self, layer: int, a: int, b: int, vehicle: int) -> float:
+        """Return a cost of a leg to a type of vehicles; over the day the least one."""
+        if self.lines:
+            return float(self.lines[layer].legs(a, b))
+        profile = self.rules.vehicles[vehicle].profile
+        return float((self._least if self.day else self.costs_by(profile))[layer, a, b])
 
     @cached_property
     def _least(self) -> Array:
         """The least costs of the day, shape (2, n, n)."""
         return self.costs if self.day is None else np.stack([each.least() for each in self.day])
 
-    def legs_along(self, layer: int, path: Sequence[int]) -> list[float]:
-        """Return a cost of each leg of a path."""
+    def legs_along(self, layer: int, path: Sequence[int], vehicle: int) -> list[float]:
+        """Return a cost of each leg of a path to a type of vehicles, at the usual speed."""
         stops = np.array(path, np.int64)
         a, b = stops[:-1], stops[1:]
-        along: Array = self.lines[layer].legs(a, b) if self.lines else self.costs[layer, a, b]
+        costs = self.costs_by(self.rules.vehicles[vehicle].profile)
+        along: Array = self.lines[layer].legs(a, b) if self.lines else costs[layer, a, b]
         return along.tolist()
 
     def legs_from(self, layer: int, stop: int) -> Array:
@@ -166,8 +194,8 @@ class Fleet:
 
     @cached_property
     def forbids(self) -> bool:
-        """Whether some leg is forbidden."""
-        return bool(np.isinf(self.costs[0]).any())
+        """Whether some leg is forbidden to some vehicles."""
+        return any(bool(np.isinf(each[0]).any()) for each in self.profiles or (self.costs,))
 
     def away(self, stop: int) -> Array:
         """Return how far all stops are away, in largest legs of both costs, shape (n,)."""
@@ -194,6 +222,8 @@ class Fleet:
     @cached_property
     def greatest_legs(self) -> Array:
         """The greatest finite cost of a leg, of each of both costs, shape (2,)."""
+        if self.profiles:
+            return np.max([each.greatest_legs for each in self._each_profile], axis=0)
         return np.array([self._greatest_leg(layer) for layer in range(LAYERS)])
 
     def _greatest_leg(self, layer: int) -> float:
@@ -207,6 +237,8 @@ class Fleet:
 
         Outliers count only if a stop cannot be reached or left without them.
         """
+        if self.profiles:
+            return np.max([each.largest_legs for each in self._each_profile], axis=0)
         return np.array([self._largest_leg(layer) for layer in range(LAYERS)])
 
     def _largest_leg(self, layer: int) -> float:
@@ -283,10 +315,20 @@ class Fleet:
             case "lateness" | "earliness" | "imbalance":
                 return float(legs[rules.limited or 0])
             case "weighted_arrival":
-                return float(legs[rules.limited or 0]) * _urgency(rules)
+                return float(legs[rules.limited or 0]) * urgency_of(rules)
             case "load_distance":
                 return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
         return float(legs[layer])
+
+
+def _checked(costs: Array) -> Array:
+    """Return costs with a diagonal of 0, and with legs that are forbidden in both."""
+    checked = np.where(np.eye(costs.shape[-1], dtype=np.bool_), 0.0, costs)
+    if not (checked >= 0).all():
+        raise ValueError("costs must be numbers and not negative")
+    checked[:, np.isinf(checked).any(axis=0)] = inf
+    checked.flags.writeable = False
+    return checked
 
 
 def _allowed(costs: CostsOfDay, forbidden: NDArray[np.bool_]) -> CostsOfDay:
@@ -343,46 +385,6 @@ def prices_of(rules: Rules) -> Array:
     return prices
 
 
-def default_reference_point(fleet: Fleet) -> Array:
-    """Return lengths above those of sensible plans under m objectives, shape (m,).
-
-    They are the number of stops times the scale, plus what else can add to a length. In the first
-    objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
-    imbalance by the clock they are all services, and the time from the first shift or window to the
-    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of
-    weighted arrivals each may be as late. The first one is at the highest prices, and visits take
-    as long as by the slowest vehicles.
-    """
-    rules = fleet.rules
-    point = rules.n * fleet.scale
-    prizes = sum(visit.prize or 0.0 for visit in rules.visits)
-    point[0] += 0.0 if "unassigned" in rules.over else prizes
-    point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
-    vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
-    slowest = max(vehicle.service_factor for vehicle in rules.vehicles)
-    services = slowest * sum(visit.longest_service for visit in rules.visits)
-    for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
-        timed = {"lateness": True, "earliness": True, "imbalance": rules.clock is not None}
-        costs = over in ("sum", "max") and layer == rules.clock
-        price = float(costs or timed.get(over, False))
-        if objective == 0:
-            price *= max(vehicle.per_distance for vehicle in rules.vehicles)
-            price += max(vehicle.per_time for vehicle in rules.vehicles)
-        if price:
-            point[objective] += price * services
-            once = over in ("max", "imbalance")
-            point[objective] += price * _waiting(rules) * (1 if once else vehicles)
-        elif over == "weighted_arrival":
-            point[objective] += (services + _waiting(rules)) * _urgency(rules)
-    return point
-
-
-def _urgency(rules: Rules) -> float:
+def urgency_of(rules: Rules) -> float:
     """Return the sum of the urgencies of the stops to visit."""
     return sum(rules.visits[stop].urgency for stop in rules.clients)
-
-
-def _waiting(rules: Rules) -> float:
-    """Return the longest time that a vehicle may wait between two bounds of times."""
-    bounds = [time for span in rules.spans for time in span if time < inf]
-    return max(bounds, default=0.0) - min(bounds, default=0.0)

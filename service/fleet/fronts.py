@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from service.fleet.evaluation import points_of
-from service.fleet.fleet import Array, Fleet, default_reference_point
+from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import FleetFront, Plan
+from service.fleet.reference_point import default_reference_point
 from service.front import Termination
 from service.search.best_subset import best_subset
 from service.search.front_points import FrontPoints

@@ -222,8 +222,9 @@ def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
 
 def _has_no_detours(fleet: Fleet, layer: int, ended: Callable[[], bool]) -> bool:
     """Return whether no detour over a stop is shorter; False if it ended before all were tried."""
-    costs, slack = fleet.costs[layer], 1e-9 * fleet.largest_legs[layer]
+    slack = 1e-9 * fleet.largest_legs[layer]
     return all(
-        not ended() and (costs[:, [k]] + costs[[k]] >= costs - slack).all()
+        not ended() and (costs[layer, :, [k]].T + costs[layer, [k]] >= costs[layer] - slack).all()
+        for costs in fleet.profiles or (fleet.costs,)
         for k in range(fleet.rules.n)
     )

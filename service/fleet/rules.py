@@ -57,10 +57,12 @@ class Pace(NamedTuple):
     Attributes:
         speed: What the times of legs are divided by.
         services: How long each visit takes.
+        profile: The number of the costs of legs.
     """
 
     speed: float
     services: tuple[float, ...]
+    profile: int
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -265,7 +267,8 @@ class Rules:
     def pace(self, vehicle: int) -> Pace:
         """Return how a type of vehicles drives and serves."""
         services = tuple(self.service(vehicle, stop) for stop in range(self.n))
-        return Pace(self.vehicles[vehicle].speed_factor, services)
+        each = self.vehicles[vehicle]
+        return Pace(each.speed_factor, services, each.profile)
 
     def most_legs(self, vehicle: int) -> tuple[float, float]:
         """Return the most of both costs of a route's legs, by a type of vehicles."""

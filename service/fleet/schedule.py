@@ -224,7 +224,7 @@ def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
     path = path_of(fleet.rules, route)
     if fleet.day is None:
         speed = fleet.rules.speed(route.vehicle, objective)
-        return [leg / speed for leg in fleet.legs_along(objective, path)]
+        return [leg / speed for leg in fleet.legs_along(objective, path, route.vehicle)]
     times = schedule(fleet, route)
     if objective == fleet.rules.clock:
         driven = zip(times.leaves, times.arrivals[1:], strict=False)

@@ -95,6 +95,7 @@ class VehicleType:
         per_time: The price of each unit of the time of their routes.
         max_distance: The most of the costs of a route's legs that are not time.
         max_driving: The most time that a route's legs take, without visits and waiting.
+        profile: The number of the costs of their legs, where some drive by others.
     """
 
     start: int | None = None
@@ -121,6 +122,7 @@ class VehicleType:
     per_time: float = 0.0
     max_distance: float = inf
     max_driving: float = inf
+    profile: int = 0
 
     @property
     def is_bounded_below(self) -> bool:

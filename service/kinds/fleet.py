@@ -29,10 +29,11 @@ _UNLIMITED_EXPLAINING = 0.5  # seconds without a time limit
 
 
 class Names(NamedTuple):
-    """The names of types of vehicles, and the ids of stops."""
+    """The names of types of vehicles, the ids of stops, and the names of profiles."""
 
     vehicles: Sequence[VehicleName]
     stops: Sequence[str]
+    profiles: Sequence[str | None]
 
 
 def run_fleet(
@@ -42,7 +43,8 @@ def run_fleet(
     actor = tools.actors.get(task.actor)
     assert task.labels is not None
     known = subject.members(task.labels)
-    names = Names(subject.vehicles, [stop.id for stop in task.labels.stops])
+    stops = [stop.id for stop in task.labels.stops]
+    names = Names(subject.vehicles, stops, subject.profiles)
     driven = Plan(subject.driven) if subject.driven else None
 
     def encoded(front: FleetFront) -> FrontDocument:
@@ -219,8 +221,9 @@ def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
         "lengths": list(route_lengths(fleet, route)),
         "load": most_carried(fleet.rules, route),
     }
-    numbers = {"shift": name.shift, "route": name.route}
-    members |= {member: number for member, number in numbers.items() if number is not None}
+    profile = names.profiles[fleet.rules.vehicles[route.vehicle].profile]
+    some = {"shift": name.shift, "route": name.route, "profile": profile}
+    members |= {member: value for member, value in some.items() if value is not None}
     if fleet.rules.clock is not None:
         times = schedule(fleet, route)
         members["arrivals"] = list(times.arrivals)

@@ -333,7 +333,8 @@ class _Search:
         def driven(fleet: Fleet, route: Route) -> float:
             if fleet.day is None:
                 return sum(legs(fleet, route, layer))
-            return sum(fleet.leg(layer, *leg) for leg in pairwise(path_of(fleet.rules, route)))
+            path = pairwise(path_of(fleet.rules, route))
+            return sum(fleet.leg(layer, *leg, route.vehicle) for leg in path)
 
         return self._at_any_time(places, known, driven)
 

@@ -165,7 +165,7 @@ class _Screen:
 
     def _leg(self, a: int, b: int) -> float:
         assert self._rules.clock is not None
-        leg = self._fleet.leg(self._rules.clock, a, b)
+        leg = self._fleet.leg(self._rules.clock, a, b, self._kind)
         leg /= self._vehicle.speed_factor
         return leg if isfinite(leg) else 0.0
 

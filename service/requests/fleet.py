@@ -36,6 +36,12 @@ from service.requests.fleet_fields import (
     VehicleItem,
 )
 from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
+from service.requests.profile_fields import (
+    Profile,
+    ProfileCostsItem,
+    check_profiles,
+    check_road_profiles,
+)
 from service.requests.promises import PromisedItem, promised_plan
 from service.requests.stop_fields import (
     check_unique,
@@ -134,6 +140,8 @@ class FleetRequest(SearchFields):
         visits = tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops))
         costs, layers = self._layers()
         self._check_day()
+        profiles = [item.profile for item in self.vehicles]
+        check_profiles(profiles, self._costs)
         rules = Rules(
             visits=plan.visits(visits, self.slack) if plan else visits,
             vehicles=vehicles,
@@ -148,9 +156,24 @@ class FleetRequest(SearchFields):
             leave=self.leave,
             groups=self._groups(ids),
         )
-        stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops))
+        kinds = tuple(dict.fromkeys(profiles))
+        stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops, kinds))
         driven = plan.routes if plan else ()
-        return UnmeasuredFleet(rules, names, stops, driven, clock=self._named_clock)
+        clock = self._named_clock
+        return UnmeasuredFleet(rules, names, stops, driven, clock=clock, profiles=kinds)
+
+    @property
+    def _costs(self) -> dict[str, ProfileCostsItem]:
+        """The items that are sources of costs, by their part of the request."""
+        objectives = enumerate(self.objectives)
+        found: dict[str, ProfileCostsItem] = {
+            f"objectives/{m}": item for m, item in objectives if item.of_plan is None
+        }
+        return {**found, "clock": self.clock} if isinstance(self.clock, ClockItem) else found
+
+    def check_road_profiles(self, known: Sequence[str]) -> None:
+        """Raise a refusal of a profile that the operator's routing engine does not know."""
+        check_road_profiles([i.profile for i in self.vehicles], self._costs.values(), known)
 
     @property
     def _tolerance(self) -> float | None:
@@ -211,10 +234,13 @@ class FleetRequest(SearchFields):
         self, ids: Mapping[str, int]
     ) -> tuple[tuple[VehicleType, ...], tuple[VehicleName, ...]]:
         """Return the types of vehicles and their names: the first shifts first, in their order."""
+        kinds = list(dict.fromkeys(item.profile for item in self.vehicles))
         shifts = [
             (number, VehicleName(item.id, number if len(item.shifts) > 1 else None), vehicle)
             for i, item in enumerate(self.vehicles)
-            for number, vehicle in enumerate(item.vehicle_types(f"vehicles/{i}", ids))
+            for number, vehicle in enumerate(
+                item.vehicle_types(f"vehicles/{i}", ids, kinds.index(item.profile))
+            )
         ]
         if len(shifts) > _MOST_VEHICLE_TYPES:
             most, came = _MOST_VEHICLE_TYPES, len(shifts)
@@ -252,18 +278,25 @@ class FleetRequest(SearchFields):
     def _same_costs(self, first: int, second: int) -> bool:
         """Return whether two objectives have the same costs between the stops."""
         a, b = (self.objectives[index] for index in (first, second))
-        names = ("matrix", "coordinates", "measure", "speed", "over_the_day", "slices", "traffic")
+        fixed = ("matrix", "matrices", "coordinates", "measure", "speed")
+        names = (*fixed, "over_the_day", "slices", "traffic")
         return all(getattr(a, name) == getattr(b, name) for name in names)
 
-    def _sources(self, costs: Sequence[int], stops: Sequence[Stop]) -> list[Source]:
-        """Return the sources of two costs: of objectives, or of one and the clock.
+    def _sources(
+        self, costs: Sequence[int], stops: Sequence[Stop], profiles: Sequence[Profile]
+    ) -> list[Source]:
+        """Return the sources of two costs by each profile: of objectives, or of one and the clock.
 
         If there is only one, the second are the same.
         """
-        sources = [self.objectives[each].source(f"objectives/{each}", stops) for each in costs]
+        items: dict[str, ProfileCostsItem] = {
+            f"objectives/{each}": self.objectives[each] for each in costs
+        }
         if isinstance(self.clock, ClockItem):
-            sources.append(self.clock.source("clock", stops))
-        return [*sources, *sources[:1]][:LAYERS]
+            items["clock"] = self.clock
+        sources = [item.sources_by(part, stops, profiles) for part, item in items.items()]
+        pairs = zip(*[*sources, *sources[:1]][:LAYERS], strict=True)
+        return [source for pair in pairs for source in pair]
 
     def _clock(self, costs: Sequence[int], layers: Sequence[int]) -> int | None:
         """Return the number of the costs that are time."""

@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.fleet.rules import Measure, Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
-from service.requests.day_fields import OF_SOURCES, SOURCES, TimedObjectiveItem
+from service.requests.day_fields import SOURCES
 from service.requests.fields import (
     ABSENT,
     AsInteger,
@@ -23,6 +23,7 @@ from service.requests.fields import (
     optional,
     without_default,
 )
+from service.requests.profile_fields import OF_PROFILES, ProfileCostsItem
 from service.requests.stop_fields import NamedStop, StopReference, find_index
 from service.requests.validation import nearest
 
@@ -266,14 +267,22 @@ class VehicleItem(StrictModel):
         default=1.0, description="by what the service of each stop that one visits is multiplied"
     )
 
+    profile: Text | None = optional(
+        "what kind of vehicle it is: it drives by the matrix of this name in the `matrices` of an"
+        " objective, and by road as the operator's routing engine knows such vehicles, as car,"
+        " truck or bicycle; null where all drive alike, by road as the operator has set"
+    )
+
     @property
     def limits_on_driving(self) -> list[str]:
         """The names of the limits on driving that it has."""
         limits = {"max_distance": self.max_distance, "max_driving": self.max_driving}
         return [name for name, limit in limits.items() if limit is not None]
 
-    def vehicle_types(self, part: str, ids: Mapping[str, int]) -> list[VehicleType]:
+    def vehicle_types(self, part: str, ids: Mapping[str, int], profile: int) -> list[VehicleType]:
         """Return the type of vehicles, whose part of the request is `part`: once for each shift.
+
+        `profile` is the number of its profile.
 
         Raises:
             Refusal: A stop that it names does not exist, or shifts are not in order.
@@ -309,13 +318,14 @@ class VehicleItem(StrictModel):
                 max_trips=self.max_trips,
                 initial_load=tuple(self.initial_load),
                 max_overtime=self.max_overtime,
+                profile=profile,
                 breaks=tuple((each.window[0], each.window[1], each.length) for each in self.breaks),
             )
             for shift in _spans(self.shift, self.shifts, f"{part}/shift")
         ]
 
 
-class ClockItem(TimedObjectiveItem):
+class ClockItem(ProfileCostsItem):
     """The source of travel times that are not an objective, maybe over the day."""
 
     name: Text = Field(default="time", description="of the times, which are not an objective")
@@ -327,15 +337,15 @@ Clock = Annotated[
 ]
 
 
-class FleetObjectiveItem(TimedObjectiveItem):
+class FleetObjectiveItem(ProfileCostsItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
-    It has exactly one of matrix, coordinates, from, slices and measure.
+    It has exactly one of matrix, matrices, coordinates, from, slices and measure.
     """
 
     model_config = one_of(
-        *(*SOURCES, "measure"),
-        **OF_SOURCES,
+        *(*SOURCES, "matrices", "measure"),
+        **OF_PROFILES,
         measure={"properties": {"over": ABSENT, "over_the_day": ABSENT}},
     )
 

@@ -46,6 +46,7 @@ class Limits:
         seconds: The time limit of planning.
         roads: Whether a routing engine is configured, so that costs may be by road.
         traffic: Whether it has historical traffic.
+        profiles: The profiles of vehicles that it knows.
     """
 
     body_bytes: int
@@ -62,6 +63,7 @@ class Limits:
     repairs: int = 200
     roads: bool = False
     traffic: bool = False
+    profiles: tuple[str, ...] = ()
 
     @property
     def of_options(self) -> Mapping[str, float]:

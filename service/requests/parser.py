@@ -151,6 +151,7 @@ def read_fleet(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     fleet = request.subject()
     check_fleet("stops", fleet.stops, limits, request.time_limit)
     check_router(fleet.stops.sources, limits)
+    request.check_road_profiles(limits.profiles)
     return Task(
         subject=fleet,
         options=request.options(len(fleet.rules.over)),

@@ -9,7 +9,7 @@ import numpy as np
 
 from service.errors import Cancelled, Refusal
 from service.errors.parts import by_stop
-from service.requests.stops import Array, RoadMeasure, Stops, Traffic
+from service.requests.stops import Array, Measured, Stops, Traffic
 from service.requests.task import Task, UnmeasuredFleet
 from service.roads.client import RoadClient
 from service.search.forbidden_legs import check_ways
@@ -37,10 +37,11 @@ async def _measured(task: Task, client: RoadClient) -> Task:
     began = time.perf_counter()
     stops = subject.stops
     ids = [stop.id for stop in labels.stops]
-    found: dict[RoadMeasure | Traffic, Array] = {}
-    if stops.road_measures:
-        costs = await client.costs(stops.locations, ids)
-        found |= {"road_time": costs.seconds, "road_distance": costs.metres}
+    found: dict[Measured | Traffic, Array] = {}
+    for profile in stops.road_profiles:
+        costs = await client.costs(stops.locations, ids, profile)
+        found[Measured("road_time", profile=profile)] = costs.seconds
+        found[Measured("road_distance", profile=profile)] = costs.metres
     for each in stops.traffic:
         found[each] = await client.seconds_at(each.departures, stops.locations, ids)
     if subject is stops:  # a fleet may leave stops out

@@ -126,7 +126,7 @@ class ObjectiveItem(StrictModel):
             case ["matrix"]:
                 return self._matrix(f"{part}/matrix", len(stops))
             case ["coordinates"]:
-                _check_rows(f"{part}/coordinates", len(stops), len(self.coordinates))
+                check_rows(f"{part}/coordinates", len(stops), len(self.coordinates))
                 return Plane(np.array(self.coordinates, dtype=np.float64))
             case ["from"]:
                 _check_located(f"{part}/from", self.measure, stops)
@@ -136,7 +136,7 @@ class ObjectiveItem(StrictModel):
                 raise invalid(part, "not-one-source", sources=self.choices, given=came)
 
     def _matrix(self, part: str, n: int) -> Matrix:
-        _check_rows(part, n, len(self.matrix))
+        check_rows(part, n, len(self.matrix))
         matrix = cost_matrix(self.matrix, part)
         check_costs(matrix, part)
         return Matrix(matrix)
@@ -210,7 +210,8 @@ def find_index(
     raise invalid(part, "not-an-id", came=reference, near=nearest(reference, ids))
 
 
-def _check_rows(part: str, n: int, rows: int) -> None:
+def check_rows(part: str, n: int, rows: int) -> None:
+    """Raise a refusal unless there is a row for each of n stops."""
     if rows != n:
         raise invalid(part, "row-each", stops=n, came=rows)
 

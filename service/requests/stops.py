@@ -90,10 +90,12 @@ class Measured:
     Args:
         measure: The measure.
         speed: The km/h at which metres along great circles become seconds; None leaves metres.
+        profile: Of vehicles, by road; None for what the operator has set.
     """
 
     measure: Measure
     speed: float | None = None
+    profile: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,24 +278,32 @@ class Stops:
         return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
 
     @property
+    def road_profiles(self) -> list[str | None]:
+        """The profiles of vehicles that a routing engine has to be asked for."""
+        bases = [base_of(source) for source in self.sources]
+        by_road = (source for source in bases if isinstance(source, Measured))
+        return list(dict.fromkeys(s.profile for s in by_road if s.measure in ROAD_MEASURES))
+
+    @property
     def traffic(self) -> frozenset[Traffic]:
         """The traffic that a routing engine has to be asked for."""
         return frozenset(source for source in self.sources if isinstance(source, Traffic))
 
-    def measured_by_road(self, costs: Mapping[RoadMeasure | Traffic, Array]) -> "Stops":
+    def measured_by_road(self, costs: Mapping[Measured | Traffic, Array]) -> "Stops":
         """Return these stops with what was measured in place of each measure by road.
 
         Args:
             costs: A matrix for each measure, shape (n, n), and for traffic one in each of its s
                 slices, shape (s, n, n).
         """
+        known: dict[Measured, Matrix] = {}
 
         def measured(source: FixedSource) -> FixedSource:
             match source:
-                case Measured("road_time" | "road_distance" as measure):
-                    return Matrix(costs[measure])
-                case Changed(Measured("road_time" | "road_distance" as measure)):
-                    return Matrix(changed_costs(costs[measure], source.steps, source.costs))
+                case Measured("road_time" | "road_distance"):
+                    return known.setdefault(source, Matrix(costs[source]))
+                case Changed(Measured("road_time" | "road_distance") as base):
+                    return Matrix(changed_costs(costs[base], source.steps, source.costs))
             return source
 
         return replace(

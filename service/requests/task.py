@@ -4,9 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
-from service.fleet.fleet import Fleet
+from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.plans import Route
 from service.fleet.rules import Measure, Over, Rules
 from service.front import PlanOptions
@@ -17,7 +19,7 @@ from service.requests.notes.note import Note
 from service.requests.stops import (
     Array,
     Labels,
-    RoadMeasure,
+    Measured,
     Stops,
     Traffic,
     cost_matrices,
@@ -62,9 +64,10 @@ class UnmeasuredFleet:
     Args:
         rules: The rules.
         vehicles: The name of each type of vehicles.
-        stops: The stops, with the sources of two costs.
+        stops: The stops, with the sources of two costs, by one profile of vehicles after another.
         driven: What is left of the routes of a plan that is being driven.
         clock: The name and unit of its times, if it has a clock.
+        profiles: The names of these profiles; None for vehicles without one.
     """
 
     rules: Rules
@@ -72,6 +75,7 @@ class UnmeasuredFleet:
     stops: Stops
     driven: tuple[Route, ...] = ()
     clock: Objective | None = None
+    profiles: tuple[str | None, ...] = (None,)
 
     @property
     def n(self) -> int:
@@ -96,7 +100,7 @@ class UnmeasuredFleet:
         clock = {} if self.clock is None else {"clock": dict(vars(self.clock))}
         return {**members, "objectives": named, **clock}
 
-    def measured_by_road(self, costs: Mapping[RoadMeasure | Traffic, Array]) -> "UnmeasuredFleet":
+    def measured_by_road(self, costs: Mapping[Measured | Traffic, Array]) -> "UnmeasuredFleet":
         """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""
         return replace(self, stops=self.stops.measured_by_road(costs))
 
@@ -106,7 +110,8 @@ class UnmeasuredFleet:
             return Fleet.of_lines(self.rules, lines_of(self.stops))
         if self.stops.changes:
             return Fleet.over_the_day(self.rules, *costs_of_day(self.stops))
-        return Fleet(rules=self.rules, costs=cost_matrices(self.stops))
+        costs = cost_matrices(self.stops)
+        return Fleet.of_profiles(self.rules, np.split(costs, len(costs) // LAYERS))
 
 
 def _objective(members: dict[str, Any], over: Over | Measure) -> dict[str, Any]:

@@ -100,10 +100,7 @@ def decode_task(content: bytes) -> Task:
 def _encoded(value: Any, arrays: Arrays) -> Any:
     """Return a value ready for JSON, and append its arrays to these."""
     if isinstance(value, np.ndarray):
-        if value.dtype.kind not in _NUMBERS:
-            raise TypeError(f"an array must be of numbers, got {value.dtype}")
-        arrays.append(value)
-        return {"$array": len(arrays) - 1}
+        return {"$array": _number_of(value, arrays)}
     if isinstance(value, RouteEnds):
         return {"$ends": list(value)}
     if isinstance(value, tuple | list):
@@ -117,6 +114,17 @@ def _encoded(value: Any, arrays: Arrays) -> Any:
         raise TypeError(f"a task has no values of type {name}")
     members = {each.name: getattr(value, each.name) for each in fields(value)}
     return {"$type": name, **{key: _encoded(each, arrays) for key, each in members.items()}}
+
+
+def _number_of(value: NDArray[Any], arrays: Arrays) -> int:
+    """Return the number of an array, which is appended unless it is one of these."""
+    if value.dtype.kind not in _NUMBERS:
+        raise TypeError(f"an array must be of numbers, got {value.dtype}")
+    for number, array in enumerate(arrays):
+        if array is value:
+            return number
+    arrays.append(value)
+    return len(arrays) - 1
 
 
 def _encoded_sequence(values: Sequence[Any], arrays: Arrays) -> Any:

@@ -6,6 +6,7 @@ import logging
 import math
 from collections import Counter
 from collections.abc import Awaitable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -53,7 +54,9 @@ class RoadClient:
         self._cache = ArrayCache(settings.cache_bytes, settings.cache_seconds)
         self._drawing = asyncio.Semaphore(_DRAWN_AT_ONCE)
 
-    async def costs(self, locations: Array, ids: Sequence[str]) -> RoadCosts:
+    async def costs(
+        self, locations: Array, ids: Sequence[str], profile: str | None = None
+    ) -> RoadCosts:
         """Return the costs between all stops, infinite where the engine knows no way.
 
         The arrays must not be changed.
@@ -61,6 +64,7 @@ class RoadClient:
         Args:
             locations: Longitude and latitude of each stop in degrees, shape (n, 2).
             ids: Their names, for refusals.
+            profile: That of the vehicles that drive them, if they have one.
 
         Raises:
             OffRoad: Stops lie too far from every road.
@@ -69,7 +73,7 @@ class RoadClient:
             RouterUnusable: Its answer is not as documented.
             RouterTooSlow: It takes too many seconds.
         """
-        asking = self._remembered(np.round(locations, _DECIMALS), ids)
+        asking = self._remembered(np.round(locations, _DECIMALS), ids, profile)
         return RoadCosts(*await self._in_time(asking, self._settings.seconds))
 
     async def seconds_at(
@@ -88,7 +92,7 @@ class RoadClient:
         places = np.round(locations, _DECIMALS)
 
         async def each() -> Array:
-            return np.stack([(await self._remembered(places, ids, d))[0] for d in departures])
+            return np.stack([(await self._remembered(places, ids, None, d))[0] for d in departures])
 
         return await self._in_time(each(), self._settings.seconds)
 
@@ -98,6 +102,7 @@ class RoadClient:
         ids: Sequence[str],
         ways: Sequence[Indices],
         seconds: float = math.inf,
+        profiles: Sequence[str | None] = (),
     ) -> list[Line]:
         """Return the line along the streets of each way. Legs of several are asked for once.
 
@@ -107,73 +112,113 @@ class RoadClient:
             ways: One at least: indices of stops in the order of their visits, shape (m,) each, m at
                 least 2.
             seconds: The remaining time, if it is less than the settings allow.
+            profiles: The profile of the vehicle of each way; without any they have none.
 
         Raises:
             StreetsTooLong: The ways have too many legs, or their lines too many positions.
             Refusal: As of `costs`.
         """
-        lines = await self._drawn(locations, ids, count_legs(ways), seconds)
+        kinds = list(dict.fromkeys(profiles)) or [None]
+        if profiles:  # legs of another profile are between places of their own
+            pairs = zip(ways, profiles, strict=True)
+            ways = [way + len(ids) * kinds.index(profile) for way, profile in pairs]
+        lines = await self._drawn(locations, ids, count_legs(ways), seconds, kinds)
         return await asyncio.to_thread(join_legs, ways, lines)
 
     async def streets(
         self, locations: Array, ids: Sequence[str], legs: Iterable[Leg]
     ) -> dict[Leg, Line]:
         """Return the line along the streets of each leg; otherwise like `lines`."""
-        return await self._drawn(locations, ids, Counter(legs), math.inf)
+        return await self._drawn(locations, ids, Counter(legs), math.inf, [None])
 
     async def close(self) -> None:
         """Close the connections to the engine."""
         await self._transport.close()
 
     async def _remembered(
-        self, places: Array, ids: Sequence[str], departure: str | None = None
+        self,
+        places: Array,
+        ids: Sequence[str],
+        profile: str | None = None,
+        departure: str | None = None,
     ) -> Array:
         """Return both matrices, shape (2, n, n), at a time or at none in particular."""
-        key = hashlib.sha256(places.tobytes() + (departure or "").encode()).digest()
+        way = f"{departure or ''} {profile or ''}".encode()
+        key = hashlib.sha256(places.tobytes() + way).digest()
         costs = self._cache.get(key)
         if costs is None:
-            questions = self._questions(places, ids, departure)
+            questions = self._questions(places, ids, profile, departure)
             await questions.check_snapped(self._settings.snap)
             costs = await questions.costs(self._settings.pairs)
             self._cache.put(key, costs)
         return costs
 
     async def _drawn(
-        self, locations: Array, ids: Sequence[str], counts: Mapping[Leg, int], seconds: float
+        self,
+        locations: Array,
+        ids: Sequence[str],
+        counts: Mapping[Leg, int],
+        seconds: float,
+        profiles: Sequence[str | None],
     ) -> dict[Leg, Line]:
-        """Return the line of each leg, given how often each occurs."""
+        """Return the line of each leg, given how often each occurs.
+
+        Legs by profile k of vehicles are between the n places k n to k n + n - 1.
+        """
         if len(counts) > self._settings.legs:
             raise StreetsTooLong("different legs", self._settings.legs, len(counts))
         places = np.round(locations, _DECIMALS)
         seconds = max(0.0, min(seconds, self._settings.seconds))
-        return await self._in_time(self._streets(places, ids, counts), seconds)
+        return await self._in_time(self._streets(places, ids, counts, profiles), seconds)
 
     async def _streets(
-        self, places: Array, ids: Sequence[str], counts: Mapping[Leg, int]
+        self,
+        places: Array,
+        ids: Sequence[str],
+        counts: Mapping[Leg, int],
+        profiles: Sequence[str | None],
     ) -> dict[Leg, Line]:
         """Return the line of each leg, from the cache or from the engine."""
-        keys = {leg: _LEG + places[list(leg)].tobytes() for leg in counts}
+        n = len(places)
+
+        def key_of(leg: Leg) -> bytes:
+            profile = profiles[leg[0] // n] or ""
+            return _LEG + places[[leg[0] % n, leg[1] % n]].tobytes() + profile.encode()
+
+        keys = {leg: key_of(leg) for leg in counts}
         found = LegLines(counts, self._settings.positions)
         for leg, key in keys.items():
             if (line := self._cache.get(key)) is not None:
                 found.add(leg, line)
 
-        def keep(leg: Leg, line: Line) -> None:
+        def keep(first: int, leg: Leg, line: Line) -> None:
+            leg = (first + leg[0], first + leg[1])
             self._cache.put(keys[leg], line)
             found.add(leg, line)
 
-        if missing := found.missing:
+        for number, profile in enumerate(profiles):
+            first = number * n
+            missing = [(a - first, b - first) for a, b in found.missing if a // n == number]
+            if not missing:
+                continue
             async with self._drawing:
-                questions = self._questions(places, ids)
+                questions = self._questions(places, ids, profile)
                 await questions.check_snapped(self._settings.snap)
-                await questions.streets(missing, self._settings.snap, keep)
+                await questions.streets(missing, self._settings.snap, partial(keep, first))
         return found.lines
 
     def _questions(
-        self, places: Array, ids: Sequence[str], departure: str | None = None
+        self,
+        places: Array,
+        ids: Sequence[str],
+        profile: str | None,
+        departure: str | None = None,
     ) -> Questions:
-        router = _interface(self._settings, departure)
-        return Questions(router, self._transport, places, ids)
+        settings = self._settings
+        if profile is not None and profile not in settings.profiles:
+            raise RouterUnusable(f"it must know the profile {profile!r}")
+        own = settings.profile if profile is None else settings.profiles[profile]
+        return Questions(_interface(settings, own, departure), self._transport, places, ids)
 
     async def _in_time(self, answers: Awaitable[_Result], seconds: float) -> _Result:
         """Return answers within a time limit, or log why there are none."""
@@ -189,8 +234,8 @@ class RoadClient:
         raise failure from None
 
 
-def _interface(settings: RouterSettings, departure: str | None) -> RouterInterface:
+def _interface(settings: RouterSettings, profile: str, departure: str | None) -> RouterInterface:
     if settings.router == "osrm":
         assert departure is None, "OSRM knows no traffic by the hour"
-        return Osrm(settings.profile)
-    return Valhalla(settings.profile, settings.snap, departure)
+        return Osrm(profile)
+    return Valhalla(profile, settings.snap, departure)

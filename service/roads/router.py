@@ -1,7 +1,7 @@
 """The interface of routing engines: questions to one, and how its answers are read."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -12,6 +12,12 @@ Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
 Line = Array  # the places along a street, shape (m, 2), longitude first
 RouterName = Literal["valhalla", "osrm"]
 DEFAULT_PROFILES: Mapping[RouterName, str] = {"valhalla": "auto", "osrm": "driving"}
+# The means of transport of vehicles that name one. A program of OSRM knows one alone, whichever it
+# is asked for.
+KNOWN_PROFILES: Mapping[RouterName, Mapping[str, str]] = {
+    "valhalla": {"car": "auto", "truck": "truck", "bicycle": "bicycle", "foot": "pedestrian"},
+    "osrm": {},
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +28,7 @@ class RouterSettings:
         url: Its address, to which the paths of its services are added.
         router: The kind of its interface.
         profile: The means of transport, in the engine's own words.
+        profiles: The same, by the profiles that vehicles may name.
         snap: Metres that a stop may lie from a road.
         seconds: The time for all matrices of one request, or all streets of one.
         pairs: The most pairs of stops that the engine answers at once.
@@ -34,6 +41,7 @@ class RouterSettings:
     url: str
     router: RouterName = "valhalla"
     profile: str = "auto"
+    profiles: Mapping[str, str] = field(default_factory=dict)
     snap: float = 250.0
     seconds: float = 20.0
     pairs: int = 2500

@@ -13,10 +13,11 @@ from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, InvalidInstance, Refusal
 from service.fleet.enumeration import exact_plans
 from service.fleet.evaluation import points_of, violations
-from service.fleet.fleet import Fleet, default_reference_point
+from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, path_of
+from service.fleet.reference_point import default_reference_point
 from service.fleet.rules import Rules
 from service.fleet.schedule import schedule
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit

@@ -20,6 +20,7 @@ Location = tuple[float, float]
 Reply = tuple[int, bytes, dict[str, str]]
 Misbehaviour = Callable[["FakeOsrm", str], Reply | None]
 
+PACES = {"driving": 1, "truck": 2}  # by what the seconds of each profile are multiplied
 DEGREE = 100_000.0  # metres of a degree on the island, in both directions
 GRID = 0.001  # degrees between two crossings; places are snapped to them
 BEYOND = 30.0  # degrees of longitude: no way leads from west of it to east of it, nor back
@@ -77,14 +78,16 @@ class FakeOsrm:
         """Return what OSRM would."""
         split = urlsplit(path)
         _, service, version, profile, coordinates = split.path.split("/")
-        assert (version, profile) == ("v1", "driving")
+        assert (version, profile in PACES) == ("v1", True)
         places = np.array([each.split(",") for each in coordinates.split(";")], dtype=np.float64)
         if len(places) < 2:
             return _error("InvalidOptions")
         query = {name: values[0] for name, values in parse_qs(split.query).items()}
-        return self._table(places, query) if service == "table" else _route(places, query)
+        if service == "table":
+            return self._table(places, query, PACES[profile])
+        return _route(places, query)
 
-    def _table(self, places: Array, query: dict[str, str]) -> Reply:
+    def _table(self, places: Array, query: dict[str, str], pace: float) -> Reply:
         sources, targets = (
             places[[int(index) for index in query[name].split(";")]]
             for name in ("sources", "destinations")
@@ -96,7 +99,8 @@ class FakeOsrm:
             "sources": _waypoints(sources),
             "destinations": _waypoints(targets),
         }
-        tables = dict(zip(("duration", "distance"), road_costs(sources, targets), strict=True))
+        seconds, metres = road_costs(sources, targets)
+        tables = {"duration": pace * seconds, "distance": metres}
         for name in query["annotations"].split(","):
             table = tables[name]
             document[f"{name}s"] = np.where(np.isnan(table), None, table).tolist()

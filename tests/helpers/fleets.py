@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 
 from service.fleet.evaluation import plan_lengths, points_of, violations
-from service.fleet.fleet import Fleet
+from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.groups import Groups
 from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.fleet.rules import Measure, Over, Rules
@@ -188,7 +188,21 @@ def varied_fleet(seed: int) -> Fleet:
     vehicles = tuple(map(varied, types))
     visits = tuple(map(served, rules.visits)) if len(vehicles) == 2 else rules.visits
     varied_rules = dataclasses.replace(rules, visits=visits, vehicles=vehicles)
-    return Fleet(rules=varied_rules, costs=fleet.costs)
+    if seed % 8 > 3:
+        return Fleet(rules=varied_rules, costs=fleet.costs)
+    return _profiled(Fleet(rules=varied_rules, costs=fleet.costs), random)
+
+
+def _profiled(fleet: Fleet, random: np.random.Generator) -> Fleet:
+    """Return a fleet whose types of vehicles drive by two profiles, one of which lacks a leg."""
+    n = fleet.rules.n
+    costs = random.integers(1, 25, (LAYERS, n, n)).astype(float)
+    costs[:, n - 1, random.integers(n)] = inf
+    vehicles = tuple(
+        dataclasses.replace(each, profile=int(random.integers(2))) for each in fleet.rules.vehicles
+    )
+    rules = dataclasses.replace(fleet.rules, vehicles=vehicles)
+    return Fleet.of_profiles(rules, [fleet.costs, costs])
 
 
 def tidy_fleet(seed: int) -> Fleet:

@@ -1,6 +1,7 @@
 """Requests for fleets that dispatchers asked for in public, each by the thread that asks."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -151,6 +152,104 @@ def test_the_vehicle_drives_that_was_asked_for(thread: str) -> None:
     request = fleet(stops, van=van)
     request["vehicles"].append({**BIKE, **bike})
     assert [route["vehicle"] for route in planned(request)["routes"]] == [expected]
+
+
+def by_profile(request: Json, **factors: float) -> Json:
+    """Return a request whose vehicles have profiles, and matrices in which they differ."""
+    for objective in request["objectives"]:
+        matrix = objective.pop("matrix")
+        objective["matrices"] = [
+            {
+                "profile": name,
+                "matrix": [[cost and cost * factor for cost in row] for row in matrix],
+            }
+            for name, factor in factors.items()
+        ]
+    pairs = zip(request["vehicles"], factors, strict=True)
+    return {**request, "vehicles": [{**each, "profile": name} for each, name in pairs]}
+
+
+@pytest.mark.parametrize(("truck", "driver"), [(3, "van"), (0.5, "bike")])
+def test_vehicles_drive_by_matrices_of_their_own(truck: float, driver: str) -> None:
+    """vroom#654: each vehicle has costs of its own; vroom#468: a motorbike and a car."""
+    request = fleet(SIDES)
+    request["vehicles"].append(BIKE)
+    request = by_profile(request, car=1, truck=truck)
+    plan = planned(request)
+    assert [(route["vehicle"], route["profile"]) for route in plan["routes"]] == [
+        (driver, {"van": "car", "bike": "truck"}[driver])
+    ]
+    assert plan["lengths"][0] == 40 * min(1, truck)
+    _, source = begun_with("west", request)
+    rest = parse_replan(source, LIMITS, {})
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    [after, *_] = json.loads(document.json(id="", status="done"))["front"]
+    assert [route["vehicle"] for route in after["routes"]] == [driver]
+    assert after["routes"][0]["arrivals"][-1] == 30 + 30 * min(1, truck)
+    body = json.dumps({**json.loads(source.body), "add": [{"id": "new"}]}).encode()
+    with pytest.raises(Refusal, match='add/0 cannot be added, as the costs of "time"'):
+        parse_replan(replace(source, body=body), LIMITS, {})
+
+
+def test_a_dear_vehicle_stays_where_one_under_way_can_serve() -> None:
+    """vroom#1344: order B may ride with who has A on board, and costs a thousandth there."""
+    stops = {"A": {"at": FAR, "skills": ["special"]}, "B": {"at": EAST}}
+    request = fleet(stops, van={"skills": ["special"], "per_distance": 2})
+    request["vehicles"].append({**BIKE, "per_distance": 2000})
+    plan = planned(request)
+    assert [each["vehicle"] for each in plan["routes"]] == ["van"]
+    assert plan["lengths"][0] == 2 * 2 * FAR
+
+
+PROFILED = by_profile({**fleet(SIDES), "vehicles": [{"id": "a"}, {"id": "b"}]}, car=1, truck=2)
+WRONG_PROFILES = [
+    ("vehicles/1/profile", None, "profile-needed"),
+    ("vehicles/1/profile", "trick", "not-a-profile"),
+    ("objectives/0/matrices/1/profile", "car", "not-unique"),
+    ("objectives/0/matrices/1/matrix", [[0]], "row-each"),
+    ("objectives/0/over_the_day", [[0, 1]], "profile-over-the-day"),
+    ("objectives/0/matrix", [[0] * 3] * 3, "not-one-source"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "code"), WRONG_PROFILES)
+def test_a_profile_without_costs_is_refused(path: str, value: Any, code: str) -> None:
+    request = json.loads(json.dumps(PROFILED))
+    *parts, last = path.split("/")
+    place = request
+    for part in parts:
+        place = place[int(part) if part.isdecimal() else part]
+    place[last] = value
+    with pytest.raises(Refusal) as refused:
+        planned(request)
+    [fault] = refused.value.errors
+    assert fault.code == code
+    pointer = {"profile-over-the-day": "/vehicles/0/profile", "not-one-source": "/objectives/0"}
+    assert fault.pointer == pointer.get(code, f"/{path}")
+
+
+@pytest.mark.parametrize(
+    ("objective", "known", "code"),
+    [
+        ({"from": "great_circle"}, ("car",), "profile-of-nothing"),
+        ({"from": "road_time"}, ("car",), "not-a-road-profile"),
+        ({"from": "road_time"}, (), "no-road-profiles"),
+    ],
+)
+def test_a_profile_that_says_nothing_is_refused(
+    objective: Json, known: tuple[str, ...], code: str
+) -> None:
+    place = {"id": "depot", "location": [24.9, 60.1]}
+    request = {
+        "stops": [place, {**place, "id": "job"}],
+        "vehicles": [{"id": "lorry", "profile": "truck"}],
+        "objectives": [{"name": "a", **objective}, {"name": "b", **objective, "over": "max"}],
+    }
+    limits = replace(LIMITS, roads=True, profiles=known)
+    with pytest.raises(Refusal) as refused:
+        parse_task(TaskSource("fleet", json.dumps(request).encode()), limits, {})
+    [fault] = refused.value.errors
+    assert (fault.code, fault.pointer) == (code, "/vehicles/0/profile")
 
 
 def test_a_vehicle_leaves_early_and_waits_at_the_stops() -> None:

@@ -253,6 +253,7 @@ def test_schemas_have_names_and_limits() -> None:
         "PromisedItem",
         "ServiceItem",
         "SliceItem",
+        "ProfileMatrixItem",
         "VehicleItem",
         "FleetObjectiveItem",
         "ClockItem",

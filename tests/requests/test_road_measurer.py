@@ -16,7 +16,8 @@ from service.kinds.parsing import parse_task
 from service.requests.limits import Limits
 from service.requests.road_measurer import BlockingMeasurer, measured_by_road
 from service.requests.stops import Matrix, Stops
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task, TaskSource, UnmeasuredFleet
+from service.requests.task_codec import decode_task, encode_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from tests.helpers.actors import info_of
@@ -76,6 +77,27 @@ def test_a_task_is_measured_once() -> None:
     assert isinstance(risk_source, Matrix)
     np.testing.assert_array_equal(time_source.costs, road_costs(PLACES, PLACES)[0])
     assert measured.timings["roads"] > 0
+
+
+def test_vehicles_of_each_profile_are_measured_by_themselves() -> None:
+    stops = [{"id": str(i), "location": place} for i, place in enumerate(PLACES.tolist())]
+    vehicles = [{"id": "van"}, {"id": "lorry", "profile": "truck"}, {"id": "car"}]
+    time, metres = ({"name": each, "from": each} for each in ("road_time", "road_distance"))
+    body = {"stops": stops, "vehicles": vehicles, "objectives": [time, metres]}
+    limits = replace(LIMITS, roads=True, profiles=("truck",))
+    task = parse_task(TaskSource("fleet", json.dumps(body).encode()), limits, ACTORS)
+    task = decode_task(encode_task(task))
+    with fake_osrm() as fake:
+        settings = replace(_settings(fake.url), profiles={"truck": "truck"})
+        with _blocking(settings) as measurer:
+            measured = measurer.measured(task, lambda: False)
+    assert isinstance(measured.subject, UnmeasuredFleet)
+    fleet, seconds = measured.subject.fleet(), road_costs(PLACES, PLACES)[0]
+    for vehicle, times in ((0, 1), (1, 2), (2, 1)):
+        assert fleet.legs_along(0, (0, 1, 3), vehicle) == [
+            pytest.approx(times * seconds[leg]) for leg in ((0, 1), (1, 3))
+        ]
+        assert fleet.legs_along(1, (0, 1), vehicle) == [road_costs(PLACES, PLACES)[1][0, 1]]
 
 
 def test_a_task_without_roads_needs_no_engine() -> None:

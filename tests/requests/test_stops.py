@@ -82,7 +82,7 @@ def test_road_matrices_complete_an_instance() -> None:
     subject = request.subject
     assert subject.sources == (Measured("road_time"), Measured("great_circle"))
     assert subject.road_measures == {"road_time"}
-    measured = subject.measured_by_road({"road_time": np.array(COSTS, dtype=np.float64)})
+    measured = subject.measured_by_road({Measured("road_time"): np.array(COSTS, np.float64)})
     assert not measured.road_measures
     instance = measured.instance
     np.testing.assert_allclose(instance.matrices, [COSTS, great_circle_matrix(np.array(LOCATIONS))])

@@ -94,6 +94,25 @@ def test_each_leg_goes_round_one_corner() -> None:
         np.testing.assert_allclose(line, expected, atol=1e-6)
 
 
+def test_the_streets_of_a_profile_are_asked_for_by_it() -> None:
+    places, way = _places(9), np.arange(9)
+
+    async def ask(fake: FakeOsrm) -> list[Line]:
+        client = RoadClient(_settings(fake, profiles={"lorry": "truck"}))
+        try:
+            for _ in range(2):
+                found = await client.lines(places, _ids(places), [way] * 2, 20, ["lorry", None])
+            return found
+        finally:
+            await client.close()
+
+    with fake_osrm() as fake:
+        one, other = asyncio.run(ask(fake))
+        asked = [path.split("/")[3] for path in fake.asked if path.startswith("/route/")]
+    assert asked == ["truck", "driving"]
+    np.testing.assert_array_equal(one, other)
+
+
 def test_a_leg_without_a_way_is_named() -> None:
     places = _places(30)
     places[17, 0] = BEYOND + 1

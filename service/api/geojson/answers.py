@@ -80,6 +80,7 @@ class Streets(Protocol):
         ids: Sequence[str],
         ways: Sequence[NDArray[np.int64]],
         seconds: float,
+        profiles: Sequence[str | None],
     ) -> list[Line]:
         """Return the line along the streets of each way through stops."""
 
@@ -184,7 +185,8 @@ class FrontAnswers:
         if geometry == "roads" and drawing.tours:
             assert self._streets is not None
             ways = [np.array(way, dtype=np.int64) for way in drawing.ways]
-            asked = self._streets.lines(drawing.locations, drawing.ids, ways, seconds)
+            places = drawing.locations, drawing.ids
+            asked = self._streets.lines(*places, ways, seconds, drawing.profiles)
             lines = await unless_disconnected(request, asked)
         else:
             lines = drawing.straight_lines

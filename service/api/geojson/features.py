@@ -63,6 +63,11 @@ class Drawing:
         return cls(record, routes, [way if len(way) > 1 else way * 2 for way in ways])
 
     @property
+    def profiles(self) -> list[str | None]:
+        """The profile of the vehicle of each route, if it has one."""
+        return [tour.get("profile") for tour in self.tours]
+
+    @property
     def ids(self) -> list[str]:
         """The ids of all stops."""
         return [stop["id"] for stop in self._stops]

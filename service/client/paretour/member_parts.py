@@ -129,6 +129,14 @@ class VehicleRequest(TypedDict, total=False):
     per_time: float
     speed_factor: float
     service_factor: float
+    profile: str | None
+
+
+class ProfileMatrixRequest(TypedDict, total=False):
+    """The costs of the legs to vehicles of a profile."""
+
+    profile: Required[str]
+    matrix: Required[Costs]
 
 
 Measure = Literal[
@@ -158,6 +166,7 @@ FleetObjectiveRequest = TypedDict(
         "over_the_day": ArrayLike,
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
+        "matrices": Sequence[ProfileMatrixRequest],
         "measure": Measure | None,
         "over": Literal["sum", "max"],
     },
@@ -199,6 +208,7 @@ ClockRequest = TypedDict(
         "over_the_day": ArrayLike,
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
+        "matrices": Sequence[ProfileMatrixRequest],
     },
     total=False,
 )

@@ -29,6 +29,7 @@ class FleetRoute:
         shift: The number of its shift, if its vehicle has several.
         route: The number of its route in the plan that is driven, if it is on its way.
         load: The most that it carries at a time, in each dimension.
+        profile: The profile of its vehicle, if it has one.
     """
 
     vehicle: str
@@ -39,6 +40,7 @@ class FleetRoute:
     shift: int | None = None
     route: int | None = None
     load: tuple[int, ...] = ()
+    profile: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

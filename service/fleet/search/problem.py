@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.rules import Measure, Over, Pace, Rules
 from service.fleet.search.day import FleetDay, day_of
 from service.fleet.search.extras import Extras, extras_of
 from service.fleet.vehicles import VehicleType
@@ -130,11 +130,10 @@ def problem_of(fleet: Fleet) -> Problem:
     paces = list(map(rules.pace, range(len(vehicles))))
     profiles = list(dict.fromkeys(paces))
     forbidden *= max(1.0, *(1.0 / each.speed for each in profiles))
-    costs = np.moveaxis(fleet.costs, 0, -1)
     places = [line.places for line in fleet.lines] or np.empty((2, 0, 3))
     factors = _floats([line.factor for line in fleet.lines])
     return Problem(
-        costs=np.array([_driven(rules, costs, each.speed, forbidden) for each in profiles]),
+        costs=np.array([_costs(fleet, each, forbidden) for each in profiles]),
         places=np.ascontiguousarray(np.moveaxis(np.array(places), 0, 1)),
         curved=np.array([line.curved for line in fleet.lines], np.bool_),
         factors=np.array([_driven(rules, factors, each.speed, forbidden) for each in profiles]),
@@ -208,6 +207,12 @@ def problem_of(fleet: Fleet) -> Problem:
         most_legs=np.array([rules.most_legs(each) for each in range(len(vehicles))]),
         tried=np.array([_is_tried(fleet, vehicle) for vehicle in vehicles]),
     )
+
+
+def _costs(fleet: Fleet, pace: Pace, forbidden: float) -> Array:
+    """Return both costs of all legs to vehicles of a pace, shape (n, n, 2)."""
+    costs = np.moveaxis(fleet.costs_by(pace.profile), 0, -1)
+    return _driven(fleet.rules, costs, pace.speed, forbidden)
 
 
 def _driven(rules: Rules, costs: Array, speed: float, forbidden: float) -> Array:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from service.fleet.fleet import LAYERS
 from service.requests.notes.costs import notes_on_costs
 from service.requests.notes.note import Note
 from service.requests.notes.places import doubtful_places
@@ -42,7 +43,8 @@ def _on_places(task: Task, stops: Stops) -> Iterator[Note]:
 
 
 def _on_costs(task: Task, stops: Stops) -> Iterator[Note]:
-    for m, source in enumerate(stops.sources):
+    for number, source in enumerate(stops.sources):
+        m = number % LAYERS if isinstance(task.subject, UnmeasuredFleet) else number
         name, pointer = f"matrix {m}", f"/matrices/{m}"
         if task.labels is not None:
             name, pointer = repr(task.labels.objectives[m].name), f"/objectives/{m}"

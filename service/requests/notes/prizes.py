@@ -6,6 +6,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from service.fleet.fleet import LAYERS
 from service.fleet.rules import Rules
 from service.requests.stops import Matrix, Measured, Plane, Stops, base_of
 from service.roads.great_circle import great_circle_matrix
@@ -57,6 +58,8 @@ def _costs(stops: Stops) -> Array | None:
 
     Costs by road are not known yet; those along great circles are at most as high.
     """
+    if len(stops.sources) > LAYERS:  # each profile has its own
+        return None
     match base_of(stops.sources[0]):
         case Matrix(costs):
             return costs

@@ -30,18 +30,13 @@ from service.requests.replan.changes import (
     promised_begin,
     tolerance_of,
 )
-from service.requests.replan.costs import (
-    AllStops,
-    all_stops,
-    between,
-    changed_sources,
-    extended_sources,
-)
+from service.requests.replan.costs import AllStops, all_stops
 from service.requests.replan.day import Way, day_of, removed_stops
 from service.requests.replan.fields import NewStop
+from service.requests.replan.fleet_costs import sources_of_rest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.way import ReplanSource, StoredFront
-from service.requests.stops import Labels, Source, Stops, locations_of
+from service.requests.stops import Labels, Stops, locations_of
 from service.requests.task import Task, UnmeasuredFleet, VehicleName, types_by_id
 from service.requests.validation import parse_json, too_many_cities
 
@@ -154,9 +149,13 @@ class _Rest:
             leave=self._rules.leave,
             groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
         )
-        stops = Stops(locations_of(self.labels.stops), self._sources())
+        changed = self._request.costs, self._all
+        chosen = np.array(list(self._place), np.int64)
+        sources = sources_of_rest(self._fleet, self._known.objectives, *changed, chosen)
+        stops = Stops(locations_of(self.labels.stops), sources)
         driven = tuple(self._driven())
-        return UnmeasuredFleet(rules, self.names, stops, driven, self._fleet.clock)
+        fleet = self._fleet
+        return UnmeasuredFleet(rules, self.names, stops, driven, fleet.clock, fleet.profiles)
 
     def _carriers(self) -> dict[int, int]:
         """Return, by stop, the vehicle on its way that carries what it brings there."""
@@ -341,27 +340,6 @@ class _Rest:
         reload = tuple(self._place[stop] for stop in vehicle.reload)
         home = None if vehicle.home is None else self._place.get(vehicle.home)
         return replace(vehicle, start=start, end=end, reload=reload, home=home)
-
-    def _sources(self) -> list[Source]:
-        """Return the sources of both costs between the stops of the rest."""
-        sources, names = list(self._fleet.stops.sources), self._names_of_costs()
-        sources = sources[: len(names)]  # a fleet with one source has the same costs twice
-        sources = extended_sources(sources, names, self._all)
-        sources, _ = changed_sources(sources, names, self._request.costs, self._all)
-        chosen = np.array(list(self._place), np.int64)
-        placed = [between(source, chosen) for source in sources]
-        return [*placed, placed[0]][:2]
-
-    def _names_of_costs(self) -> list[str]:
-        """Return the name of the objective that each costs are of; of own times, the second's."""
-        objectives = [objective.name for objective in self._known.objectives]
-        names: dict[int, str] = {}
-        for name, over, layer in zip(objectives, self._rules.over, self._rules.layers, strict=True):
-            if over in ("sum", "max"):
-                names.setdefault(layer, name)
-        if self._rules.clock is not None:
-            names.setdefault(self._rules.clock, objectives[self._rules.clock])
-        return [names[layer] for layer in sorted(names)]
 
     def _driven(self) -> Iterator[Route]:
         """Yield what is left of the routes of the plan."""

@@ -33,7 +33,7 @@ class Judge:
 
     Args:
         request: The request. Its references to stops are numbers, its ids these as text, and its
-            objectives have matrices.
+            objectives have matrices, maybe one for each profile.
     """
 
     def __init__(self, request: Json) -> None:
@@ -56,6 +56,11 @@ class Judge:
         self.clients = [i for i in range(len(self.stops)) if i not in self.depots]
         self.shipments = [(each["pickup"], each["delivery"]) for each in request["shipments"]]
         self.pickup_of = {delivery: pickup for pickup, delivery in self.shipments}
+        profiles = dict.fromkeys(each.get("profile") for each in request["vehicles"])
+        self.own = {p: Judge(driven_by(p, request)) for p in profiles if p is not None}
+        for each in self.own.values():
+            each.siblings = [*self.own.values()]
+        self.siblings = [self]
 
     def prize(self, stop: int) -> float | None:
         """Return the prize of a stop; None if it must be visited."""
@@ -64,6 +69,10 @@ class Judge:
 
     def route(self, vehicle: Json, stops: tuple[int, ...]) -> Judged | str:
         """Return the lengths of a route, or a rule that it breaks."""
+        profile = vehicle.get("profile")
+        return self.own.get(profile, self)._judged(vehicle, stops)
+
+    def _judged(self, vehicle: Json, stops: tuple[int, ...]) -> Judged | str:
         ends = ([] if each is None else [each] for each in (vehicle.get("start"), None))
         path = [*next(ends), *stops, *([] if vehicle.get("end") is None else [vehicle["end"]])]
         matrices = [each["matrix"] for each in self.objectives if "matrix" in each]
@@ -206,7 +215,14 @@ class Judge:
         return sum(missing) / (sum(near.values()) or 1.0)
 
     def _apart(self, a: int, b: int) -> float:
-        """Return how far two stops are apart by the first costs; infinite without a way."""
+        """Return how far two stops are apart by the first costs; infinite without a way.
+
+        Where vehicles drive by profiles, it is the least way of any.
+        """
+        return min(each.way_between(a, b) for each in self.siblings)
+
+    def way_between(self, a: int, b: int) -> float:
+        """Return how far two stops are apart to all vehicles."""
         matrices = [each["matrix"] for each in self.objectives if "matrix" in each]
         if isinstance(self.request.get("clock"), dict):
             matrices.append(self.clock["matrix"])
@@ -326,6 +342,21 @@ class Judge:
             for each in judged.best
         ):
             yield f"arrivals {route['arrivals']} are {best.arrivals}"
+
+
+def driven_by(profile: str, request: Json) -> Json:
+    """Return a request whose vehicles all drive by one profile."""
+
+    def plain(item: Any) -> Any:
+        if not isinstance(item, dict) or "matrices" not in item:
+            return item
+        [matrix] = [each["matrix"] for each in item["matrices"] if each["profile"] == profile]
+        return {**{k: v for k, v in item.items() if k != "matrices"}, "matrix": matrix}
+
+    vehicles = [{k: v for k, v in each.items() if k != "profile"} for each in request["vehicles"]]
+    objectives = [plain(each) for each in request["objectives"]]
+    clock = plain(request.get("clock"))
+    return {**request, "vehicles": vehicles, "objectives": objectives, "clock": clock}
 
 
 def _way(matrix: Any, path: list[int]) -> float:

@@ -12,6 +12,7 @@ _MEASURES = (
     *("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"),
     *("earliness", "weighted_arrival", "overlap"),
 )
+PROFILED = 0.2  # share of fleets whose vehicles have profiles
 _TIMED = ("overtime", "lateness", "earliness", "weighted_arrival")
 
 
@@ -44,11 +45,32 @@ def random_fleet(rng: random.Random) -> Json:
         _add_shipment(request, n)
     elif clients > 2 and rng.random() < 0.3:
         _add_groups(rng, request, [*range(depots, n)])
+    _add_some(rng, request, matrices, depots)
+    return request
+
+
+def _add_some(rng: random.Random, request: Json, matrices: Sequence[Any], depots: int) -> None:
+    """Add what only some fleets have: vehicles that differ, limits on driving, and profiles."""
+    timed = request.get("clock") is not None
     if rng.random() < 0.4:
         _add_differences(rng, request, depots, timed)
     if rng.random() < 0.2:
         _add_limits(rng, request, timed)
-    return request
+    if rng.random() < PROFILED:
+        _add_profiles(rng, request, matrices)
+
+
+def _add_profiles(rng: random.Random, request: Json, matrices: Sequence[Any]) -> None:
+    """Let vehicles drive by two profiles, whose costs differ."""
+    for matrix in rng.choice((matrices, matrices[:1])):
+        truck = _matrix(rng, len(matrix))
+        by_profile = [{"profile": "car", "matrix": matrix}, {"profile": "truck", "matrix": truck}]
+        for item in (*request["objectives"], request.get("clock")):
+            if isinstance(item, dict) and item.get("matrix") is matrix:
+                del item["matrix"]
+                item["matrices"] = by_profile
+    for vehicle in request["vehicles"]:
+        vehicle["profile"] = rng.choice(("car", "truck"))
 
 
 def _add_groups(rng: random.Random, request: Json, clients: list[int]) -> None:

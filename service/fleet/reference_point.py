@@ -1,0 +1,46 @@
+"""The default reference point of a fleet: lengths above those of sensible plans."""
+
+from math import inf
+
+from service.fleet.fleet import Array, Fleet, urgency_of
+from service.fleet.rules import Rules
+
+
+def default_reference_point(fleet: Fleet) -> Array:
+    """Return lengths above those of sensible plans under m objectives, shape (m,).
+
+    They are the number of stops times the scale, plus what else can add to a length. In the first
+    objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
+    imbalance by the clock they are all services, and the time from the first shift or window to the
+    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of
+    weighted arrivals each may be as late. The first one is at the highest prices, and visits take
+    as long as by the slowest vehicles.
+    """
+    rules = fleet.rules
+    point = rules.n * fleet.scale
+    prizes = sum(visit.prize or 0.0 for visit in rules.visits)
+    point[0] += 0.0 if "unassigned" in rules.over else prizes
+    point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
+    vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+    slowest = max(vehicle.service_factor for vehicle in rules.vehicles)
+    services = slowest * sum(visit.longest_service for visit in rules.visits)
+    for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
+        timed = {"lateness": True, "earliness": True, "imbalance": rules.clock is not None}
+        costs = over in ("sum", "max") and layer == rules.clock
+        price = float(costs or timed.get(over, False))
+        if objective == 0:
+            price *= max(vehicle.per_distance for vehicle in rules.vehicles)
+            price += max(vehicle.per_time for vehicle in rules.vehicles)
+        if price:
+            point[objective] += price * services
+            once = over in ("max", "imbalance")
+            point[objective] += price * _waiting(rules) * (1 if once else vehicles)
+        elif over == "weighted_arrival":
+            point[objective] += (services + _waiting(rules)) * urgency_of(rules)
+    return point
+
+
+def _waiting(rules: Rules) -> float:
+    """Return the longest time that a vehicle may wait between two bounds of times."""
+    bounds = [time for span in rules.spans for time in span if time < inf]
+    return max(bounds, default=0.0) - min(bounds, default=0.0)
