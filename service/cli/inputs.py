@@ -148,7 +148,8 @@ def read_layer(path: Path) -> Array:
 def _bounds() -> Bounds:
     from service.cli.configuration import load_settings
 
-    return Bounds(matrix_cities=_MATRIX_CITIES, roads=load_settings().limits.roads)
+    limits = load_settings().limits
+    return Bounds(matrix_cities=_MATRIX_CITIES, roads=limits.roads, profiles=limits.profiles)
 
 
 def _content(path: Path) -> NamedFile:

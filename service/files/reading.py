@@ -30,12 +30,14 @@ class Bounds:
         matrix_cities: The most cities with a matrix of costs.
         cells: The most fields of a table, or cells of a map.
         roads: Whether times by road can be asked for.
+        profiles: The profiles of vehicles by which they can be.
     """
 
     cities: int = 100_000
     matrix_cities: int = 1000
     cells: int = 2**22
     roads: bool = False
+    profiles: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ def bounds_of(limits: Limits) -> Bounds:
         matrix_cities=limits.matrix_cities,
         cells=max(limits.cells, limits.body_bytes // _CELL_BYTES),
         roads=limits.roads,
+        profiles=limits.profiles,
     )
 
 

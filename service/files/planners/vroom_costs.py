@@ -12,6 +12,15 @@ from typing import Any
 
 from service.files.fleets import Stop, Vehicle, have_times, measured, speed_between
 from service.files.places import note_places
+from service.files.planners.vroom_matrices import (
+    Cut,
+    Matrix,
+    add_profiles,
+    cuts_of,
+    known_costs,
+    layers_of,
+    profiles_of,
+)
 from service.files.planners.vroom_members import note_others, note_unused
 from service.files.planners.vroom_mixed import (
     PER_HOUR,
@@ -27,7 +36,6 @@ _OF = "costs of vehicles"
 _SAME = "all vehicles have the same one, and the objectives are metres and seconds"
 _LIMITS = ("max_travel_time", "max_distance")
 Objectives = list[dict[str, Any]]
-Matrix = list[list[Any]]
 
 
 @dataclass(frozen=True)
@@ -63,38 +71,51 @@ def objectives_of(
     costs = [each.get("costs") or {} for each in items]
     note_others(source, costs, _OF)
     rates = VroomRates(rides[0].per_hour, rides[0].per_km, any(each.get("fixed") for each in costs))
-    matrices = _matrices(source, problem)
-    if matrices is None:
-        _check_places(source, located[0], items)
-    cut = None if matrices is None else _Cut(source, *located, *matrices)
-    if len(set(rides)) > 1:
-        layers = _measured(source, located[0]) if cut is None else _layers(cut)
+    cuts = cuts_of(source, problem, *located)
+    if not cuts:
+        _check_places(source, located[0])
+        _add_road_profiles(source, items, vehicles)
+    if len(cuts) > 1:
+        add_profiles(items, vehicles)
+    if len(set(rides)) > 1 or len(cuts) > 1:
+        layers = layers_of(cuts) if cuts else _measured(source, located[0])
         found = mixed_objectives(source, rides, vehicles, layers), 1.0
-    elif cut is None:
+    elif not cuts:
         by_time = timed or any(each.get("max_travel_time") is not None for each in items)
         found = _by_places(source, located[0], rates, rides[0].speed, by_time)
     else:
-        found = _by_matrices(source, cut, rates, rides[0].speed)
+        found = _by_matrices(source, cuts[0], rates, rides[0].speed)
     objectives, unit = found
     for vehicle in vehicles:
         if "fixed" in vehicle and unit != 1:
             vehicle["fixed"] = round(vehicle["fixed"] / unit, 6)
-    known = cut is not None and cut.given.get("distances")
-    metres = cut.matrix("distances") if cut is not None and known else None
     clocked = have_times(located[0], vehicles)
-    limiting = _limiting(source, objectives, metres, clocked)
+    limiting = _limiting(source, objectives, known_costs(cuts, "distances"), clocked)
     _add_limits(source, items, vehicles, objectives, limiting)
     return objectives
 
 
-def _check_places(
-    source: Source, stops: Sequence[Stop], items: Sequence[Mapping[str, Any]]
-) -> None:
+def _check_places(source: Source, stops: Sequence[Stop]) -> None:
     """Raise UnreadableFile if a stop has no place on the earth, and note what cannot be used."""
     if any("location" not in stop for stop in stops):
         raise source.refusal("task-without-location", "each task")
     note_places(source, stops)
-    if any(each.get("profile", "car") != "car" for each in items):
+
+
+def _add_road_profiles(
+    source: Source, items: Sequence[Mapping[str, Any]], vehicles: Sequence[Vehicle]
+) -> None:
+    """Add the profiles by which vehicles drive by road; note those that nothing knows."""
+    profiles = profiles_of(items)
+    if profiles == ["car"]:
+        return
+    unknown = [each for each in profiles if each not in source.bounds.profiles]
+    if not unknown:
+        add_profiles(items, vehicles)
+    elif source.bounds.roads:
+        why = f"the routing engine does not know {', '.join(map(quoted, unknown[:3]))}"
+        note_unused(source, "profile", "vehicles", why)
+    else:
         note_unused(source, "profile", "vehicles", "without matrices all vehicles drive as cars do")
 
 
@@ -139,42 +160,8 @@ def _noted(source: Source, name: str, unit: float) -> float:
     return unit
 
 
-@dataclass(frozen=True)
-class _Cut:
-    """The matrices of one profile, cut to the stops."""
-
-    source: Source
-    stops: Sequence[Stop]
-    indexes: Sequence[Any]
-    profile: str
-    given: Mapping[str, Any]
-
-    def matrix(self, name: str, scale: float = 1) -> Matrix:
-        """Return the costs between the stops, by their indexes in a matrix."""
-        source, indexes, matrix = self.source, self.indexes, self.given.get(name)
-        source.check_count("stops with a matrix", source.bounds.matrix_cities, len(indexes))
-        for at, index in enumerate(indexes):
-            if not isinstance(index, int) or isinstance(index, bool) or index < 0:
-                raise source.refusal("no-location-index", quoted(self.stops[at]["id"]))
-        try:
-            cut = [[matrix[row][column] for column in indexes] for row in indexes]  # type: ignore[index]
-        except (TypeError, IndexError, KeyError):
-            where = f"matrices/{self.profile[:60]}/{name}"
-            raise source.refusal("matrix-too-small", where, most=max(indexes)) from None
-        return cut if scale == 1 else [[_scaled(each, scale) for each in row] for row in cut]
-
-
-def _layers(cut: _Cut) -> Layers:
-    """Return all matrices of a profile."""
-    return Layers(
-        {"name": "longest route", "unit": "s", "matrix": cut.matrix("durations")},
-        {"matrix": cut.matrix("distances")} if cut.given.get("distances") else None,
-        {"matrix": cut.matrix("costs")} if cut.given.get("costs") else None,
-    )
-
-
 def _by_matrices(
-    source: Source, cut: _Cut, rates: VroomRates, factor: float
+    source: Source, cut: Cut, rates: VroomRates, factor: float
 ) -> tuple[Objectives, float]:
     """Return the objectives of matrices, and VROOM's cost of a unit of the first."""
     durations = cut.matrix("durations", 1 / factor)
@@ -207,7 +194,7 @@ def _unit(source: Source, name: str, rates: VroomRates) -> float:
     return _noted(source, name, rates.per_km / 1000 if rates.per_km else rates.per_hour / 3600)
 
 
-def _note_beside_costs(source: Source, cut: _Cut, rates: VroomRates) -> None:
+def _note_beside_costs(source: Source, cut: Cut, rates: VroomRates) -> None:
     """Note what a matrix of costs stands for."""
     why = "there are matrices of costs"
     _note_rates(source, rates, why)
@@ -236,35 +223,6 @@ def _sum(second: Any, metre: Any, rates: VroomRates) -> Any:
     if not is_cost(second) or not is_cost(metre):
         return None
     return round(second * rates.per_hour / 3600 + metre * rates.per_km / 1000, 6)
-
-
-def _scaled(value: Any, scale: float) -> Any:
-    return round(value * scale, 6) if is_cost(value) else value
-
-
-def _matrices(source: Source, problem: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]] | None:
-    """Return the profile and its matrices that the vehicles use; None if there are none."""
-    matrices = problem.get("matrices")
-    old = problem.get("matrix")
-    if matrices and old:
-        note_unused(source, "matrix", "the problem", "there are matrices")
-    elif old:
-        source.note("objectives", "matrix was read as durations in seconds, as VROOM 1.8 did.")
-        return "matrix", {"durations": old}
-    if not isinstance(matrices, dict) or not matrices:
-        return None
-    used = list(dict.fromkeys(str(each.get("profile", "car")) for each in problem["vehicles"]))
-    profile = next((each for each in used if each in matrices), next(iter(matrices)))
-    others = [each for each in (*used, *matrices) if each != profile]
-    if others:
-        named = ", ".join(quoted(each) for each in dict.fromkeys(others))
-        text = f"All vehicles use the matrices of {quoted(profile)}: {named} was not used."
-        source.note("left-out", text)
-    given = matrices[profile]
-    if not isinstance(given, dict):
-        raise source.refusal("not-an-object", f"matrices/{profile[:60]}", came=given)
-    note_others(source, [given], "matrices")
-    return profile, given
 
 
 def _add_limits(
@@ -301,13 +259,13 @@ def _limiting(source: Source, objectives: Objectives, metres: Any, timed: bool) 
     Args:
         source: The file.
         objectives: Both objectives, of which the second is the longest route.
-        metres: The matrix of distances, if there is one.
+        metres: The matrices of distances, if there are some.
         timed: Whether the second is the clock's.
     """
 
     def is_distance(objective: Mapping[str, Any]) -> bool:
-        if "matrix" in objective:
-            return metres is not None and objective["matrix"] == metres
+        if "matrix" in objective or "matrices" in objective:
+            return metres is not None and all(objective.get(k) == v for k, v in metres.items())
         straight = objective["from"] == "great_circle" and not source.bounds.roads
         return "speed" not in objective and (straight or objective["from"] == "road_distance")
 

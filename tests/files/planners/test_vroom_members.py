@@ -147,6 +147,28 @@ DIFFERING = {
     ),
 }
 
+BOTH = {"car": {"durations": SECONDS}, "truck": {"durations": METRES}}
+
+
+def test_vehicles_of_several_profiles_have_matrices_of_their_own() -> None:
+    reading = read(of_second({"profile": "truck"}, matrices=BOTH))
+    first, longest = reading.request["objectives"]
+    assert [each["profile"] for each in reading.request["vehicles"]] == ["car", "truck"]
+    for objective in (first, longest):
+        legs = {each["profile"]: each["matrix"][0][1] for each in objective["matrices"]}
+        assert legs == {"car": 1800, "truck": 20_000}
+    assert not [note for note in reading.notes if note.code == "left-out"]
+    parse_task(TaskSource("fleet", to_json(reading.request)), LIMITS, ACTORS)
+
+
+@pytest.mark.parametrize(("known", "profile"), [(("car", "truck"), "truck"), (("car",), None)])
+def test_by_road_vehicles_have_the_profiles_that_the_routing_engine_knows(
+    known: tuple[str, ...], profile: str | None
+) -> None:
+    reading = read(of_second({"profile": "truck"}), Bounds(roads=True, profiles=known))
+    assert reading.request["vehicles"][1].get("profile") == profile
+    assert ("does not know 'truck'" in notes(reading)) == (profile is None)
+
 
 @pytest.mark.parametrize("name", DIFFERING)
 def test_vehicles_that_differ_keep_their_own_prices_and_speeds(name: str) -> None:
@@ -190,6 +212,9 @@ NOTED = {
         {"profile": "bike"}, **CARS
     ),
     "profile of vehicles": problem({"profile": "truck"}),
+    "distances of matrices was not used: not each profile has them": of_second(
+        {"profile": "truck"}, matrices={**BOTH, "car": {"durations": SECONDS, "distances": METRES}}
+    ),
     "speed_factor of vehicles": of_second({"speed_factor": "fast"}),
     "setup of jobs is part of each service": problem(job={"setup": 60, "location": NEAR}),
     "max_load of breaks of vehicles": problem(
