@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, partial
-from math import inf
+from math import ceil, inf
 from operator import le
 
 import numpy as np
@@ -98,10 +98,7 @@ def _too_heavy(rules: Rules) -> Iterator[Obstacle]:
 
 def _check_totals(rules: Rules) -> None:
     """Raise a refusal if all vehicles together hold less than the required demand."""
-    brought = [stop for stop in _required(rules) if stop not in rules.shipped]
-    for dimension in range(rules.dimensions):
-        demands = (rules.visits[stop].demand for stop in brought)
-        total = sum(demand[dimension] for demand in demands if demand)
+    for dimension, total in enumerate(_totals(rules)):
         most = sum(_holds(vehicle, dimension) for vehicle in rules.vehicles)
         if total > most:
             which = f" in number {dimension + 1} of each" if rules.dimensions > 1 else ""
@@ -114,12 +111,38 @@ def _check_totals(rules: Rules) -> None:
         raise Refusal("no-plan", reason=f"{many}, and all vehicles together may visit {stops}")
 
 
+def fewest_vehicles(rules: Rules, times: float = 1.0) -> int:
+    """Return how many vehicles every plan needs at least to bring so many times the demands."""
+    fewest = 1
+    for dimension, total in enumerate(_totals(rules)):
+        left, vehicles = times * total, 0
+        for each in sorted(rules.vehicles, key=lambda each: -_brings(each, dimension)):
+            brings = _brings(each, dimension)
+            needed = min(each.count, ceil(left / brings)) if left > 0 and brings > 0 else 0
+            left, vehicles = left - needed * brings, vehicles + needed
+        fewest = max(fewest, vehicles)
+    return fewest
+
+
+def _totals(rules: Rules) -> list[int]:
+    """Return what is brought to all stops that must be visited, in each dimension."""
+    brought = [stop for stop in _required(rules) if stop not in rules.shipped]
+    demands = [rules.visits[stop].demand for stop in brought if rules.visits[stop].demand]
+    return [sum(each[dimension] for each in demands) for dimension in range(rules.dimensions)]
+
+
 def _holds(vehicle: VehicleType, dimension: int) -> float:
     """Return the load that all vehicles of a type can bring on all of their trips."""
+    brings = _brings(vehicle, dimension)
+    return vehicle.count * brings if brings else 0.0
+
+
+def _brings(vehicle: VehicleType, dimension: int) -> float:
+    """Return the load that a vehicle can bring on all of its trips."""
     capacity = vehicle.capacity[dimension]
     initial = vehicle.initial_load[dimension] if vehicle.initial_load else 0
     trips = 1.0 if not vehicle.reload else inf if vehicle.max_trips is None else vehicle.max_trips
-    return vehicle.count * (capacity * trips - initial) if capacity else 0.0
+    return capacity * trips - initial if capacity else 0.0
 
 
 def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:

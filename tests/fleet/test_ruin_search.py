@@ -10,8 +10,11 @@ import pytest
 from service.fleet.evaluation import plan_lengths, points_of, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
+from service.fleet.necessary import fewest_vehicles
 from service.fleet.plans import FleetFront
+from service.fleet.rules import Rules
 from service.fleet.search.search import RuinSearch
+from service.fleet.vehicles import VehicleType, Visit
 from service.watch import Watch
 from tests.helpers.fleets import (
     bounded_fleet,
@@ -53,3 +56,25 @@ def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
         most = [np.multiply(each, 1 + 1e-12) for each in expected]
         whole += all(any(all(map(le, point, each)) for point in points) for each in most)
     assert whole >= 0.95 * tried > 5
+
+
+@pytest.mark.parametrize(
+    ("demands", "vehicles", "fewest"),
+    [
+        ([], [VehicleType(start=0, end=0, count=3)], 1),
+        ([(7,)] * 3, [VehicleType(start=0, end=0, count=5, capacity=(10,))], 3),
+        (
+            [(7,)] * 3,
+            [VehicleType(start=0, end=0, count=2, capacity=(size,)) for size in (4, 14)],
+            2,
+        ),
+        ([(1, 9), (1, 9)], [VehicleType(start=0, end=0, count=4, capacity=(9, 9))], 2),
+        ([(7,)] * 3, [VehicleType(start=0, end=0, count=5, capacity=(10,), reload=(0,))], 1),
+    ],
+)
+def test_loads_need_some_vehicles(
+    demands: list[tuple[int, ...]], vehicles: list[VehicleType], fewest: int
+) -> None:
+    visits = (Visit(), *(Visit(demand=each) for each in demands))
+    rules = Rules(visits=visits, vehicles=tuple(vehicles), over=("sum", "vehicles"))
+    assert fewest_vehicles(rules) == fewest

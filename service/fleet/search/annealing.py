@@ -4,6 +4,7 @@ import math
 
 from service.fleet.rounding import is_over
 from service.fleet.search.changes import begin_iteration, measure_changed, restore
+from service.fleet.search.ejection import eject
 from service.fleet.search.found import Found, offer
 from service.fleet.search.other_vehicle import SELDOM, change_vehicles, choose_type
 from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_outside
@@ -47,25 +48,19 @@ def anneal(
     Returns:
         The temperature at the end, and how often it was done.
     """
-    problem, plan, _ = state
+    problem, plan, direction = state
     beyond = _beyond(state, found)
     for number in range(ruins):
         before = total_cost(plan) + beyond
         begin_iteration(plan)
-        try_outside(plan)
-        ruin(state)
-        if problem.mixed:
-            choose_type(state)
-        more = problem.reloads and random_below(plan.random, _MORE_TRIPS) == 0
-        plan.counts[MORE_TRIPS] = more
-        recreate(state, random_below(plan.random, ORDERS))
-        if problem.mixed and random_below(plan.random, SELDOM) == 0:
-            change_vehicles(state)
+        lacked = plan.counts[MISSING] > 0
+        _make_another(state)
         exceeding = _beyond(state, found)
         after = total_cost(plan) + exceeding
-        if plan.counts[MISSING] > 0:
+        lacks = plan.counts[MISSING] > 0
+        if lacks and (lacked or not direction.steady):
             raise_prices(state)
-        elif keeps_rules(state):
+        if not lacks and keeps_rules(state):
             offer(problem, plan, found)
         if after > before - heat * math.log(uniform(plan.random)):
             restore(state)
@@ -76,6 +71,24 @@ def anneal(
         if ends_whole and plan.counts[MISSING] == 0:
             return heat, number + 1
     return heat, ruins
+
+
+@inlined
+def _make_another(state: State) -> None:
+    """Ruin and recreate the plan."""
+    problem, plan, _ = state
+    lacked = plan.counts[MISSING] > 0
+    try_outside(plan)
+    ruin(state)
+    if problem.mixed:
+        choose_type(state)
+    more = problem.reloads and random_below(plan.random, _MORE_TRIPS) == 0
+    plan.counts[MORE_TRIPS] = more
+    recreate(state, random_below(plan.random, ORDERS))
+    if problem.mixed and random_below(plan.random, SELDOM) == 0:
+        change_vehicles(state)
+    if lacked and plan.counts[MISSING] > 0:
+        eject(state)
 
 
 @inlined

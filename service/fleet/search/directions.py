@@ -15,6 +15,7 @@ from math import inf
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
+from service.fleet.necessary import fewest_vehicles
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -26,6 +27,7 @@ _LEAST_ROUNDS = 2
 _LESSER = 1e-6  # weight of the other objectives beside one alone
 _STRICT = 100.0  # what a unit over a limit costs, in units of the first objective
 _DEAR = 10.0  # what a stop outside that must be visited costs at first, in the same
+_CHEAP, _ROOM = 2.0, 1.05  # the same, where vehicles are counted that could bring so many times all
 _HOTTEST, _COLDEST = 0.1, 0.001  # temperatures, in the largest leg of each direction
 _HEAT, _POWER = 0.0008, 0.65  # the first temperature after one ruin per stop, and how it grows
 _HOT_STOPS = 250  # stops; with more, searches are as hot as with so many
@@ -37,8 +39,10 @@ _BELOW = 0.95  # how far below the least longest route limits go
 
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
 # to find one vehicle less, for the fewest, and for any number; and the chance of the fewest after
-# that. Where few vehicles are full, only a hotter search gets from one plan to the next.
+# that. Where few vehicles are full, only a hotter search gets from one plan to the next, and one
+# that may leave a stop out for a while.
 _DESCENT, _AT_FEWEST, _AT_ANY = 0.07, (0.3, 0.4), 0.5
+_ATTEMPTS = 4  # at one vehicle less
 _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
 
@@ -98,6 +102,8 @@ class Directions:
         optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
         self._by_limit = [over in _LIMITED for over in self._over]
         two = len(self._over) == OBJECTIVES and sum(self._by_limit) == 1
+        self._fewest = fewest_vehicles(fleet.rules)
+        self._roomy = fewest_vehicles(fleet.rules, _ROOM)
         self._counts_vehicles = two and "vehicles" in self._over and not optional
 
     def first(self) -> Step:
@@ -135,11 +141,11 @@ class Directions:
 
     def _by_vehicles(self) -> Iterator[Step]:
         """Yield directions to the fewest vehicles, and to the least length with each number."""
-        fewest, now = inf, self._ends()[0]
-        while 1 < now < fewest:
-            fewest = now
-            yield replace(self._at_most(fewest - 1, self._share(_DESCENT)), ends_whole=True)
-            now = self._ends()[0]
+        now, failed = self._ends()[0], 0
+        while self._fewest < now and failed < _ATTEMPTS:
+            yield replace(self._at_most(now - 1, self._share(_DESCENT)), ends_whole=True)
+            found = self._ends()[0]
+            now, failed = found, failed + 1 if found == now else 0
         for share in _AT_FEWEST:
             yield self._at_most(now, self._share(share))
         yield self._at_most(inf, self._share(_AT_ANY))
@@ -148,7 +154,7 @@ class Directions:
             yield self._at_most(limit, self._share(_AT_ANY / (limit - fewest)))
         while True:
             fewest, greatest = self._ends()
-            limit = int(self._random.integers(fewest - 1, greatest + 1))
+            limit = int(self._random.integers(max(self._fewest, fewest - 1), greatest + 1))
             often = self._random.random() < _OFTEN_FEWEST
             yield self._at_most(fewest if often else limit, self._share(_AGAIN))
 
@@ -324,6 +330,7 @@ class Directions:
             elif over == "vehicles":
                 routes = max(0, int(limits.get(index, routes)))
             by_measure[over] = float(weights[index])
+        steady = self._counts_vehicles and routes >= self._roomy
         paid = self._over.index("unassigned") if "unassigned" in self._over else 0
         return Direction(
             costs=(float(costs[0]), float(costs[1])),
@@ -340,7 +347,9 @@ class Directions:
             longest=longest,
             penalty=penalty,
             beyond=0.0,
-            required=_DEAR * unit + float(weights[0]) * self._most_fixed,
+            required=(_CHEAP if self._counts_vehicles else _DEAR) * unit
+            + float(weights[0]) * self._most_fixed,
+            steady=steady,
             routes=routes,
             bounds=bounds,
             strict=_STRICT * unit / self._scale,

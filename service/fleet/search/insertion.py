@@ -69,16 +69,22 @@ def new_slot(state: State, kind: int) -> int:
 @compiled
 def _anywhere(state: State, stop: int, best: Place) -> Place:
     """Return the cheapest place in all routes."""
-    problem, plan, _ = state
-    n = len(problem.demand)
+    plan = state.plan
     for number in range(plan.counts[USED]):
-        slot = plan.used[number]
-        if not has_room(problem, plan, stop, slot):
-            continue
-        node = n + 2 * slot
-        while node != n + 2 * slot + 1:
-            best = _better(state, stop, slot, node, best)
-            node = plan.next[node]
+        best = in_route(state, stop, plan.used[number], best)
+    return best
+
+
+@compiled
+def in_route(state: State, stop: int, slot: int, best: Place) -> Place:
+    """Return the better of two places: the best so far, and the cheapest in a route."""
+    problem, plan, _ = state
+    if not has_room(problem, plan, stop, slot):
+        return best
+    node, end = len(problem.demand) + 2 * slot, len(problem.demand) + 2 * slot + 1
+    while node != end:
+        best = _better(state, stop, slot, node, best)
+        node = plan.next[node]
     return best
 
 

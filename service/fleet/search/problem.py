@@ -363,6 +363,7 @@ class Direction(NamedTuple):
     penalty: float
     beyond: float  # price of each unit by which a route is too long or ends too late, if it may
     required: float  # price of a stop outside that must be visited, at first
+    steady: bool  # whether that price rises only while the plan that is changed lacks a stop
     routes: int  # at most
     bounds: Array  # (m,), on the lengths of a plan
     strict: Array  # (m,), what a unit beyond them costs

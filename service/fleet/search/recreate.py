@@ -64,7 +64,7 @@ def recreate(state: State, order: int) -> None:
             place = best_place(state, stop, most)
         if place.slot >= 0:
             save_slot(problem, plan, place.slot)
-            _insert(state, stop, place)
+            insert(state, stop, place)
     if problem.grouped:
         drop_halves(state)
     if problem.reloads and random_below(plan.random, SELDOM) == 0:
@@ -73,7 +73,7 @@ def recreate(state: State, order: int) -> None:
 
 
 @inlined
-def _insert(state: State, stop: int, place: Place) -> None:
+def insert(state: State, stop: int, place: Place) -> None:
     """Put a stop into its place, and of a shipment the delivery too."""
     problem, plan, _ = state
     onward = plan.via[plan.next[place.before]]
