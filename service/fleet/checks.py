@@ -17,6 +17,7 @@ class Basis(NamedTuple):
         limited: Whether the lengths of routes can be bounded.
         far: Whether there are costs that are not time.
         ships: Whether there are shipments.
+        takes: Whether there are stops with a pick-up of their own.
         dimensions: The number of dimensions of demands and capacities.
     """
 
@@ -25,6 +26,7 @@ class Basis(NamedTuple):
     limited: bool
     far: bool
     ships: bool
+    takes: bool
     dimensions: int
 
 
@@ -105,6 +107,8 @@ def _check_trips(vehicle: VehicleType, part: str, basis: Basis) -> None:
         raise invalid(f"{part}/max_trips", "no-reload")
     if vehicle.reload and vehicle.max_stops is not None:
         raise invalid(f"{part}/max_stops", "also-given", member="reload")
+    if basis.takes and vehicle.reload:
+        raise invalid(f"{part}/reload", "also-given", member="pickup of stops")
     if basis.ships:
         for name, given in (("reload", vehicle.reload), ("max_stops", vehicle.max_stops)):
             if given:
@@ -129,6 +133,9 @@ def check_visit(visit: Visit, part: str, basis: Basis) -> None:
     if visit.demand and len(visit.demand) != basis.dimensions:
         numbers, came = basis.dimensions, len(visit.demand)
         raise invalid(f"{part}/demand", "not-as-capacities", numbers=numbers, came=came)
+    if visit.pickup and len(visit.pickup) != basis.dimensions:
+        numbers, came = basis.dimensions, len(visit.pickup)
+        raise invalid(f"{part}/pickup", "not-as-capacities", numbers=numbers, came=came)
     if visit.prize is not None and not basis.summed:
         raise invalid(f"{part}/prize", "unsummed")
 
@@ -138,6 +145,7 @@ def check_depot(visit: Visit, part: str) -> None:
     members = (
         ("window", visit.windows != (ALWAYS,)),
         ("demand", any(visit.demand)),
+        ("pickup", any(visit.pickup)),
         ("service", visit.service),
         ("services", visit.services),
         ("prize", visit.prize is not None),
@@ -171,3 +179,5 @@ def check_shipped(visit: Visit, stop: int) -> None:
         raise invalid(f"stops/{stop}/windows", "windows-of-shipment")
     if visit.release:
         raise invalid(f"stops/{stop}/release", "release-of-shipment")
+    if any(visit.pickup):
+        raise invalid(f"stops/{stop}/pickup", "pickup-of-shipment")

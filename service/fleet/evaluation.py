@@ -362,15 +362,18 @@ def _loads(
     """Return the load on a trip in one dimension, at its start and after each visit.
 
     At the start it is the demand of all stops that are not in shipments, and the initial load,
-    which stays on board.
+    which stays on board, as do the pick-ups of stops.
     """
     pickups = {each.delivery: each.pickup for each in rules.shipments}
 
     def change(stop: int) -> int:
         demand = rules.visits[pickups.get(stop, stop)].demand
         load = demand[dimension] if demand else 0
-        return load if stop in rules.shipped and stop not in pickups else -load
+        taken = rules.visits[stop].pickup
+        on = taken[dimension] if taken else 0
+        return load if stop in rules.shipped and stop not in pickups else on - load
 
-    brought = -sum(change(stop) for stop in trip if stop not in rules.shipped)
+    demands = [rules.visits[stop].demand for stop in trip if stop not in rules.shipped]
+    brought = sum(demand[dimension] for demand in demands if demand)
     brought += initial_load[dimension] if initial_load else 0
     return accumulate(map(change, trip), initial=brought)

@@ -114,6 +114,9 @@ class Cutter:
         if fleet.rules.shipments:
             reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
             raise Refusal("no-plan", reason=reason)
+        if fleet.rules.takes:
+            reason = "stops with a pick-up need a time_limit over 0: no cut of a tour keeps it"
+            raise Refusal("no-plan", reason=reason)
         if any(len(visit.windows) > 1 for visit in fleet.rules.visits):
             reason = "stops with several windows need a time_limit over 0"
             raise Refusal("no-plan", reason=reason)

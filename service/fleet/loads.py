@@ -22,6 +22,7 @@ class Loads(NamedTuple):
     """
 
     demand: Indices  # (n, d); the load of a shipment is that of its pick-up
+    taken: Indices  # (n, d), what each stop puts on board, to the end
     capacity: Indices  # (v, d)
     initial: Indices  # (v, d)
 
@@ -30,6 +31,7 @@ def loads_of(rules: Rules) -> Loads:
     """Return the loads of a fleet."""
     types, none = range(len(rules.vehicles)), (0,) * rules.dimensions
     demand = [_whole([visit.demand or none for visit in rules.visits], rules.dimensions)]
+    taken = _whole([visit.pickup or none for visit in rules.visits], rules.dimensions)
     capacity = [_whole([each.capacity for each in rules.vehicles], rules.dimensions)]
     some = {rules.servers(stop) for stop in rules.clients} - {frozenset(types)}
     for servers in sorted(some, key=sorted):
@@ -46,7 +48,10 @@ def loads_of(rules: Rules) -> Loads:
     initial = np.zeros_like(capacities)
     loaded = [vehicle.initial_load or none for vehicle in rules.vehicles]
     initial[:, : rules.dimensions] = _whole(loaded, rules.dimensions)
-    return Loads(np.hstack(demand), capacities, initial)
+    demands = np.hstack(demand)
+    put = np.zeros_like(demands)
+    put[:, : rules.dimensions] = taken
+    return Loads(demands, put, capacities, initial)
 
 
 def _whole(rows: list[tuple[int, ...]], dimensions: int) -> Indices:

@@ -89,21 +89,27 @@ def _unserved(rules: Rules) -> Iterator[Obstacle]:
 def _too_heavy(rules: Rules) -> Iterator[Obstacle]:
     """Yield the stops whose demand exceeds the capacity of every vehicle."""
     for stop in _required(rules):
-        demand = rules.visits[stop].demand  # of every dimension, or empty
+        # Each of every dimension, or empty.
+        loads = (rules.visits[stop].demand, rules.visits[stop].pickup)
         vehicles = [rules.vehicles[each] for each in rules.servers(stop)]
-        if not any(all(map(le, demand, vehicle.capacity)) for vehicle in vehicles):
+        if not any(all(_fits(load, vehicle) for load in loads) for vehicle in vehicles):
             some = len(vehicles) < len(rules.vehicles)
             yield Obstacle("too-heavy-for-its-vehicles" if some else "too-heavy", (stop,))
 
 
+def _fits(load: tuple[int, ...], vehicle: VehicleType) -> bool:
+    return all(map(le, load, vehicle.capacity))
+
+
 def _check_totals(rules: Rules) -> None:
     """Raise a refusal if all vehicles together hold less than the required demand."""
-    for dimension, total in enumerate(_totals(rules)):
-        most = sum(_holds(vehicle, dimension) for vehicle in rules.vehicles)
-        if total > most:
-            which = f" in number {dimension + 1} of each" if rules.dimensions > 1 else ""
-            sums = f"the demands sum to {total}{which}"
-            raise Refusal("no-plan", reason=f"{sums}, and all vehicles together hold {int(most)}")
+    for name in ("demand", "pickup"):
+        for dimension, total in enumerate(_totals(rules, name)):
+            most = sum(_holds(vehicle, dimension) for vehicle in rules.vehicles)
+            if total > most:
+                which = f" in number {dimension + 1} of each" if rules.dimensions > 1 else ""
+                hold = f"all vehicles together hold {int(most)}"
+                raise Refusal("no-plan", reason=f"the {name}s sum to {total}{which}, and {hold}")
     limits = [(each.count, each.max_stops) for each in rules.vehicles]
     stops = sum(inf if each is None else count * each for count, each in limits)
     if len(_required(rules)) > stops:
@@ -124,11 +130,11 @@ def fewest_vehicles(rules: Rules, times: float = 1.0) -> int:
     return fewest
 
 
-def _totals(rules: Rules) -> list[int]:
-    """Return what is brought to all stops that must be visited, in each dimension."""
-    brought = [stop for stop in _required(rules) if stop not in rules.shipped]
-    demands = [rules.visits[stop].demand for stop in brought if rules.visits[stop].demand]
-    return [sum(each[dimension] for each in demands) for dimension in range(rules.dimensions)]
+def _totals(rules: Rules, name: str = "demand") -> list[int]:
+    """Return the sum of a load of all stops that must be visited, in each dimension."""
+    alone = [stop for stop in _required(rules) if stop not in rules.shipped]
+    loads = [load for stop in alone if (load := getattr(rules.visits[stop], name))]
+    return [sum(each[dimension] for each in loads) for dimension in range(rules.dimensions)]
 
 
 def _holds(vehicle: VehicleType, dimension: int) -> float:

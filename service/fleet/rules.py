@@ -130,6 +130,7 @@ class Rules:
             limited=self.limited is not None,
             far=self.clock != 0 or 1 in self._costly_layers,
             ships=bool(self.shipments),
+            takes=self.takes,
             dimensions=self.dimensions,
         )
 
@@ -250,6 +251,11 @@ class Rules:
     def reloads(self) -> bool:
         """Whether some vehicles may load again on their way."""
         return any(vehicle.reload for vehicle in self.vehicles)
+
+    @cached_property
+    def takes(self) -> bool:
+        """Whether some stops put something on board that stays there."""
+        return any(any(visit.pickup) for visit in self.visits)
 
     @cached_property
     def priced(self) -> bool:

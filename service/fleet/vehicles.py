@@ -30,6 +30,7 @@ class Visit:
         promised_to: The type of vehicles that should visit it, as it does in a plan that is driven
             or was promised; -1 if that has gone, and None if the stop was not in that plan.
         promised_by: When the visit begins in that plan.
+        pickup: The load taken on there, which stays on board to the end, in each dimension.
     """
 
     demand: tuple[int, ...] = ()
@@ -45,6 +46,7 @@ class Visit:
     services: tuple[float, ...] = ()
     promised_to: int | None = None
     promised_by: float = inf
+    pickup: tuple[int, ...] = ()
 
     def service_by(self, vehicle: int) -> float:
         """Return how long the visit takes by a type of vehicles, before its factor."""

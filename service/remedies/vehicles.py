@@ -13,7 +13,7 @@ _LARGER = (25, 50, 100, 200, 400)  # per cent
 
 def load_again(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Let vehicles load again where they start, as often as needed."""
-    if asked.rules.shipments or not asked.rules.dimensions:
+    if asked.rules.shipments or asked.rules.takes or not asked.rules.dimensions:
         return None
     rules, patch = asked.changed(_with_trips)
     return Remedy("load-again", patch, {}) if patch and tried(rules) else None

@@ -65,6 +65,11 @@ class FleetStopItem(NamedStop):
         description="whole numbers, one for each dimension of the vehicle's capacity: what it"
         " delivers, or what it takes on where the stop is the pick-up of a shipment",
     )
+    pickup: Loads = Field(
+        default_factory=list,
+        description="whole numbers, as of `demand`: what it takes on there, after what it delivers,"
+        " and brings to its end",
+    )
     service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
     services: Annotated[list[ServiceItem], Field(max_length=_MOST_SERVICES, fail_fast=True)] = (
         Field(
@@ -114,6 +119,7 @@ class FleetStopItem(NamedStop):
         wanted, due = self.due if isinstance(self.due, list) else (0.0, self.due)
         return Visit(
             demand=tuple(self.demand),
+            pickup=tuple(self.pickup),
             service=self.service,
             windows=tuple(_spans(self.window, self.windows, f"{part}/window")),
             prize=self.prize,

@@ -22,6 +22,7 @@ from tests.helpers.fleets import (
     mixed_fleet,
     random_fleet,
     shipping_fleet,
+    taking_fleet,
     tidy_fleet,
     varied_fleet,
 )
@@ -35,7 +36,11 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
 
 
 @pytest.mark.parametrize(
-    "fleet_of", [random_fleet, bounded_fleet, mixed_fleet, shipping_fleet, tidy_fleet, varied_fleet]
+    "fleet_of",
+    [
+        *(random_fleet, bounded_fleet, mixed_fleet, shipping_fleet),
+        *(tidy_fleet, varied_fleet, taking_fleet),
+    ],
 )
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
     fleet_of: Callable[[int], Fleet],

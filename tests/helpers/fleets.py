@@ -123,6 +123,28 @@ def shipping_fleet(seed: int) -> Fleet:
     return Fleet(rules=shipped, costs=fleet.costs)
 
 
+def taking_fleet(seed: int) -> Fleet:
+    """Return a fleet with shipments or without, whose other stops put something on board."""
+    fleet = (shipping_fleet, mixed_fleet, random_fleet)[seed % 3](seed)
+    rules, random = fleet.rules, np.random.default_rng([seed, 4])
+    visits = tuple(
+        dataclasses.replace(visit, pickup=(int(random.integers(0, 5)),))
+        if stop in rules.clients and stop not in rules.shipped
+        else visit
+        for stop, visit in enumerate(rules.visits)
+    )
+    vehicles = tuple(
+        dataclasses.replace(each, reload=(), max_trips=None) for each in rules.vehicles
+    )
+    # A stop at which vehicles loaded again is none to visit, though none starts or ends there.
+    gone = rules.depots - dataclasses.replace(rules, visits=visits, vehicles=vehicles).depots
+    visits = tuple(
+        Visit(prize=0.0) if stop in gone and rules.over[0] == "sum" else visit
+        for stop, visit in enumerate(visits)
+    )
+    return fleet.under(dataclasses.replace(rules, visits=visits, vehicles=vehicles))
+
+
 def grouped_fleet(seed: int) -> Fleet:
     """Return a fleet of three or four stops that ride together, apart or in order, or are many."""
     fleet = _bounded(seed, *MIXED[seed % len(MIXED)], least=3)

@@ -154,6 +154,57 @@ def test_the_vehicle_drives_that_was_asked_for(thread: str) -> None:
     assert [route["vehicle"] for route in planned(request)["routes"]] == [expected]
 
 
+EMPTIES = {
+    # Two stops are full of what comes back: the one that gives most is served last.
+    "vroom#565": ({"demand": [1], "pickup": [4]}, {"demand": [3], "pickup": [2]}, ["east", "west"]),
+    "vroom#880": ({"demand": [3], "pickup": [2]}, {"demand": [1], "pickup": [4]}, ["west", "east"]),
+}
+
+
+@pytest.mark.parametrize("case", EMPTIES)
+def test_a_stop_takes_goods_and_gives_others_back(case: str) -> None:
+    """A route starts with all that it brings, and ends with all that it takes back."""
+    west, east, order = EMPTIES[case]
+    stops = {"west": {"at": WEST, **west}, "east": {"at": EAST, **east}}
+    [route] = planned(fleet(stops, van={"capacity": [6]}))["routes"]
+    assert (route["stops"][1:3], route["load"]) == (order, [6])
+    with pytest.raises(Refusal, match="the pickups sum to 6"):
+        planned(fleet(stops, van={"capacity": [5]}))
+
+
+def test_what_was_taken_on_stays_on_board_while_the_fleet_is_replanned() -> None:
+    stops = {
+        "west": {"at": WEST, "demand": [1], "pickup": [4]},
+        "east": {"at": EAST, "demand": [1], "pickup": [1]},
+        "far": {"at": FAR, "demand": [0], "pickup": [2], "prize": 500},
+    }
+    _, source = begun_with("west", fleet(stops, van={"capacity": [6]}))
+    rest = parse_replan(source, LIMITS, {})
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    [plan, *_] = json.loads(document.json(id="", status="done"))["front"]
+    assert ([each["load"] for each in plan["routes"]], plan["unassigned"]) == ([[5]], ["far"])
+
+
+@pytest.mark.parametrize(
+    ("members", "pointer", "code"),
+    [
+        ({"van": {"capacity": [6], "reload": [0]}}, "/vehicles/0/reload", "also-given"),
+        ({"van": {"capacity": [6, 6]}}, "/stops/1/pickup", "not-as-capacities"),
+        (
+            {"van": {"capacity": [6]}, "shipments": [{"pickup": 1, "delivery": 2}]},
+            *("/stops/1/pickup", "pickup-of-shipment"),
+        ),
+    ],
+)
+def test_goods_that_come_back_are_refused_where_they_cannot(
+    members: Json, pointer: str, code: str
+) -> None:
+    with pytest.raises(Refusal) as refused:
+        planned(fleet({"west": {"at": WEST, "pickup": [4]}, "east": {"at": EAST}}, **members))
+    [fault] = refused.value.errors
+    assert (fault.pointer, fault.code) == (pointer, code)
+
+
 def by_profile(request: Json, **factors: float) -> Json:
     """Return a request whose vehicles have profiles, and matrices in which they differ."""
     for objective in request["objectives"]:

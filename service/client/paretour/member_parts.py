@@ -83,6 +83,7 @@ class FleetStopRequest(TypedDict, total=False):
     id: Required[str]
     location: ArrayLike | None
     demand: ArrayLike
+    pickup: ArrayLike
     service: float
     services: Sequence[ServiceRequest]
     window: ArrayLike | None
@@ -300,6 +301,7 @@ class NewFleetStopRequest(TypedDict, total=False):
     id: Required[str]
     location: ArrayLike | None
     demand: ArrayLike
+    pickup: ArrayLike
     service: float
     services: Sequence[ServiceRequest]
     window: ArrayLike | None
@@ -327,6 +329,7 @@ class OfferedOrderRequest(TypedDict, total=False):
     id: Required[str]
     location: ArrayLike | None
     demand: ArrayLike
+    pickup: ArrayLike
     service: float
     services: Sequence[ServiceRequest]
     due: float | ArrayLike | None

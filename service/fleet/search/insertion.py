@@ -113,12 +113,25 @@ def has_room(problem: Problem, plan: WorkingPlan, stop: int, slot: int) -> bool:
     fits = True
     if problem.grouped and not may_join(problem, plan, stop, slot):
         return False
+    if problem.takes and not _may_take(problem, plan, stop, slot):
+        return False
     if problem.ships or plan.counts[MORE_TRIPS] > 0 or plan.trips[slot] > 1:
         for dimension in range(plan.load.shape[1]):
             fits &= problem.demand[stop, dimension] <= problem.whole[kind, dimension]
         return fits
     for dimension in range(plan.load.shape[1]):
         load = plan.load[slot, dimension] + problem.demand[stop, dimension]
+        fits &= load <= problem.capacity[kind, dimension]
+    return fits
+
+
+@inlined
+def _may_take(problem: Problem, plan: WorkingPlan, stop: int, slot: int) -> bool:
+    """Return whether a vehicle can hold at its end what one more stop puts on board as well."""
+    kind, fits = problem.kind[slot], True
+    last = plan.previous[len(problem.demand) + 2 * slot + 1]
+    for dimension in range(plan.on.shape[1]):
+        load = plan.on[last, dimension] + problem.taken[stop, dimension]
         fits &= load <= problem.capacity[kind, dimension]
     return fits
 
@@ -152,18 +165,24 @@ def _better(
         return best
     if problem.reloads:
         return _with_reloads(state, stop, slot, before, best)
-    if problem.ships and not _ships_too(problem, plan, stop, slot, before):
+    if problem.carries and not _carries_too(problem, plan, stop, slot, before):
         return best
     return better_at(state, stop, Spot(slot, before, -1, -1), best)
 
 
 @inlined
-def _ships_too(problem: Problem, plan: WorkingPlan, stop: int, slot: int, before: int) -> bool:
-    """Return whether a vehicle with shipments can bring one more stop's load after a node."""
+def _carries_too(problem: Problem, plan: WorkingPlan, stop: int, slot: int, before: int) -> bool:
+    """Return whether a vehicle can bring one more stop's load after a node, and take it on there.
+
+    What is brought is on board up to there, what is taken on from there on.
+    """
     kind, fits = problem.kind[slot], True
     for dimension in range(plan.most.shape[1]):
         load = plan.most[before, dimension] + problem.demand[stop, dimension]
         fits &= load <= problem.capacity[kind, dimension]
+        if problem.takes:
+            load = plan.later[before, dimension] + problem.taken[stop, dimension]
+            fits &= load <= problem.capacity[kind, dimension]
     return fits
 
 

@@ -26,7 +26,7 @@ def gather(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> bool:
         node = plan.previous[node]
     plan.size[slot] = size
     plan.value[slot, RELEASED] = released
-    if problem.ships:
+    if problem.carries:
         return _ship(problem, plan, slot, start)
     if problem.reloads:
         return _reload(problem, plan, slot, start)
@@ -46,7 +46,7 @@ def _fits(problem: Problem, plan: WorkingPlan, slot: int) -> bool:
 def _ship(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> bool:
     """Write the load on board after each node, and the most so far; return whether it fits.
 
-    All but the loads of shipments are on board from the start.
+    All but the loads of shipments are on board from the start, and what stops put on board stays.
     """
     fits, kind = True, problem.kind[slot]
     for dimension in range(plan.load.shape[1]):
@@ -61,12 +61,27 @@ def _ship(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> bool:
             elif problem.pickup[node] >= 0:
                 on -= problem.demand[problem.pickup[node], dimension]
             else:
-                on -= problem.demand[node, dimension]
+                on += problem.taken[node, dimension] - problem.demand[node, dimension]
             most = max(most, on)
             plan.on[node, dimension], plan.most[node, dimension] = on, most
             node = plan.next[node]
         fits &= most <= problem.capacity[kind, dimension]
+        if dimension == 0:
+            plan.ahead[start + 1] = on + problem.initial[kind]
+        if problem.takes:
+            _look_ahead(plan, start, dimension)
     return fits
+
+
+@inlined
+def _look_ahead(plan: WorkingPlan, start: int, dimension: int) -> None:
+    """Write the most load that is on board after each node or a later one."""
+    most, node = 0, plan.previous[start + 1]
+    while node != start:
+        most = max(most, plan.on[node, dimension])
+        plan.later[node, dimension] = most
+        node = plan.previous[node]
+    plan.later[start, dimension] = max(most, plan.on[start, dimension])
 
 
 @compiled

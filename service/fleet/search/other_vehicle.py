@@ -100,8 +100,10 @@ def _holds(problem: Problem, plan: WorkingPlan, slot: int, kind: int) -> bool:
     fits = plan.trips[slot] <= 1
     if problem.ships:
         return fits
+    start = len(problem.demand) + 2 * slot
     for dimension in range(plan.load.shape[1]):
-        fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]
+        load = plan.later[start, dimension] if problem.takes else plan.load[slot, dimension]
+        fits &= load <= problem.capacity[kind, dimension]
     return fits
 
 

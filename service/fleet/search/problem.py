@@ -50,6 +50,9 @@ class Problem(NamedTuple):
     swept: int  # the number of the costs by which the longest route counts; -1 if it does not
     forbidden: float  # legs of this cost must not be taken
     demand: Indices  # (n, d)
+    taken: Indices  # (n, d), what each stop puts on board, to the end
+    takes: bool  # whether some stops do
+    carries: bool  # whether there are these or shipments, so that the load may rise on the way
     service: Array  # (p, n), by profile
     held: Array  # (n,), how long a vehicle waits at least that reaches the stop just in time
     release: Array  # (n,)
@@ -143,6 +146,9 @@ def problem_of(fleet: Fleet) -> Problem:
         swept=-1 if rules.swept is None else rules.swept,
         forbidden=forbidden,
         demand=loads.demand,
+        taken=loads.taken,
+        takes=rules.takes,
+        carries=rules.takes or bool(rules.shipments),
         service=np.array([each.services for each in profiles]),
         held=np.maximum(0.0, opens - closes),
         release=_floats([visit.release for visit in visits]),

@@ -198,7 +198,7 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
     apart from those of measure(), which is due when the plan is kept.
     """
     problem, plan, direction = state
-    whole = problem.ships or problem.reloads or problem.weighs or direction.load_distance > 0
+    whole = problem.carries or problem.reloads or problem.weighs or direction.load_distance > 0
     if problem.clock >= 0 or whole:
         return measure(state, slot)
     mark_used(plan, slot)
@@ -255,6 +255,8 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     for dimension in range(plan.load.shape[1]):
         plan.load[slot, dimension] = 0
         plan.on[start, dimension] = plan.most[start, dimension] = 0
+        if problem.takes:
+            plan.later[start, dimension] = 0
     for column in range(plan.value.shape[1]):
         plan.value[slot, column] = 0.0
     kind, profile = problem.kind[slot], problem.profile[slot]

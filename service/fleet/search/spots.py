@@ -195,7 +195,14 @@ def _loaded(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot, detour: 
     """Return what loads times distances grow by with a stop in a spot, without reloads."""
     profile, before = problem.profile[spot.slot], spot.before
     to = plan.along[before] + leg(problem, profile, problem.place[before], stop, 0)
-    return problem.demand[stop, 0] * to + plan.ahead[plan.next[before]] * detour
+    loaded = problem.demand[stop, 0] * to + plan.ahead[plan.next[before]] * detour
+    if problem.takes:
+        end, after = len(problem.demand) + 2 * spot.slot + 1, plan.next[before]
+        onward = leg(problem, profile, stop, problem.place[after], 0)
+        if after != end:
+            onward += plan.along[end] - plan.along[after]
+        loaded += problem.taken[stop, 0] * onward
+    return loaded
 
 
 @inlined

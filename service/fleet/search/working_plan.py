@@ -31,6 +31,7 @@ class WorkingPlan(NamedTuple):
     ahead: Indices  # (n + 2 r,), the load on the leg to here, in the first dimension
     on: Indices  # (n + 2 r, d), with shipments the load on board after the visit, with reloads
     most: Indices  # what this trip has brought; and the most load up to here, or of this trip
+    later: Indices  # (n + 2 r, d), with pick-ups of stops, the most load after here or a later stop
     released: Array  # (n + 2 r,), when the load of the trip that begins on the way is released
     ready: Array  # (n + 2 r,), when the visit ends at the earliest
     late: Array  # (n + 2 r,), the lateness up to here
@@ -94,6 +95,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         ahead=np.zeros(nodes, np.int64),
         on=np.zeros((nodes, d), np.int64),
         most=np.zeros((nodes, d), np.int64),
+        later=np.zeros((nodes if problem.takes else 1, d), np.int64),
         released=np.zeros(nodes),
         ready=np.zeros(nodes),
         late=np.zeros(nodes),

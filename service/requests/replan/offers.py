@@ -199,9 +199,10 @@ def _check_order(order: OfferedOrder, fleet: UnmeasuredFleet) -> None:
     for name in _OF_SLOTS:
         if name in order.model_fields_set:
             raise invalid(f"order/{name}", "not-beside", member="slots")
-    numbers, came = fleet.rules.dimensions, len(order.demand)
-    if order.demand and came != numbers:
-        raise invalid("order/demand", "not-as-capacities", numbers=numbers, came=came)
+    numbers = fleet.rules.dimensions
+    for name, load in (("demand", order.demand), ("pickup", order.pickup)):
+        if load and len(load) != numbers:
+            raise invalid(f"order/{name}", "not-as-capacities", numbers=numbers, came=len(load))
 
 
 def _check_count(part: str, count: int, most: int) -> None:

@@ -223,8 +223,21 @@ class _Rest:
             min_stops=max(0, vehicle.min_stops - len(way.done)),
             shortest=max(0.0, vehicle.shortest - gone),
             max_trips=None if trips is None else max(1, trips - way.trips),
-            initial_load=() if way.trips or way.is_back else vehicle.initial_load,
+            initial_load=self._on_board(way, vehicle),
         )
+
+    def _on_board(self, way: Way, vehicle: VehicleType) -> tuple[int, ...]:
+        """Return the load that stays on board to the end: from the start, and from stops.
+
+        A vehicle that holds too much takes on no more.
+        """
+        taken = [self._rules.visits[stop].pickup for stop in way.done]
+        if way.trips or way.is_back:
+            return ()
+        if not any(map(any, taken)):
+            return vehicle.initial_load
+        loads = [load for load in (vehicle.initial_load, *taken) if load]
+        return tuple(map(min, map(sum, zip(*loads, strict=True)), vehicle.capacity))
 
     def _visit(self, stop: int) -> Visit:
         """Return what a stop of the rest asks for."""

@@ -154,10 +154,12 @@ class Judge:
         loads = []
         for stop in trips[number]:
             demand = self.stops[self.pickup_of.get(stop, stop)].get("demand") or [0] * 9
-            loads.append(demand[dimension] if stop in deliveries else -demand[dimension])
+            taken = self.stops[stop].get("pickup") or [0] * 9
+            brought = -demand[dimension] if stop not in deliveries else demand[dimension]
+            loads.append(brought + taken[dimension])
         shipped = {*deliveries, *self.pickup_of}
-        pairs = zip(trips[number], loads, strict=True)
-        first = -sum(load for stop, load in pairs if stop not in shipped)
+        demands = [self.stops[s].get("demand") for s in trips[number] if s not in shipped]
+        first = sum(demand[dimension] for demand in demands if demand)
         if number == 0 and vehicle.get("initial_load"):
             first += vehicle["initial_load"][dimension]
         return list(accumulate(loads, initial=first))

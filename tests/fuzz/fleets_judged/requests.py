@@ -12,6 +12,7 @@ _MEASURES = (
     *("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"),
     *("earliness", "weighted_arrival", "overlap"),
 )
+TAKING = 0.3  # share of fleets with stops that put something on board
 PROFILED = 0.2  # share of fleets whose vehicles have profiles
 _TIMED = ("overtime", "lateness", "earliness", "weighted_arrival")
 
@@ -56,8 +57,21 @@ def _add_some(rng: random.Random, request: Json, matrices: Sequence[Any], depots
         _add_differences(rng, request, depots, timed)
     if rng.random() < 0.2:
         _add_limits(rng, request, timed)
+    if rng.random() < TAKING:
+        _add_pickups(rng, request)
     if rng.random() < PROFILED:
         _add_profiles(rng, request, matrices)
+
+
+def _add_pickups(rng: random.Random, request: Json) -> None:
+    """Let some stops put something on board, where vehicles do not load again."""
+    dimensions = len(request["vehicles"][0].get("capacity", ()))
+    shipped = {stop for each in request["shipments"] for stop in each.values()}
+    if not dimensions or any("reload" in vehicle for vehicle in request["vehicles"]):
+        return
+    for number, stop in enumerate(request["stops"]):
+        if "demand" in stop and number not in shipped and rng.random() < 0.7:
+            stop["pickup"] = [rng.randint(0, 4) for _ in range(dimensions)]
 
 
 def _add_profiles(rng: random.Random, request: Json, matrices: Sequence[Any]) -> None:
