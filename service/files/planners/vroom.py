@@ -8,7 +8,7 @@ from service.files.fleets import Stop, Vehicle, fleet_request, have_times, spans
 from service.files.places import check_range
 from service.files.planners.vroom_costs import objectives_of
 from service.files.planners.vroom_members import note_others
-from service.files.planners.vroom_times import VroomTask, add_services, load_of_jobs
+from service.files.planners.vroom_times import VroomTask, add_services, load_of_jobs, pickup_of
 from service.files.reading import Reading, Source, quoted
 
 _NO_BREAKS = "breaks of vehicles without exactly one time window were left out."
@@ -72,13 +72,13 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
     problem = _Problem(source)
     note_others(source, [value], "the problem")
     vehicles = _vehicles(problem, value)
-    load = load_of_jobs(source, value)
+    load = load_of_jobs(value)
     for job, where in _items(source, value, "jobs"):
         name = str(job.get("id", len(problem.stops)))
         skills = _skills(source, job, where)
         windows = _windows(source, job, where)
-        demand = job.get(load, job.get("amount"))
-        problem.add_task(job, "jobs", where, id=name, demand=demand, skills=skills, **windows)
+        members = {"demand": job.get(load, job.get("amount")), **pickup_of(job, load)}
+        problem.add_task(job, "jobs", where, id=name, skills=skills, **members, **windows)
     shipments = [
         _shipment(problem, each, where) for each, where in _items(source, value, "shipments")
     ]

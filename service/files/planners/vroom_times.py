@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from service.files.fleets import Stop
-from service.files.planners.vroom_members import note_unused
 from service.files.reading import Source
 
 
@@ -68,7 +67,7 @@ def _times(source: Source, task: VroomTask, name: str, types: Sequence[str]) -> 
     return found
 
 
-def load_of_jobs(source: Source, problem: Mapping[str, Any]) -> str:
+def load_of_jobs(problem: Mapping[str, Any]) -> str:
     """Return the member that is the demand of jobs: delivery; or pickup if there is nothing else.
 
     Vehicles that only bring things back have room for as much as those that only take things along.
@@ -78,7 +77,10 @@ def load_of_jobs(source: Source, problem: Mapping[str, Any]) -> str:
     if not any(each.get("pickup") not in (None, []) and each["pickup"] != [0] for each in jobs):
         return "delivery"
     brought = any(each.get("delivery") or each.get("amount") for each in jobs)
-    if brought or problem.get("shipments"):
-        note_unused(source, "pickup", "jobs")
-        return "delivery"
-    return "pickup"
+    return "delivery" if brought or problem.get("shipments") else "pickup"
+
+
+def pickup_of(job: Mapping[str, Any], load: str) -> dict[str, Any]:
+    """Return what a job puts on board as a member of a stop, unless that is its demand."""
+    taken = job.get("pickup")
+    return {"pickup": taken} if load == "delivery" and taken not in (None, []) else {}

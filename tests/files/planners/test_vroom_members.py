@@ -224,7 +224,6 @@ NOTED = {
         {"max_distance": 9000}, matrices={"car": {"durations": SECONDS}}
     ),
     "priority of jobs": problem(job={"priority": 5}),
-    "pickup of jobs": problem({"capacity": [9]}, {"pickup": [1], "delivery": [1]}),
     "steps of vehicles": problem({"steps": [{"type": "start"}]}),
     "options of the problem": problem(options={"g": True}),
     "colour of vehicles": problem({"colour": "red"}),
