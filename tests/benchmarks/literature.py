@@ -1,7 +1,7 @@
 """`python -m tests.benchmarks literature`: PA-One in the frame of the literature's networks.
 
 Uniform cities in two unit squares, 101 directions, and for each size the reference point that is
-used there. The instances are ours, for theirs are not at hand. The rows: the network alone, without
+used there. The instances are ours; `public` measures theirs. The rows: the network alone, without
 repairs, with as many as the service makes by default, and with as many as gain; with the search for
 a while after it; and at equal time the network with the repairs that fit, and the search from
 nothing. Each gives at most 101 tours. Seconds are those of the processor, on one thread. What is

@@ -1,7 +1,7 @@
 """`python -m tests.benchmarks tri`: PA-One under three objectives, in the frame of the literature.
 
 Uniform cities in three unit squares, the 105 weights of the lattice of 13 steps, and for each size
-the reference point that is used there. The instances are ours, for theirs are not at hand; so the
+the reference point that is used there. The instances are ours, `public` measures theirs; so the
 weighted sums stand beside the network, each nearly as short as it can be, by the search. The rows:
 the network without repairs, with as many as the service makes by default, and with more; every tour
 of a call counts, with those visited on the way; and the search for the whole front, from nothing,
