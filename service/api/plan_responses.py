@@ -108,6 +108,11 @@ class FleetAnswer(FrontAnswer):
     clock: ObjectiveName | SkipJsonSchema[None] = Field(
         default=None, description="the name and unit of all times, if there is a clock"
     )
+    driven: Lengths | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of a replanned fleet: the lengths of the rest of the plan that is driven,"
+        " without new stops, if it keeps every rule",
+    )
 
 
 class RobotRouteItem(BaseModel):

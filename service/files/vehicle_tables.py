@@ -11,7 +11,7 @@ from service.files.cells.times import (
     seconds_in,
     spans_in,
 )
-from service.files.column_names import fields_of, is_about_vehicles
+from service.files.column_names import fields_of, is_about_vehicles, plain_name
 from service.files.columns import Columns, columns_of, columns_of_vehicles
 from service.files.depots import with_depots
 from service.files.fleets import Stop, Vehicle, fleet_of_tables, have_times, spans
@@ -102,7 +102,7 @@ class _Vehicles:
         """Return the vehicles with their ids, counts, places and shifts."""
         columns = self._columns
         rows = range(len(columns.table.rows))
-        plate = columns.find("plate")
+        plate = self._id_beside_names() if columns.find("plate") is None else columns.find("plate")
         if plate is not None and "id" not in columns.fields:
             columns.fields[plate] = "id"
             plate = None
@@ -114,6 +114,18 @@ class _Vehicles:
             ids = [f"vehicle {row + 1}" for row in rows]
             self._source.note("ids", "No column has names of vehicles: they are numbered from 1.")
         return [self._vehicle(row, id_) for row, id_ in zip(rows, ids, strict=True)]
+
+    def _id_beside_names(self) -> int | None:
+        """Take a column `id` beside one of drivers, which names the vehicles, for their plates."""
+        columns = self._columns
+        plain = [plain_name(name) for name in columns.names]
+        if "id" not in columns.fields or "id" not in plain:
+            return None
+        at = plain.index("id")
+        if columns.fields[at] is not None or columns.is_chosen(at):
+            return None
+        columns.fields[at] = "plate"
+        return at
 
     def _with_plates(self, names: list[str], plate: int) -> list[str]:
         """Return ids of vehicles that say their names or drivers, and their plates."""

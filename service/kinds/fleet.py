@@ -9,7 +9,14 @@ from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import NoTour, Refusal
-from service.fleet.evaluation import measures, most_carried, route_lengths, unassigned
+from service.fleet.evaluation import (
+    first_broken,
+    measures,
+    most_carried,
+    plan_lengths,
+    route_lengths,
+    unassigned,
+)
 from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
 from service.fleet.necessary import least_lengths
@@ -66,6 +73,7 @@ def run_fleet(
 
     watch = watch.lasting(task.options.time_limit or _UNLIMITED_EXPLAINING)
     fleet = subject.fleet()
+    known["driven"] = None if driven is None else _lengths_of(fleet, driven)
     timings = {**task.timings, "costs": 1000 * watch.spent}
     try:
         front = plan_front(task, fleet, actor, watch.converting(encoded), driven)
@@ -175,6 +183,13 @@ def document_of_plans(
     return FrontDocument.of(
         front, hypervolume_bound=None, actor=network, tours=plans, ends=ends, **members
     )
+
+
+def _lengths_of(fleet: Fleet, driven: Plan) -> list[float] | None:
+    """Return the lengths of the rest of a plan that is driven; None if it cannot go on so."""
+    if any(first_broken(fleet, route) for route in driven.routes):
+        return None
+    return list(plan_lengths(fleet, driven))
 
 
 def _with_kept(members: dict[str, Any], driven: Plan | None, plan: Plan) -> dict[str, Any]:

@@ -45,6 +45,7 @@ class FrontDocument:
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
         clock: Name and unit of all times of a fleet, if it has a clock.
+        driven: The lengths of the rest of the plan that is driven, where a fleet was replanned.
         uncovered: The free cells of a map that are out of reach.
         notes: What is likely to be a mistake in the request; None where nothing is.
         tours: The JSON of all tours, separated by commas, without brackets.
@@ -68,6 +69,7 @@ class FrontDocument:
     objectives: list[dict[str, Any]] | None = None
     stops: list[dict[str, Any]] | None = None
     clock: dict[str, Any] | None = None
+    driven: list[float] | None = None
     uncovered: dict[str, Any] | None = None
     notes: list[dict[str, str]] | None = None
     tours: bytes = b""

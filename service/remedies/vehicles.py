@@ -1,5 +1,6 @@
 """Remedies by what vehicles can do: more of them, larger ones, more trips, stops and skills."""
 
+from collections.abc import Sequence
 from functools import partial
 
 from service.errors import Remedy
@@ -47,13 +48,23 @@ def larger_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
     for item in asked.items[:_MOST_ITEMS] if asked.rules.dimensions else ():
         if found := asked.least_change(_LARGER, partial(_with_larger, item), tried):
             share, patch = found
-            return Remedy("larger-vehicles", patch, {"vehicle": item, "share": share})
+            before = asked.first_of(item)
+            after = _larger(share, before)
+            amounts = {"holds": _listed(after), "before": _listed(before.capacity)}
+            return Remedy("larger-vehicles", patch, {"vehicle": item, "share": share, **amounts})
     return None
 
 
+def _listed(capacity: Sequence[int]) -> str:
+    return " and ".join(map(str, capacity))
+
+
+def _larger(share: int, vehicle: VehicleType) -> tuple[int, ...]:
+    return tuple(-(-each * (100 + share) // 100) for each in vehicle.capacity)
+
+
 def _with_larger(item: str, share: int, name: str, vehicle: VehicleType) -> Members:
-    larger = tuple(-(-each * (100 + share) // 100) for each in vehicle.capacity)
-    return {"capacity": larger} if name == item else {}
+    return {"capacity": _larger(share, vehicle)} if name == item else {}
 
 
 def more_stops(asked: AskedFleet, tried: Try) -> Remedy | None:

@@ -472,6 +472,11 @@ HEADINGS: dict[str, tuple[list[str], Becomes | str]] = {
         stops("depot a b c", vehicle=[None, "Pekka, AB-1", "Anna, AB-2", "Anna, AB-2"],
               request={"vehicles": [{"id": "Pekka, AB-1", "start": "depot", "end": "depot"}, {"id": "Anna, AB-2", "start": "depot", "end": "depot"}]}),
     ),
+    "a driver with an id": (
+        [f"id,Lat,Lon,driver\ndepot,{PLACES[0]},\na,{PLACES[1]},Pekka\nb,{PLACES[1]},V2\n", "id,driver,capacity\nV1,Pekka,4\nV2,Anna,5\n"],
+        stops("depot a b", vehicle=[None, "Pekka, V1", "Anna, V2"],
+              request={"vehicles": [{"id": "Pekka, V1", "start": "depot", "end": "depot"}, {"id": "Anna, V2", "start": "depot", "end": "depot"}]}),
+    ),
     "a plate is enough": (
         [f"id,Lat,Lon,demand\ndepot,{PLACES[0]},\na,{PLACES[1]},2\n", "Kennzeichen,Kapazität\nHH-A 1,4\n"],
         stops("depot a", request={"vehicles": [{"id": "HH-A 1", "capacity": [4], "start": "depot", "end": "depot"}]}),

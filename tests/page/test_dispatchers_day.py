@@ -168,12 +168,13 @@ def test_what_was_said_once_is_remembered_for_the_next_file(
     assert found_on_desk_and_phone(page, "#everyday") == []
     desk.fill("#everyday-service", "7")
     desk.fill("#everyday-depot", "A3")
-    expect(page.locator("#everyday-depot")).to_have_value("A3 (depot)")
+    expect(page.locator("#everyday-depot")).to_have_value("depot")
+    expect(page.locator("#everyday-said")).to_contain_text("The depot is where A3 is.")
     page.reload()
     expect(page.locator("#everyday-depot")).to_have_value("A3 (depot)")
     desk.open(tmp_path, {"orders.csv": ORDERS})
     expect(page.locator("#everyday-said")).to_contain_text(
-        "As last time: depot A3 (depot), 7 min at each stop. No shifts are given"
+        "As last time: the depot, 7 min at each stop. No shifts are given"
     )
     expect(page.locator("#everyday-service")).to_have_value("7 min")
     page.get_by_role("button", name="Undo").click()
@@ -190,7 +191,7 @@ def test_vehicles_leave_early_with_time_in_hand_that_delays_may_use_up(
     desk.fill("#everyday-shift", "8:00-16:00")
     desk.fill("#everyday-slack", "10")
     expect(page.locator("#everyday-slack")).to_have_value("10 min")
-    page.get_by_label("Vehicles leave").select_option("early")
+    page.get_by_label("Vehicles set off").select_option("early")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     for row in page.locator("#fleet-legend tbody tr").all():
@@ -198,8 +199,8 @@ def test_vehicles_leave_early_with_time_in_hand_that_delays_may_use_up(
     assert found_on_desk_and_phone(page, "#everyday") == []
     page.locator("#today > summary").click()
     desk.fill("#today-now", "8:05")
-    expect(page.locator("#today-done")).to_contain_text("done by then, as planned")
-    page.get_by_label("Vehicles that are late may use up the 10 min in hand").check()
+    expect(page.locator("#today-done")).to_contain_text("done by then, if all went as planned")
+    page.get_by_label("Vehicles that are late may use up the 10 min to spare").check()
     assert found_on_desk_and_phone(page, "#today") == []
     with page.expect_request("**/replan") as sent:
         page.locator("#replan-fleet").click()

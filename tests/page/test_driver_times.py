@@ -118,7 +118,7 @@ ANSWER: dict[str, Any] = {
     ],
 }
 TWICE = "9:00 to 10:00 or 14:00 to 15:00"
-WHY = "Shift from 7:30; leaves at 8:05, to be at A when it opens at 8:15."
+WHY = "Sets off at 8:05, to be at A when its window opens at 8:15. The shift begins at 7:30."
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_each_vehicle_says_when_it_leaves_and_when_it_is_back(stored: Page) -> N
     hours = [("8:05", "9:35"), ("7:30", "7:50"), ("8:00", "8:55"), ("10:00", "10:05")]
     expect(stored.locator("#choice")).to_contain_text("The last vehicle is done at 10:05.")
     cells = [row.split("\t") for row in stored.locator("#fleet-legend tr").all_inner_texts()]
-    places = [cells[0].index(title) for title in ("Leaves", "Back")]
+    places = [cells[0].index(title) for title in ("Sets off", "Back")]
     assert [tuple(row[at] for at in places) for row in cells[1:-1]] == hours
     assert [cells[-1][at] for at in places] == ["7:30, the first", "10:05, the last"]
     front = csv.DictReader(io.StringIO(saved(stored, "CSV").decode()))
@@ -189,26 +189,27 @@ def test_a_vehicle_that_leaves_after_its_shift_begins_says_why(stored: Page) -> 
     parts = stored.locator("#sheet section")
     assert parts.locator("h2").all_text_contents() == NAMES
     assert [parts.nth(at).locator("> p").last.text_content() for at in range(4)] == [
-        f"{WHY[:-1]}; back at 9:35.",
-        "Leaves at 7:30, back at 7:50.",
-        "Leaves at 8:00, back at 8:55.",
-        "Leaves at 10:00, done at 10:05.",
+        WHY.replace(". The", "; back at 9:35. The"),
+        "Sets off at 7:30, back at 7:50.",
+        "Sets off at 8:00, back at 8:55.",
+        "Sets off at 10:00, done at 10:05.",
     ]
     heads = [part.locator("thead td").all_text_contents() for part in parts.all()]
-    assert heads[0] == ["", "stop", "window", "arrives", "waits", "break", "leaves", "load"]
-    assert heads[3] == ["", "stop", "arrives", "leaves"]
+    assert heads[0] == ["", "stop", "window", "arrives", "waits", "break", "sets off", "load"]
+    assert heads[3] == ["", "stop", "arrives", "sets off"]
     assert stored.locator("#fleet-lanes g:has(> .name) > title").all_text_contents() == [WHY]
     stored.locator("#fleet-lanes .visit").first.click()
     expect(stored.locator("#fleet-stop")).to_have_text(
-        "depot: van 2 leaves at 8:05, to be at A when it opens at 8:15; its shift is from 7:30."
+        "depot: van 2 sets off at 8:05, to be at A when its window opens at 8:15;"
+        " its shift begins at 7:30."
     )
 
 
 def test_breaks_are_said_of_a_stop_and_of_the_longest_route(stored: Page) -> None:
     stored.locator("#fleet-lanes").get_by_role("button", name="D, 8:40").click()
     expect(stored.locator("#fleet-stop")).to_have_text(
-        "D: open 8:40 to 9:30, begins 8:40; van 1 arrives at 8:10 from depot and waits 10 min"
-        " for it to open; the driver has a break from 8:10 to 8:30."
+        "D: window 8:40 to 9:30, begins 8:40; van 1 arrives at 8:10 from depot and waits 10 min"
+        " for the window to open; the driver has a break from 8:10 to 8:30."
     )
     expect(stored.locator("#comparison tbody:first-of-type th").nth(1)).to_contain_text(
         "van 2: 30 min driving, 15 min at stops, 30 min waiting, 15 min in breaks"
@@ -271,22 +272,28 @@ def visit(arrives: str, begins: str, opens: str = "", stop: str = "A") -> dict[s
 @pytest.mark.parametrize(
     ("visits", "why"),
     [
-        ([visit("8:15", "8:15", "8:15")], ", to be at A when it opens at 8:15"),
-        ([visit("8:10", "8:10"), visit("8:15", "8:15", "8:15", "B")], ", to be at B when it opens"),
+        ([visit("8:15", "8:15", "8:15")], ", to be at A when its window opens at 8:15"),
+        (
+            [visit("8:10", "8:10"), visit("8:15", "8:15", "8:15", "B")],
+            ", to be at B when its window opens",
+        ),
         # Later than that it would be late, and so it waits at the next stop all the same.
-        ([closing("8:15", "8:15", "B"), visit("8:20", "9:01")], " for B, which closes at 8:15"),
+        (
+            [closing("8:15", "8:15", "B"), visit("8:20", "9:01")],
+            " for B, whose window closes at 8:15",
+        ),
         (
             [visit("8:10", "8:10", "8:10"), closing("8:15", "8:15", "B"), visit("8:20", "9:01")],
-            " for B, which closes at 8:15",
+            " for B, whose window closes at 8:15",
         ),
         ([closing("8:15", "8:40", "B"), visit("8:20", "9:01")], ""),
         (  # with ten minutes in hand
             [{**closing("8:15", "8:25", "B"), "by": at("8:15")}, visit("8:20", "9:01")],
-            " for B, which closes at 8:25 and must be reached by 8:15",
+            " for B, whose window closes at 8:25 and must be reached by 8:15",
         ),
         (
             [{**visit("8:15", "8:20", "8:20", "B"), "closes": at("8:22"), "by": at("8:15")}],
-            " for B, which closes at 8:22 and must be reached by 8:15",
+            " for B, whose window closes at 8:22 and must be reached by 8:15",
         ),
         ([visit("8:10", "8:15", "8:15")], ""),  # it waits there
         ([visit("8:10", "8:12"), visit("8:15", "8:15", "8:15", "B")], ""),  # or before
@@ -299,5 +306,5 @@ def test_a_vehicle_leaves_for_the_stop_that_keeps_it_from_leaving_later(
 ) -> None:
     start = {**visit("8:05", "8:05", stop="depot"), "shift": at("7:30"), "released": 0}
     said = node.evaluate(NOTE, [start, *visits])
-    assert said.startswith(f"Shift from 7:30; leaves at 8:05{why}")
-    assert why or said.endswith("8:05.")
+    assert said.startswith(f"Sets off at 8:05{why}")
+    assert why or said.startswith("Sets off at 8:05. ")

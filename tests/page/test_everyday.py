@@ -30,7 +30,7 @@ FLEET: dict[str, Any] = {
 HOME = {"start": "depot", "end": "depot"}
 NOTHING = (
     "No depot is given: vehicles start and end at any stop. No time at the stops is given: 0 min."
-    " No shifts are given: vehicles leave at any time of the day."
+    " No shifts are given: vehicles set off at any time of the day."
 )
 EVERYDAY = """async ([asked, steps]) => {
   const everyday = await import("./page/fleet/everyday.js");
@@ -99,7 +99,7 @@ def test_vehicles_leave_early_or_late_and_with_time_in_hand(node: Node) -> None:
     asked, known, said = given(node, minutes, ("withLeave", "early"), ("withSlack", 900))
     assert (asked["leave"], asked["slack"]) == ("early", 15)
     assert (known["leave"], known["slack"]) == ("early", 900)
-    assert "vehicles leave at midnight." in said
+    assert "vehicles set off at midnight." in said
     assert given(node, asked, ("withLeave", "late"), ("withSlack", None))[0] == minutes
     assert given(node, METRES, ("withSlack", 900))[0]["clock"] == "longest route"
 
@@ -111,7 +111,7 @@ def test_a_depot_is_a_row_or_a_place_and_moves_with_its_vehicles(node: Node) -> 
     assert [each["start"] for each in asked["vehicles"]] == ["yard", "yard"]
     # An order stays one that is visited: a depot is added beside it.
     asked, *_ = given(node, rows, ("withDepotAt", "A"))
-    assert asked["stops"][-1] == {"id": "A (depot)", "location": ORDERS[0]["location"]}
+    assert asked["stops"][-1] == {"id": "depot", "location": ORDERS[0]["location"]}
     # Another click moves it, and another row takes its place.
     steps = [("withDepot", {"location": YARD}), ("withDepot", {"location": [25, 60]})]
     asked, *_ = given(node, FLEET, *steps)
@@ -144,8 +144,8 @@ SAID = [
     "vehicles load again there",
     "8 min at each stop",
     "shifts from 8:00 to 16:00",
-    "10 min in hand",
-    "vehicles leave early",
+    "10 min to spare before a window closes",
+    "vehicles set off as early as possible",
     "25 km/h",
 ]
 

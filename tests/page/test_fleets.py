@@ -141,7 +141,7 @@ def test_the_search_plans_what_the_network_cannot(browser: Browser, released: st
         expect(page.locator("#fleet-left-out li")).to_have_text(["far: prize 10 km"])
         expect(page.locator("#fleet-stops b")).to_have_text("van")
         expect(page.locator("#fleet-stops ol li")).to_have_text(
-            ["depot 0:51", "shop 1:00, open 1:00 to 1:30", "home 1:07", "depot 1:21"]
+            ["depot 0:51", "shop 1:00, window 1:00 to 1:30", "home 1:07", "depot 1:21"]
         )
         # One map, of the only objective that has a plane.
         expect(page.locator("#plane-1 canvas.routes")).to_be_visible()
@@ -198,8 +198,8 @@ def test_the_list_of_stops_says_until_when_a_vehicle_waits(browser: Browser, rel
         page.get_by_text("Stops of each vehicle").click()
         second, third = page.locator("#fleet-stops ol li").all_inner_texts()[1:3]
         closing = r"(less than 1|[1-5]) min before its window closes"
-        assert re.fullmatch(rf"early 0:\d\d, open 0:00 to 0:10(, {closing})?", second)
-        assert re.fullmatch(r"late 0:1\d, waits until 5:00, open 5:00 to \d:\d\d", third)
+        assert re.fullmatch(rf"early 0:\d\d, window 0:00 to 0:10(, {closing})?", second)
+        assert re.fullmatch(r"late 0:1\d, waits until 5:00, window 5:00 to \d:\d\d", third)
 
 
 def test_routes_follow_the_streets_of_a_routing_engine(browser: Browser) -> None:

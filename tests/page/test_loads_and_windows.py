@@ -97,11 +97,11 @@ def test_stops_that_are_reached_just_before_they_close_say_so(shown: Page) -> No
     expect(shown.locator("#fleet-stops ol li")).to_have_text(
         [
             "depot 9:00",
-            "order-1 9:10, open 8:00 to 9:15, 5 min before its window closes",
-            "order-2 9:20, open 8:00 to 9:26",
+            "order-1 9:10, window 8:00 to 9:15, 5 min before its window closes",
+            "order-2 9:20, window 8:00 to 9:26",
             "depot 9:27",
-            "order-3 9:35, waits until 9:45, open 9:45 to 9:48",
-            "order-4 10:00, open 8:00 to 10:01, less than 1 min before its window closes",
+            "order-3 9:35, waits until 9:45, window 9:45 to 9:48",
+            "order-4 10:00, window 8:00 to 10:01, less than 1 min before its window closes",
             "depot 10:10",
         ]
     )
@@ -111,11 +111,11 @@ def test_stops_that_are_reached_just_before_they_close_say_so(shown: Page) -> No
     )
     stop = shown.locator("#fleet-lanes").get_by_role("button", name="order-1")
     expect(stop).to_have_attribute(
-        "aria-label", "van, order-1, 9:10, open 8:00 to 9:15, 5 min before its window closes"
+        "aria-label", "van, order-1, 9:10, window 8:00 to 9:15, 5 min before its window closes"
     )
     stop.click()
     expect(shown.locator("#fleet-stop")).to_have_text(
-        "order-1: open 8:00 to 9:15, begins 9:10, 5 min before its window closes;"
+        "order-1: window 8:00 to 9:15, begins 9:10, 5 min before its window closes;"
         " van arrives at 9:10 from depot."
     )
 
@@ -151,7 +151,7 @@ def test_vehicles_without_a_capacity_have_no_column_of_loads(
     with open_page(browser, "about:blank") as page:
         open_stored_answer(page, released, request, answer(request))
         titles = page.locator("#fleet-legend thead th").all_inner_texts()
-        assert titles == ["Vehicle", "Stops", "Leaves", "Back", "Time", "Whole route"]
+        assert titles == ["Vehicle", "Stops", "Sets off", "Back", "Time", "Whole route"]
 
 
 def test_a_time_says_what_it_counts(shown: Page) -> None:

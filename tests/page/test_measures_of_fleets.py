@@ -216,7 +216,7 @@ def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, rel
             " The last vehicle is back at day 2, 9:35."
         )
         titles = page.locator("#fleet-legend thead th").all_inner_texts()
-        assert titles[2:] == ["Leaves", "Back", "Driving", "Whole route"]
+        assert titles[2:] == ["Sets off", "Back", "Driving", "Whole route"]
         assert page.locator("#fleet-legend tfoot td").all_inner_texts()[-1] == "30 min, the longest"
 
 
@@ -237,7 +237,7 @@ def test_the_column_of_an_imbalance_is_named_after_what_its_rows_have(
 def test_lateness_is_said_as_a_time(late: Page) -> None:
     select(late, "End")
     expect(late.locator("#choice")).to_have_text(
-        "25 % more distance (1,000 m) than the least, for 13 min less lateness: none is left."
+        "25 % more distance (1,000 m) than the least, for 13 min less lateness: none at all."
         " The last vehicle is back at day 2, 9:35."
     )
     chart = late.get_by_label(re.compile("A choice of 2 plans"))
@@ -249,7 +249,7 @@ def test_a_stop_says_why_it_is_late_by_a_click_and_by_keys(late: Page) -> None:
     select(late, "Home")
     said = late.locator("#fleet-stop")
     why = (
-        "order-17: open 8:00 to 10:00, due 9:12, begins 9:25, 13 min late;"
+        "order-17: window 8:00 to 10:00, due 9:12, begins 9:25, 13 min late;"
         " van, day 1, arrives at 9:25 from order-9."
     )
     late.locator("#fleet-lanes .visit").nth(2).click()
@@ -270,14 +270,14 @@ def test_a_stop_says_why_it_is_late_by_a_click_and_by_keys(late: Page) -> None:
     box.press("Enter")
     expect(said).to_have_text(why)
     expect(late.locator("#fleet-lanes [aria-pressed=true]")).to_have_attribute(
-        "aria-label", "van, day 1, order-17, 9:25, 13 min late, open 8:00 to 10:00, due 9:12"
+        "aria-label", "van, day 1, order-17, 9:25, 13 min late, window 8:00 to 10:00, due 9:12"
     )
     box.press("Enter")
     box.press("Enter")
     expect(said).to_have_text("far is left out of this plan.")
     # The same stop stays chosen in another plan.
     select(late, "End")
-    expect(said).to_contain_text("far: open 9:00 to 9:30, begins 9:10")
+    expect(said).to_contain_text("far: window 9:00 to 9:30, begins 9:10")
     expect(late.locator("#stop-help")).to_contain_text("far is chosen. Drag it")
 
 

@@ -15,9 +15,9 @@ BODY = """async ([body, asked]) => {
   const { offersBody } = await import("./page/today/offers.js");
   return offersBody(body, asked);
 }"""
-SAID = """async ([offer, objectives]) => {
-  const { offerSaid } = await import("./page/today/offers.js");
-  return offerSaid(offer, objectives, { said: (time) => `${time / 60}:00` });
+SAID = """async ([offers, objectives]) => {
+  const { offersSaid } = await import("./page/today/offers.js");
+  return offersSaid(offers, objectives, { said: (time) => `${time / 60}:00` });
 }"""
 
 
@@ -32,12 +32,13 @@ def test_the_last_order_without_a_time_is_asked_about_every_hour_until_all_are_b
     assert asked == {**rest, "add": [orders[0], orders[2]], "order": orders[1], "every": every}
 
 
-def test_an_offer_says_what_rises(node: Node) -> None:
-    offer = {"slot": [540, 600], "choices": [{"rise": [1234.5, -3.0]}]}
-    said = "9:00\u201310:00: +1,230 m, \u22123 min"
-    assert node.evaluate(SAID, [offer, ASKED["objectives"]]) == said
-    free = {"slot": [540, 600], "choices": [{"rise": [0.0, 0.0]}]}
-    assert node.evaluate(SAID, [free, ASKED["objectives"]]) == "9:00\u201310:00: costs nothing"
+def test_offers_say_what_rises_in_one_unit_a_column(node: Node) -> None:
+    rises = [[1234.5, -3.0], [12345.0, 0.0], [0.0, 5.0]]
+    offers = [{"slot": [540, 600], "choices": [{"rise": rise}]} for rise in rises]
+    hour = "9:00\u201310:00"
+    said = [[hour, "+1.23 km", "\u22123 min"], [hour, "+12.3 km", "same"], [hour, "same", "+5 min"]]
+    assert node.evaluate(SAID, [offers, ASKED["objectives"]]) == said
+    assert node.evaluate(SAID, [offers[:1], ASKED["objectives"]])[0][1] == "+1,230 m"
 
 
 @needs_chromium
@@ -47,7 +48,7 @@ def test_a_time_that_is_promised_is_the_window_of_the_order(window: Page) -> Non
     paste_orders(page, "id,lon,lat\nB1,24.95,60.18\n", "1 row was read.")
     page.get_by_role("button", name="Offer a time").click()
     expect(offers.first).to_be_visible()
-    begin = str(offers.first.text_content()).partition("\u2013")[0]
+    begin = str(offers.first.text_content()).removeprefix("Promise ").partition("\u2013")[0]
     offers.first.click()
     expect(offers).to_have_count(0)
     windows = page.locator("#orders input").evaluate_all("all => all.map((each) => each.value)")

@@ -34,7 +34,7 @@ FLEET: dict[str, Any] = {
 REMEDIES: list[dict[str, Any]] = [
     {
         "code": "leave-out",
-        "detail": "let stops be left out, where each counts like a cost of 9000",
+        "detail": "visit as many stops as the vehicles can, at least 2 of 4",
         "patch": [{"op": "add", "path": f"/stops/{k}/prize", "value": 9000.0} for k in range(1, 5)],
     },
     {

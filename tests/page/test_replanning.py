@@ -29,7 +29,7 @@ def test_the_rest_of_a_tour_is_planned_from_the_vehicle_with_other_stops(
     click_on_both_maps(page, "Click where the vehicle is", (170, 150))
     expect(page.locator("#replan-help")).to_contain_text("school at")
     page.get_by_role("button", name="Replan").click()
-    expect(page.locator("#choice")).to_contain_text("% of the stops left come after")
+    expect(page.locator("#choice")).to_contain_text("% of the stops still to visit come after")
     expect(page.locator("#choice")).to_be_in_viewport(ratio=1)
     expect(page.locator("#choice")).to_contain_text("less risk")  # objectives keep their names
     expect(page.locator("#legend .before")).to_be_visible()

@@ -46,14 +46,14 @@ PROGRESS = """async ([driven, now, turned]) => {
 @pytest.mark.parametrize(
     ("now", "turned", "first"),
     [
-        (500, [], ["", False, 0, "leaves at 8:30"]),
-        (525, [], ["", True, 0.5, "0 of 2 done, on the way to A; 4 on board"]),
-        (545, [], ["A", True, 0, "1 of 2 done, at A until 9:10; 2 on board"]),
-        (575, [], ["A", True, 0.5, "1 of 2 done, on the way to B; 2 on board"]),
-        (635, [], ["AB", True, 0.5, "2 of 2 done, on the way to depot; 0 on board"]),
+        (500, [], ["", False, 0, "sets off at 8:30"]),
+        (525, [], ["", True, 0.5, "0 of 2 done, on the way to A; load 4 of 9"]),
+        (545, [], ["A", True, 0, "0 of 2 done, at A until 9:10; load 2 of 9"]),
+        (575, [], ["A", True, 0.5, "1 of 2 done, on the way to B; load 2 of 9"]),
+        (635, [], ["AB", True, 0.5, "2 of 2 done, on the way to depot; load 0 of 9"]),
         (660, [], ["AB", True, 0, "all 2 done, back at depot"]),
-        (575, ["A"], ["", True, 0, "0 of 2 done, at depot; 4 on board"]),
-        (500, ["A"], ["A", True, 0, "1 of 2 done, at A; 2 on board"]),
+        (575, ["A"], ["", True, 0, "0 of 2 done, at depot; load 4 of 9"]),
+        (500, ["A"], ["A", True, 0, "1 of 2 done, at A; load 2 of 9"]),
         (None, ["A", "B"], ["AB", True, 0, "all 2 done"]),
     ],
 )
@@ -181,11 +181,14 @@ def test_what_changes_is_said_for_each_stop_and_vehicle(node: Node) -> None:
     day: dict[str, Any] = {"out": ["van 1"], "removed": [], "unassigned": []}
     found = node.evaluate(CHANGES, [[DRIVEN, rest], "van", {**day, "added": [{"id": "E"}]}])
     assert found["said"] == [
-        "B (Bo) moves from van 1 to van 2, 1 h 30 min later: 11:30",
+        "B (Bo) moves from van 1 to van 2: 11:30, 1 h 30 min later",
         "E is new: van 2 at 11:50",
-        "D stays with van 2, 5 min later: 11:05",
+        "D stays with van 2: 11:05, 5 min later",
     ]
-    assert found["same"] == 1
+    assert found["many"] == (
+        "Of 4 stops, 1 stays as planned (within 5 min); 1 stays with its vehicle, but 5 min or more"
+        " earlier or later; 1 moves to another vehicle; and 1 is new."
+    )
     assert found["last"] == "The last vehicle is back at 12:30, 30 min later."
     assert found["vehicles"] == [
         {
@@ -201,14 +204,14 @@ def test_what_changes_is_said_for_each_stop_and_vehicle(node: Node) -> None:
     day |= {"removed": ["B"], "unassigned": ["D", "E"], "added": [{"id": "E"}]}
     found = node.evaluate(CHANGES, [[DRIVEN, rest], "van", day])
     assert found["said"] == [
-        "D is left out: van 2 does not come",
-        "E is new, and is left out",
-        "B (Bo) is cancelled: van 1 does not come",
+        "D is left out: van 2 no longer goes there",
+        "E is new, and is left out: nobody can go there",
+        "B (Bo) is cancelled: van 1 no longer goes there",
     ]
     del routes[0]["arrivals"]
     untimed = {**DRIVEN, "routes": [{**each, "arrivals": None} for each in ROUTES]}
     found = node.evaluate(CHANGES, [[untimed, rest], "van", {**day, "unassigned": []}])
-    assert found["said"] == ["B (Bo) is cancelled: van 1 does not come"]
+    assert found["said"] == ["B (Bo) is cancelled: van 1 no longer goes there"]
     assert found["last"] == ""
 
 
@@ -248,19 +251,19 @@ def test_a_day_is_replanned_from_what_is_done_by_now(window: Page) -> None:
     broken.check()
     order_three(page, known=first)
     replan(page)
-    for said in (f"{last} is cancelled", "new 1 is new", "out of service"):
+    for said in (f"{last} is cancelled", "extra 1 is new", "out of service"):
         expect(changes).to_contain_text(said)
     found = found_on_desk_and_phone(page, "#today", "#changes")
     # The drivers' sheets have each stop that is left once, and none that is done or cancelled.
-    rest = sorted({*left, "B1", "new 1"} - {last})
+    rest = sorted({*left, "B1", "extra 1"} - {last})
     assert sorted(on_sheets(page)) == rest
-    page.get_by_role("button", name="Back to the plan that is driven").click()
+    page.get_by_role("button", name="Keep the plan before").click()
     expect(changes).to_be_hidden()
     expect(broken).to_be_checked()
     expect(panel.locator(".gone")).to_contain_text(last)
     assert curl_body(page, "fleet")["stops"] == FLEET["stops"]
     replan(page)
-    page.get_by_role("button", name="Drive this plan").click()
+    page.get_by_role("button", name="Drive the new plan").click()
     expect(changes).to_be_hidden()
     assert sorted(stops(page, ":not(.done)")) == rest
     say_time(page, "10:00")
@@ -295,7 +298,7 @@ def order_three(page: Page, known: str) -> None:
     """Order by a click on the map, by rows that are pasted, and by one that is not taken."""
     page.get_by_role("button", name="Click where it is").click()
     page.locator("#plane-1").click(position={"x": 200, "y": 150})
-    expect(page.get_by_label("Service of new 1")).to_have_value("20 min")  # as the others
+    expect(page.get_by_label("Service of extra 1")).to_have_value("20 min")  # as the others
     said = "2 rows were read; 1 is a stop of the plan already."
     paste_orders(page, f"id,lon,lat\nB1,24.95,60.18\n{known},24.95,60.18\n", said)
     page.locator("#add-order").click()

@@ -227,7 +227,7 @@ def front(*lengths: list[float]) -> list[dict[str, Any]]:
             1,
             [METRES, LATENESS],
             PLANS,
-            "25 % more distance (1,000 m) than the least, for 13 min less lateness: none is left.",
+            "25 % more distance (1,000 m) than the least, for 13 min less lateness: none at all.",
         ),
         (
             [[3000, 2100], [3600, 1800]],

@@ -79,7 +79,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {
             "leave-out": {"prize": 30, "visited": 5, "stops": STOPS},
             "load-again": {},
             "more-vehicles": {"vehicle": "van", "count": 2, "before": 1},
-            "larger-vehicles": {"vehicle": "van", "share": 50},
+            "larger-vehicles": {"vehicle": "van", "share": 50, "holds": "8", "before": "5"},
         },
     ),
     "too few trips": (request(capacity=[2], reload=[0], max_trips=2), {"load-again": {}}),

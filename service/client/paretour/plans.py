@@ -176,9 +176,12 @@ class FleetFront(_FrontOfPlans[FleetPlan]):
 
     Attributes:
         clock: The name and unit of all times, if the fleet has a clock.
+        driven: If it was replanned, the lengths of the rest of the plan that is driven, without new
+            stops, if that keeps every rule.
     """
 
     clock: Objective | None = None
+    driven: Array | None = None
 
     def _columns(self) -> dict[str, Sequence[Any]]:
         found: dict[str, Sequence[Any]] = {}
@@ -231,6 +234,7 @@ def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
         plans=answer.read("front", each(value_of(FleetPlan))),
         objectives=objectives_of(answer) or (),
         clock=answer.maybe("clock", value_of(Objective)),
+        driven=answer.maybe("driven", floats(None)),
     )
 
 

@@ -39,7 +39,7 @@ export class FrontChart {
     this.#plot = new Plot(element, MARGINS, () => this.#place());
     const { over } = this.#plot;
     this.#budget = new Budget(this.#plot, onBudget);
-    for (const name of ["pinned", "selected", "previewed"]) {
+    for (const name of ["driven", "pinned", "selected", "previewed"]) {
       const marker = document.createElement("i");
       marker.className = `marker ${name}`;
       marker.hidden = true;
@@ -75,7 +75,7 @@ export class FrontChart {
   show(alone, improved, noun, toPlan = true, whole = false) {
     [this.#alone, this.#improved] = [alone, improved];
     this.#labels.show(this.#front, this.#objectives);
-    this.#ranges = rangesOf(this.#front, alone, whole);
+    this.#ranges = rangesOf(this.#front, alone, whole, this.#marked.driven);
     this.#budget.show(this.#front);
     this.#element.classList.toggle("empty", !this.#front.length);
     this.#element.setAttribute("aria-label", this.#front.length ? described(this.#front, this.#objectives, noun) : toPlan ? NONE : NO_STOPS);
@@ -99,7 +99,7 @@ export class FrontChart {
     this.#plot.show(axes, [{ name: "alone", points: points(this.#alone) }, { name: "improved", points: points(this.#improved), line: stair }]);
   }
 
-  /** Marks a point as "selected", "pinned" or "previewed"; null removes the mark. */
+  /** Marks a point as "selected", "pinned" or "previewed", or before the next front that of the plan that is "driven"; null removes the mark. */
   mark(name, lengths) {
     this.#marked[name] = lengths;
     if (name === "selected" && lengths) this.#budget.release(lengths);
@@ -144,12 +144,12 @@ export class FrontChart {
 
 const [NONE, NO_STOPS] = ["Nothing planned yet. Press Plan.", "Nothing planned yet. Press Plan once there are stops."];
 
-/** The least and the greatest of both lengths of a front, and of other points that do not lie far beyond it, or of all; null of no front. */
-function rangesOf(front, others, all) {
+/** The least and the greatest of both lengths of a front, of the plan that is driven, if there is one, and of other points that do not lie far beyond the front, or of all; null of no front. */
+function rangesOf(front, others, all, driven) {
   if (!front.length) return [null, null];
   const ranges = [0, 1].map((axis) => endsOf(front, axis));
   const near = all ? others : others.filter(({ lengths }) => ranges.every(([least, most], axis) => lengths[axis] <= most + WIDER * (most - least)));
-  return [0, 1].map((axis) => endsOf([...front, ...near], axis));
+  return [0, 1].map((axis) => endsOf([...front, ...near, ...(driven ? [{ lengths: driven }] : [])], axis));
 }
 
 function endsOf(points, axis) {

@@ -41,7 +41,7 @@ export class Scatter {
     this.#front = front;
     this.#within = within;
     this.#ends = objectives.map((_, axis) => {
-      const all = front.map(({ lengths }) => lengths[axis]);
+      const all = [...front.map(({ lengths }) => lengths), ...(this.#marks.driven ? [this.#marks.driven] : [])].map((lengths) => lengths[axis]);
       return [Math.min(...all), Math.max(...all)];
     });
     if (objectives.some((each, at) => each.name !== this.#objectives[at]?.name) || objectives.length !== this.#objectives.length) {
@@ -54,7 +54,7 @@ export class Scatter {
     this.#draw();
   }
 
-  /** Marks a tour as "selected", "pinned" or "previewed"; null removes the mark. */
+  /** Marks a tour as "selected", "pinned" or "previewed", or before the next front the plan that is "driven"; null removes the mark. */
   mark(name, lengths) {
     this.#marks[name] = lengths;
     for (const each of this.#svg.querySelectorAll(`.${name}`)) each.remove();

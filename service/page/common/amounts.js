@@ -20,6 +20,13 @@ export function compared(value, objective) {
   return figure(isCounted(objective) ? value : rounded(value / unit) * unit, objective);
 }
 
+/** Values of one column, as `compared`: distances are in one unit. */
+export function comparedAlike(values, objective) {
+  if (!isMetres(objective)) return values.map((value) => compared(value, objective));
+  const longest = Math.max(...values.map(Math.abs));
+  return values.map((value) => metres(rounded(value), length, longest));
+}
+
 /** A value to three digits with its unit, such as "7 vehicles", "12 min", "340 m" or "12.4 km". */
 export function amount(value, objective) {
   if (isCounted(objective)) return counted(Math.round(value), "vehicle", "vehicles");

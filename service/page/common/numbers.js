@@ -9,8 +9,8 @@ export function length(value) {
 
 const LONG = 10000; // metres, from which on they are said in kilometres
 
-/** A distance with its unit, as `said` says its number: "9,500 m", "12.4 km". */
-export const metres = (value, said = length) => (Math.abs(value) < LONG ? `${said(value, 1)} m` : `${said(value / 1000, 1000)} km`);
+/** A distance with its unit, as `said` says its number: "9,500 m", "12.4 km"; in kilometres as soon as one `beside` it is long. */
+export const metres = (value, said = length, beside = value) => (Math.max(Math.abs(value), Math.abs(beside)) < LONG ? `${said(value, 1)} m` : `${said(value / 1000, 1000)} km`);
 
 /** A value to three significant digits. */
 export const rounded = (value) => Number(value.toPrecision(3));

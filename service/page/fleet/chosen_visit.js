@@ -3,7 +3,7 @@
 import { counted } from "../common/numbers.js";
 import { visitSentence } from "./visit_sentence.js";
 
-const HINT = "Choose a stop by a click, or by Enter, on the map or in a lane, to read when it is visited and why it is late.";
+const HINT = "Click a stop, on the map or in a line below, to read here when it is visited.";
 
 export class ChosenVisit {
   #element;

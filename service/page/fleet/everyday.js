@@ -1,6 +1,7 @@
-/** Read and write a depot, minutes at the stops, shifts, time in hand and a speed as members of a request: what every dispatcher has. */
+/** Read and write a depot, minutes at the stops, shifts, time to spare and a speed as members of a request: what every dispatcher has. */
 
 import { duration, timeText } from "../common/durations.js";
+import { counted } from "../common/numbers.js";
 import { isMeasured, withAnother, without } from "../inputs/stops.js";
 import { secondsIn } from "./cells.js";
 import { byIds } from "./references.js";
@@ -8,13 +9,13 @@ import { timedBy } from "./trade.js";
 
 const [DAY, NEAR] = [86400, 100]; // seconds; kilometres from a depot that is remembered to a stop, at most
 const DEGREE = 111; // kilometres
-const ADDED = /^depot( \d+)?$| \(depot\)$/; // names of depots that are no rows of a file
+const ADDED = /^depot( \d+)?$| \(depot\)$/; // names of depots that are no rows of a file, also as they were called before
 
 /** Whether all of it can be said of a request: its stops lie on the earth, and its times are in a known unit. */
 export const isAskable = (asked) => isMeasured(asked) && asked.stops?.length > 0 && asked.stops.every(({ location }) => location) && asked.vehicles.length > 0 && Boolean(secondsIn(asked));
 
 /**
- * What is given: `depot` is a name, `service`, `shift` and `slack`, the time in hand, are in seconds, `speed` is in km/h, `leave` is early or
+ * What is given: `depot` is a name, `service`, `shift` and `slack`, the time to spare before windows close, are in seconds, `speed` is in km/h, `leave` is early or
  * late, and `reload` says whether vehicles load again at the depot. Each is null if nothing is given,
  * and undefined if it differs from row to row. `missing` counts the rows without.
  */
@@ -54,7 +55,7 @@ export function missingSaid({ depot, service, shift, leave, missing }) {
   const said = [
     [depot, missing.depot, "No depot is given: vehicles", "start and end at any stop."],
     [service, missing.service, "No time at the stops is given:", "0 min.", "stops"],
-    [shift, missing.shift, "No shifts are given: vehicles", leave === "early" ? "leave at midnight." : "leave at any time of the day."],
+    [shift, missing.shift, "No shifts are given: vehicles", leave === "early" ? "set off at midnight." : "set off at any time of the day."],
   ];
   return said.flatMap(([value, count, none, what, rows = "vehicles"]) => (count ? [`${value === null ? none : `${count} of the ${rows}:`} ${what}`] : [])).join(" ");
 }
@@ -64,6 +65,15 @@ export function usualService(asked) {
   const given = visitedIn(asked).flatMap(({ service }) => service ?? []);
   const count = (value) => given.filter((each) => each === value).length;
   return given.reduce((usual, value) => (count(value) > count(usual) ? value : usual), given[0]);
+}
+
+/** How many stops there are to visit, and how many depots beside them, in words. */
+export function stopsSaid(asked) {
+  const { stops = [] } = asked;
+  const ends = depotsIn(asked);
+  const depots = stops.filter((stop) => ends.has(stop.id) && !isOrder(stop, asked)).length;
+  const visited = counted(stops.length - depots, "stop", "stops");
+  return depots ? `${visited}, ${counted(depots, "depot", "depots")}` : visited;
 }
 
 /** The stops at which no vehicle starts, ends or loads again. */
@@ -120,7 +130,7 @@ export function withSpeed(asked, speed) {
   return { ...asked, objectives: asked.objectives.map(faster), ...(asked.clock && { clock: faster(asked.clock) }) };
 }
 
-/** The request whose vehicles leave as `early` as they can, or as `late`. */
+/** The request whose vehicles set off as `early` as they can, or as `late`. */
 export const withLeave = (asked, leave) => withMember(leave === "early" ? withClock(asked) : asked, "leave", leave === "early" ? leave : null);
 
 /** The request whose vehicles reach each stop so many seconds before its window closes; null takes that away. */
@@ -140,7 +150,7 @@ export function withDepotAt(asked, id) {
   const named = byIds(asked);
   const stop = named.stops.find((each) => each.id === id);
   if (!stop) return undefined;
-  if (isOrder(stop, named)) return withDepot(named, { id: `${id} (depot)`, location: stop.location });
+  if (isOrder(stop, named)) return withDepot(named, { location: stop.location });
   const { service: _, ...bare } = stop;
   return homed({ ...named, stops: named.stops.map((each) => (each === stop ? bare : each)) }, id);
 }
@@ -169,10 +179,10 @@ function freeName(stops, id) {
 }
 
 /** Whether something is delivered or done at a stop, so that it stays one to visit. */
-function isOrder({ id, demand, window, windows, due, prize }, { stops, shipments = [] }) {
+function isOrder({ id, demand, window, windows, due, prize }, { stops, shipments }) {
   const isLoaded = (each) => each?.some((amount) => amount > 0);
   const isTimed = !stops.some((stop) => isLoaded(stop.demand)) && (window ?? windows ?? due ?? prize) !== undefined;
-  return isLoaded(demand) || isTimed || shipments.some(({ pickup, delivery }) => [pickup, delivery].includes(id));
+  return isLoaded(demand) || isTimed || shipments?.some(({ pickup, delivery }) => [pickup, delivery].includes(id));
 }
 
 /** The request whose vehicles start, end and load where they did not say so, or did so at the depot before. */
@@ -209,8 +219,8 @@ export function recalled(asked, { depot, service, shift, speed, reload, leave, s
     [isHome && reload, withReload, true, "vehicles load again there"],
     [given.service === null && service > 0, withService, service, `${duration(service)} at each stop`],
     [given.shift === null && shift, withShift, shift, `shifts from ${shift?.map(timeText).join(" to ")}`],
-    [given.slack === null && slack > 0, withSlack, slack, `${duration(slack)} in hand`],
-    [given.leave !== leave && leave === "early", withLeave, leave, "vehicles leave early"],
+    [given.slack === null && slack > 0, withSlack, slack, `${duration(slack)} to spare before a window closes`],
+    [given.leave !== leave && leave === "early", withLeave, leave, "vehicles set off as early as possible"],
     [given.speed && speed > 0 && given.speed !== speed, withSpeed, speed, `${speed} km/h`],
   ].filter(([isMeant]) => isMeant);
   return { asked: steps.reduce((changed, [, change, value]) => change(changed, value), asked), said: steps.map((step) => step.at(-1)) };

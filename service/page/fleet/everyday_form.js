@@ -1,4 +1,4 @@
-/** Ask above the tables of a fleet what every dispatcher has: a depot, minutes at the stops, shifts, time in hand, and a speed. */
+/** Ask above the tables of a fleet what every dispatcher has: a depot, minutes at the stops, shifts, time to spare, and a speed. */
 
 import { Placing } from "../inputs/placing.js";
 import { cellText, hintOf, withText } from "./cells.js";
@@ -19,7 +19,7 @@ export class EverydayForm {
   #onChange;
   #asked = null;
   #placing;
-  #recalled = ""; // what was taken from last time
+  #recalled = ""; // what was taken from last time, or from a stop
 
   /** @param {(asked: object) => void} onChange called with the changed request */
   constructor(onChange) {
@@ -79,7 +79,7 @@ export class EverydayForm {
   #typed(name, input) {
     const text = input.value.trim();
     const changed = this.#changed(name, text);
-    if (changed) return this.#take(name, changed);
+    if (changed) return this.#take(name, changed, name === "depot" && everydayIn(changed).depot !== text && text ? `The depot is where ${text} is.` : "");
     input.setAttribute("aria-invalid", "true");
     const hint = name === "depot" ? "the name of a stop, or click where it is" : name === "shift" ? "when shifts begin, as 8:00, or when they begin and end, as 8:00-16:00" : hintOf(COLUMNS[name], 1);
     element("everyday-fault").textContent = `That cannot be “${text}”: write ${hint}.`;
@@ -94,8 +94,8 @@ export class EverydayForm {
   }
 
   /** Takes a request with something else in it, and remembers that. */
-  #take(name, asked) {
-    this.#recalled = "";
+  #take(name, asked, said = "") {
+    this.#recalled = said;
     this.#onChange(asked);
     if (this.#asked) remember({ ...remembered(), [name]: rememberedOf(this.#asked)[name] });
   }

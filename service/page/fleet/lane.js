@@ -49,7 +49,7 @@ export function laneElements({ name, style, visits }, at, { left, top, place, sa
   ];
 }
 
-const DOES = { start: ": leaves", loading: ": loads again", end: ": is back", visit: "" };
+const DOES = { start: ": sets off", loading: ": loads again", end: ": is back", visit: "" };
 
 /** The windows of a visit in the lane at this place, as brackets below its bar. */
 export function windowElements({ windows }, at, { top, place, from, to }) {

@@ -10,13 +10,31 @@ export function routeStyle(at) {
   return { colour: `route-${(at % COLOURS) + 1}`, dash };
 }
 
+/** The style of each route of a plan of a request. */
+export const stylesOf = (routes, asked) => placesOf(routes, asked).map(routeStyle);
+
 /**
- * The style of each route of a plan: a robot has the same one in every plan, by its place in the request, and a vehicle
- * on its way that of the plan before, in which it had this `place`.
+ * The place of each route's style among all: a robot and a vehicle have the same in every plan, by their place in the request, and a
+ * vehicle on its way that of the plan before, in which it had this `place`. Where there are more vehicles than styles, it is the place in the plan.
  */
-export function stylesOf(routes, robots = []) {
-  const places = new Map(robots.map(({ id }, at) => [id, at]));
-  return routes.map(({ robot, place }, at) => routeStyle(places.get(robot) ?? place ?? at));
+export function placesOf(routes, asked) {
+  const robots = new Map(asked.robots?.map(({ id }, at) => [id, at]));
+  const ranges = rangesOf(asked);
+  const given = new Map(); // how many of a type have a place
+  const next = (vehicle) => {
+    const number = given.get(vehicle) ?? 0;
+    given.set(vehicle, number + 1);
+    return ranges.get(vehicle)[0] + number;
+  };
+  return routes.map(({ robot, place, vehicle }, at) => robots.get(robot) ?? place ?? (ranges.has(vehicle) ? next(vehicle) : at));
+}
+
+/** The places of each type of vehicles, `[from, to]`, by its id; none where there are more vehicles than styles. */
+export function rangesOf({ vehicles = [] }) {
+  const ranges = new Map();
+  let all = 0;
+  for (const { id, count = 1, shifts = [0] } of vehicles) ranges.set(id, [all, (all += count * shifts.length)]);
+  return all <= COLOURS * DASHES.length ? ranges : new Map();
 }
 
 /** A piece of its line as SVG, for a legend. */

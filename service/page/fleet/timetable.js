@@ -24,7 +24,7 @@ export function timetable(routes, names, asked) {
   const unit = clockUnit(asked);
   const customerOf = customersIn(asked);
   const visitsOf = (route) => visitTimes(route, known).map((visit) => ({ ...visit, customer: customerOf(visit.stop), closing: closing(visit, SECONDS.get(unit)) }));
-  const styles = stylesOf(routes);
+  const styles = stylesOf(routes, asked);
   const lanes = routes.map((route, at) => ({ name: names[at], style: styles[at], visits: visitsOf(route) }));
   const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, leaves }) => [arrival, leaves]));
   return { lanes, clock: { ...clockOf(times, unit), second: SECONDS.get(unit), lasting: (time) => amount(time, { measure: "waiting", unit }) } };

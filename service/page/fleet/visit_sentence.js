@@ -15,36 +15,36 @@ export function visitSentence({ name: named, visits }, at, { said, lasting }) {
   const stop = called(visit);
   if (kind === "start") {
     const shift = laterThanShift(visit, said);
-    return `${stop}: ${name} leaves ${departure(visits, said)}${shift && `; its shift is from ${shift}`}.`;
+    return `${stop}: ${name} sets off ${departure(visits, said)}${shift && `; its shift begins at ${shift}`}.`;
   }
   const arrives = `${name} arrives at ${said(arrival)}${from}`;
   if (kind === "end") return `${stop}: ${arrives}${late ? `, ${lasting(late)} after its shift ends at ${said(due)}` : " and is done"}.`;
   const waits = waiting ? ` and waits ${lasting(waiting)}` : "";
   const rest = rests.length ? `; the driver has a break from ${spansIn(rests, said).join(" and from ")}` : "";
   if (kind === "loading") return `${stop}: ${name} loads again at ${said(begin)}${waited(released, begin)}; it arrives at ${said(arrival)}${from}${waits}${rest}.`;
-  return `${stop}: ${limitsOf(visit, said).map((each) => `${each}, `).join("")}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for it to open"}${rest}${tripOf(visits, at, said)}.`;
+  return `${stop}: ${limitsOf(visit, said).map((each) => `${each}, `).join("")}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for the window to open"}${rest}${tripOf(visits, at, said)}.`;
 }
 
 const called = ({ stop, customer }) => withCustomer(stop, customer);
 const waited = (released, begin) => (released && released >= begin ? ", when its load is released" : "");
 
-/** The sentence that a vehicle leaves later than its shift begins, and why; "" if it does not. */
+/** The sentence that a vehicle sets off later than its shift begins, and why; "" if it does not. */
 export function departureNote(visits, said) {
   const shift = laterThanShift(visits[0], said);
-  return shift && `Shift from ${shift}; leaves ${departure(visits, said)}.`;
+  return shift && `Sets off ${departure(visits, said)}. The shift begins at ${shift}.`;
 }
 
-/** When a vehicle leaves, why if that is later than its shift begins, and when it is back. */
+/** When a vehicle sets off, why if that is later than its shift begins, and when it is back. */
 export function routeNote(visits, said) {
   const shift = laterThanShift(visits[0], said);
   const ends = `${visits.at(-1).kind === "end" ? "back" : "done"} at ${said(visits.at(-1).leaves)}.`;
-  return shift ? `Shift from ${shift}; leaves ${departure(visits, said)}; ${ends}` : `Leaves ${departure(visits, said)}, ${ends}`;
+  return shift ? `Sets off ${departure(visits, said)}; ${ends} The shift begins at ${shift}.` : `Sets off ${departure(visits, said)}, ${ends}`;
 }
 
-/** When the shift of a vehicle begins that leaves later; "" if none does. */
+/** When the shift of a vehicle begins that sets off later; "" if none does. */
 const laterThanShift = ({ shift, arrival }, said) => (arrival > shift && said(arrival) !== said(shift) ? said(shift) : "");
 
-/** When a vehicle leaves, and what for, if it could leave earlier. */
+/** When a vehicle sets off, and what for, if it could do so earlier. */
 function departure(visits, said) {
   const { arrival, released } = visits[0];
   const loaded = waited(released, arrival);
@@ -53,7 +53,7 @@ function departure(visits, said) {
 }
 
 /**
- * Why a vehicle leaves when it does: it leaves as late as it can without being done later. If it still waits somewhere, the
+ * Why a vehicle sets off when it does: as late as it can without being done later. If it still waits somewhere, the
  * stop is why that it must reach by then, before or where it waits; if not, the first that opens as its visit begins.
  */
 function reasonIn(visits, said) {
@@ -61,17 +61,17 @@ function reasonIn(visits, said) {
   const before = waits < 0 ? visits : visits.slice(0, waits);
   const isAt = (time, by) => Number.isFinite(by) && said(time) === said(by);
   const closing = before.find(({ begin, by }) => isAt(begin, by)) ?? visits.slice(waits, waits + 1).find(({ arrival, by }) => isAt(arrival, by));
-  if (closing && waits >= 0) return ` for ${called(closing)}, which closes at ${said(closing.closes)}${inHand(closing, said)}`;
+  if (closing && waits >= 0) return ` for ${called(closing)}, whose window closes at ${said(closing.closes)}${inHand(closing, said)}`;
   const opening = before.find(({ opens }) => opens !== undefined);
-  return opening ? `, to be at ${called(opening)} when it opens at ${said(opening.opens)}` : "";
+  return opening ? `, to be at ${called(opening)} when its window opens at ${said(opening.opens)}` : "";
 }
 
-/** That a stop must be reached before it closes, if it must. */
+/** That a stop must be reached before its window closes, if it must. */
 const inHand = ({ closes, by }, said) => (by < closes ? ` and must be reached by ${said(by)}` : "");
 
 /**
- * When a vehicle arrives, when the visit begins if that is later, when the stop is open or the visit due, and how soon its
- * window closes, such as "12:13, waits until 13:00, open 13:00 to 15:00".
+ * When a vehicle arrives, when the visit begins if that is later, the windows of the stop or when the visit is due, and how soon its
+ * window closes, such as "12:13, waits until 13:00, window 13:00 to 15:00".
  */
 export function arrivalIn({ arrival, begin, rests, closing, ...visit }, said) {
   const [arrives, begins] = [said(arrival), said(begin)];
@@ -79,9 +79,9 @@ export function arrivalIn({ arrival, begin, rests, closing, ...visit }, said) {
   return [arrives, later, ...limitsOf(visit, said), closing].filter(Boolean).join(", ");
 }
 
-/** When the stop of a visit is open, and when the visit is due, of those that are known. */
+/** The windows of the stop of a visit, and when the visit is due, of those that are known. */
 export function limitsOf({ windows, ...visit }, said) {
-  const open = windows.length ? [`open ${spansIn(windows, said).join(" or ")}`] : [];
+  const open = windows.length ? [`window ${spansIn(windows, said).join(" or ")}`] : [];
   return [...open, ...dueIn(visit, said)];
 }
 

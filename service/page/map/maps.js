@@ -18,6 +18,8 @@ const element = (id) => document.getElementById(id);
 
 const EDITED = ["stops", "coordinates"]; // kinds of instances whose stops can be moved and deleted on the map
 
+const NOTHING = { driven: [], isCancelled: false };
+
 /** The source of coasts and towns, and how to have streets in their place. */
 const WORLD_CREDIT = () => ["A rough map by Natural Earth. ", made("a", { href: "guide/use-the-page#streets-under-your-stops", textContent: "Draw streets" })];
 
@@ -40,6 +42,8 @@ export class Maps {
   #ids = null; // of the stops
   #asked = {}; // the request, as far as it is known
   #robots = []; // of the request
+  #keyed = []; // the routes whose colours are named
+  #passed = NOTHING; // what vehicles have driven, and whether stops are cancelled
   #flown = false; // whether both objectives are measured in straight lines
 
   /**
@@ -133,6 +137,7 @@ export class Maps {
     this.#form = formOf(instance);
     this.#asked = instance;
     this.#robots = instance.robots ?? [];
+    [this.#keyed, this.#passed] = [[], NOTHING];
     this.#flown = Boolean(instance.objectives?.every(({ from }) => from === "great_circle"));
     const { drawn, rows } = placed(instance);
     const onEarth = drawn[0] === EARTH;
@@ -214,8 +219,11 @@ export class Maps {
   }
 
   /** Draws in grey what the vehicles of a fleet have driven: see Plane. */
-  pass(driven) {
-    if (this.#drawn.length && !this.#kind.onGrid) this.#planes.pass(driven);
+  pass(driven, isCancelled = false) {
+    if (!this.#drawn.length || this.#kind.onGrid) return;
+    this.#planes.pass(driven);
+    this.#passed = { driven, isCancelled };
+    if (this.#kind.movers) showRoutes(element("vehicles-key"), this.#keyed, this.#passed);
   }
 
   /** The places of stops by their ids, and those along the `way` through them as it is drawn; null for stops that no map shows. */
@@ -242,7 +250,9 @@ export class Maps {
   #showKey(plan) {
     const { movers, onGrid } = this.#kind;
     for (const [id, there] of [["vehicles-key", !onGrid], ["robots-key", onGrid]]) element(id).hidden = !(movers && there);
-    if (movers) showRoutes(element(onGrid ? "robots-key" : "vehicles-key"), plan ? (onGrid ? this.#paths(plan) : this.#routes(plan)) : []);
+    if (!movers) return;
+    this.#keyed = plan ? (onGrid ? this.#paths(plan) : this.#routes(plan)) : [];
+    showRoutes(element(onGrid ? "robots-key" : "vehicles-key"), this.#keyed, onGrid ? null : this.#passed);
   }
 
   #drawOnGrid(name, item) {
@@ -253,7 +263,7 @@ export class Maps {
 
   /** The paths of a plan's robots, each `{ name, robot, stops, path, style }`, whose stops are places. */
   #paths({ routes }) {
-    const styles = stylesOf(routes, this.#robots);
+    const styles = stylesOf(routes, { robots: this.#robots });
     const index = new Map(this.#robots.map(({ id }, at) => [id, at]));
     return routes.map(({ robot, tour, path }, at) => ({ name: robot, robot: index.get(robot), stops: tour, path, style: styles[at] }));
   }
@@ -262,7 +272,7 @@ export class Maps {
   #routes({ routes }) {
     const index = new Map(this.#ids?.map((id, at) => [id, at]));
     const names = namesOf(routes, this.#kind.movers, this.#asked);
-    const styles = stylesOf(routes);
+    const styles = stylesOf(routes, this.#asked);
     return routes.map(({ stops }, at) => ({
       name: names[at],
       stops: stops.map((id) => index.get(id)),

@@ -5,6 +5,7 @@ import { FileNotes } from "./file_notes.js";
 import { withEdited, withFleet, withTyped } from "./own_fleet.js";
 import { Reading, read } from "./reading.js";
 import { Surroundings } from "./surroundings.js";
+import { areOfVehicles } from "./vehicle_files.js";
 import { counted } from "../common/numbers.js";
 import { clearFaults, showFault, showFaults } from "../planning/faults.js";
 import { Problem } from "../planning/service.js";
@@ -21,6 +22,7 @@ export class Opening {
   #vehiclesRead; // as JSON, before they were edited
   #stopsRead; // likewise
   #ofStops = []; // the files that were opened last, without a table of vehicles that joined them
+  #ofVehicles = []; // files of vehicles that wait for stops
   #notes = new FileNotes(element("file-notes"), element("dismiss-notes"), element("columns"), {
     onDismissed: () => element("file").focus(),
     onChosen: (...chosen) => this.openFiles(...chosen),
@@ -87,10 +89,11 @@ export class Opening {
   /** Opens files as a request, or says why that is not possible; until then nothing can be planned. `columns` were chosen. */
   async openFiles(files, columns = []) {
     if (!files.length) return;
+    if (!columns.length && !this.#ofStops.length && (await areOfVehicles(files).catch(() => false))) return this.#await(files);
     const words = files.length > 1 ? "The files are being read." : "The file is being read.";
     try {
       await this.run(words, async ({ signal }) => {
-        const { brought, opened } = await this.#joined(files, columns, signal);
+        const { brought, opened, shown = opened } = await this.#joined(files, columns, signal);
         signal.throwIfAborted();
         const asked = this.examples.chosen ? {} : this.#page.asked();
         const ofStops = opened === files ? files : this.#ofStops;
@@ -99,12 +102,19 @@ export class Opening {
         this.#open(kept);
         if (brought.columns) this.#page.recall(); // what a table seldom says
         this.#ofStops = ofStops;
-        this.#notes.show(opened, columns, kept);
+        this.#notes.show(shown, columns, kept);
       });
     } catch (error) {
       this.#notes.refused(files, columns, error);
       await this.#unread(error);
     }
+  }
+
+  /** Keeps files of vehicles until there are stops. */
+  #await(files) {
+    this.#ofVehicles = files;
+    clearFaults();
+    this.#notes.awaiting(`${files.map(({ name }) => name).join(", ")}: vehicles without stops. Open the table of their stops next: the vehicles then serve these.`);
   }
 
   /** Says that a folder cannot be opened. */
@@ -122,16 +132,27 @@ export class Opening {
     this.#stopsRead = JSON.stringify(asked.stops);
   }
 
-  /** What was read from files, and these; a table of vehicles alone joins the files of stops that are open. */
+  /** What was read from files, and these; a table of vehicles joins the files of stops that are open, or are opened next. */
   async #joined(files, columns, signal) {
+    const waiting = this.#ofVehicles;
+    this.#ofVehicles = [];
+    if (waiting.length && !columns.length) {
+      const opened = [...files, ...waiting];
+      return { brought: await this.#read(opened, columns, signal), opened: files, shown: opened };
+    }
+    if (this.#ofStops.length && !columns.length && (await areOfVehicles(files).catch(() => false))) return this.#joining(files, columns, signal);
     try {
       return { brought: await this.#read(files, columns, signal), opened: files };
     } catch (error) {
       const isOfVehicles = error.errors?.some(({ code }) => code === "vehicles-alone");
       if (!isOfVehicles || !this.#ofStops.length) throw error;
-      const opened = [...this.#ofStops, ...files];
-      return { brought: await this.#read(opened, columns, signal), opened };
+      return this.#joining(files, columns, signal);
     }
+  }
+
+  async #joining(files, columns, signal) {
+    const opened = [...this.#ofStops, ...files];
+    return { brought: await this.#read(opened, columns, signal), opened };
   }
 
   async #read(files, columns, signal) {

@@ -9,7 +9,7 @@ export const choiceKept = ({ one }) =>
 
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
 export function choiceOf(front, tour, objectives, noun) {
-  const kept = tour.kept == null ? "" : ` ${Math.round(100 * tour.kept)} % of the stops left come after the same stop as before.`;
+  const kept = tour.kept == null || tour.routes ? "" : ` ${Math.round(100 * tour.kept)} % of the stops still to visit come after the same stop as before.`;
   return `${sentence(front, tour, objectives, noun)}${kept}`;
 }
 
@@ -31,7 +31,7 @@ function sentence(front, tour, objectives, { one, many }) {
 /** Says that a tour has the least second length of those found, or that a measure of plans is 0. */
 function reached(front, tour, objective, many) {
   if (tour.lengths[1] !== front.at(-1).lengths[1]) return "";
-  if (objective.measure && tour.lengths[1] === 0) return ": none is left";
+  if (objective.measure && tour.lengths[1] === 0) return ": none at all";
   return `: the ${wordsOf(objective).least} of all ${many} found`;
 }
 

@@ -10,6 +10,7 @@ import { kindsOf } from "../fleet/visit_times.js";
 import { quoted } from "./exports.js";
 
 const TIMES = ["window", "arrives", "waits", "break", "leaves"];
+const TITLES = { leaves: "sets off" }; // of columns of a sheet that people read
 const COLUMNS = ["vehicle", "position", "stop"];
 const ROLES = { start: "Start: ", end: "End: ", loading: "Load again: " }; // of stops that are not visited
 const AFTER_DETAILS = ["latitude", "longitude", ...TIMES, "load"];
@@ -135,7 +136,7 @@ export function fillSheet(sheet, routes, { title, date, totals }) {
       const table = document.createElement("table");
       const columns = [...TIMES, "load"].filter((column) => visits.some((visit) => visit[column]));
       const told = detailsIn(visits);
-      row(table.createTHead(), ["", "stop", ...told.names, ...columns]);
+      row(table.createTHead(), ["", "stop", ...told.names, ...columns.map((column) => TITLES[column] ?? column)]);
       const body = table.createTBody();
       for (const [turn, visit] of visits.entries()) row(body, [turn + 1, linked(visit), ...told.texts(visit), ...columns.map((column) => visit[column] ?? "")]);
       const said = [totals.ofRoutes[at], note].filter(Boolean);

@@ -4,7 +4,7 @@ import { amount } from "../common/amounts.js";
 import { isLongest, isTime, shortUnit } from "../common/objectives.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
-import { visitTimes } from "../fleet/visit_times.js";
+import { isOnTheWay, visitTimes } from "../fleet/visit_times.js";
 
 const OWN = "added up from stop to stop, in the unit of your numbers";
 const NEAR = 0.01; // the share by which the parts of a route may miss its length
@@ -23,7 +23,7 @@ export function noteOn(objectives, axis, item, { movers, asked }) {
   if (!item) return ""; // units are known from the answer on
   const objective = objectives[axis];
   const of = movers && !objective.measure ? ofRoutes(objective, axis, item, { movers, asked }) : "";
-  return [unitOf(objective), of, axis === 0 && prizesIn(objectives, item)].filter(Boolean).join("; ");
+  return [unitOf(objective), of, item.routes?.some(isOnTheWay) && "of the rest of the day", axis === 0 && prizesIn(objectives, item)].filter(Boolean).join("; ");
 }
 
 /** How much of the first objective is the prizes of stops that are left out; "" if they are not added to it. */

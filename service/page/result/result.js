@@ -111,6 +111,9 @@ export class Result {
     this.#linked = null;
     this.#keep({ kept: false });
     this.#selected = this.#pinned = this.#previewed = this.#before = null;
+    this.#chart.mark("driven", null);
+    this.#several.mark("driven", null);
+    this.#legend("driven", false);
     this.#chart.show([], [], this.#kind.noun, isPlannable(instance));
     this.#legend("alone", false);
     this.#legend("improved", false);
@@ -152,6 +155,7 @@ export class Result {
     this.#previewed = null;
     this.#closed = answer.closed !== false;
     this.#growth.show(growth);
+    this.#showDriven(answer);
     element("front-chart").parentElement.hidden = false;
     if (this.#objectives.length > 2) this.#several.show(answer.front, this.#objectives, this.#kind.noun);
     else this.#showBoth(alone, answer);
@@ -162,6 +166,13 @@ export class Result {
     const isChoice = this.#id && this.#front.length > 1;
     this.#asking.show(isChoice ? { id: this.#id, objectives: this.#objectives, noun: this.#kind.noun } : null);
     showFigures(element("figures"), alone, this.#kept ? null : answer);
+  }
+
+  /** Marks the rest of the plan that is driven, if a front is beside one, and says what it is. */
+  #showDriven({ driven: lengths, drivenSaid = "" }) {
+    this.#mark("driven", lengths ? { lengths } : null);
+    this.#legend("driven", Boolean(lengths));
+    element("legend").querySelector(".driven").textContent = drivenSaid;
   }
 
   /** Notes whether a link carried what is shown, and offers to plan it `again`. */
@@ -335,7 +346,7 @@ export class Result {
   }
 
   /** Draws in grey what the vehicles of a fleet have driven: see Maps. */
-  pass = (driven) => this.#maps.pass(driven);
+  pass = (...driven) => this.#maps.pass(...driven);
 
   /** The places along a way through stops by their ids: see Maps. */
   along = (stops) => this.#maps.along(stops);

@@ -6,6 +6,7 @@ import { capital } from "../common/objectives.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { ofRoutes } from "../fleet/legend.js";
 import { loadOf, visits } from "../fleet/routes_of_plan.js";
+import { isOnTheWay } from "../fleet/visit_times.js";
 
 /**
  * @param {{ item: object, movers: object | null }} selected the tour or plan, and what drives its routes
@@ -24,7 +25,7 @@ export function totalsOf({ item, movers }, objectives, asked) {
   const of = (count) => (movers.through === "stops" ? counted(count, "stop", "stops") : counted(count, "place", "places"));
   const routes = item.routes.map((route, at) => {
     const load = loadOf(route, known);
-    return said([of(counts[at]), ...(load ? [`load ${load}`] : []), ...lengths(route, (objective) => (ofRoutes(objective) ? "whole route" : objective.name))]);
+    return said([of(counts[at]), ...(load ? [`load ${load}`] : []), ...lengths(route, (objective) => (ofRoutes(objective) ? (item.routes.some(isOnTheWay) ? "rest of the route" : "whole route") : objective.name))]);
   });
   return { whole: said([vehicles, of(all), ...whole]), ofRoutes: routes };
 }

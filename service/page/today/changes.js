@@ -8,8 +8,8 @@ const MINUTE = 60; // seconds
 const NEAR = 300; // seconds: a stop that is visited within as many of its time before stays as it was
 
 /**
- * What changes at the stops, in sentences; how many stay as they were; when the `last` vehicle is back; and what changes for each vehicle, `{ name, before,
- * after }`, with the number of its `stops` left and when it is `back`, null of a vehicle that does not drive.
+ * What changes at the stops, in sentences; how `many` of them stay as they were and change in which way, in one sentence; when the `last` vehicle is back; and
+ * what changes for each vehicle, `{ name, before, after }`, with the number of its `stops` still to visit and when it is `back`, null of a vehicle that does not drive.
  *
  * @param {object[]} vans those of the plan that is driven, by `progressOf`
  * @param {object[]} lanes those of the other plan, `{ name, visits }`, by `progressOf` as well
@@ -30,18 +30,44 @@ export function changesOf(vans, lanes, clock, { out, removed, added, unassigned,
   const stayed = left.filter(({ from, to }) => from && to && from.name === to.name);
   const retimed = stayed.filter(({ from, to }) => words.differ(from, to));
   const skipped = new Set(unassigned);
+  const [fresh, others] = [true, false].map((each) => left.filter(({ from, to, isNew: isFresh }) => !from && to && isFresh === each));
+  const dropped = left.filter(({ stop, from }) => from && skipped.has(stop));
+  const unserved = [...isNew].filter((stop) => skipped.has(stop));
+  const cancelled = known.filter(({ stop, from }) => from && removed.has(stop));
   const said = [
     ...moved.map(({ name, from, to }) => `${name} moves from ${from.name} to ${to.name}${words.shifted(from, to)}`),
-    ...left.filter(({ from, to }) => !from && to).map(({ name, to, isNew: fresh }) => `${name} ${fresh ? "is new" : "was left out"}: ${to.name}${words.at(to)}`),
-    ...left.filter(({ stop, from }) => from && skipped.has(stop)).map(({ name, from }) => `${name} is left out: ${from.name} does not come`),
-    ...[...isNew].filter((stop) => skipped.has(stop)).map((stop) => `${called(stop)} is new, and is left out`),
-    ...known.filter(({ stop, from }) => from && removed.has(stop)).map(({ name, from }) => `${name} is cancelled: ${from.name} does not come`),
+    ...fresh.map(({ name, to }) => `${name} is new: ${to.name}${words.at(to)}`),
+    ...others.map(({ name, to }) => `${name} was left out, and is now visited: ${to.name}${words.at(to)}`),
+    ...dropped.map(({ name, from }) => `${name} is left out: ${from.name} no longer goes there`),
+    ...unserved.map((stop) => `${called(stop)} is new, and is left out: nobody can go there`),
+    ...cancelled.map(({ name, from }) => `${name} is cancelled: ${from.name} no longer goes there`),
     ...retimed.map(({ name, from, to }) => `${name} stays with ${to.name}${words.shifted(from, to)}`),
   ];
-  return { said, same: stayed.length - retimed.length, last: words.last(vans, lanes), vehicles: vehiclesOf(vans, lanes, out, words) };
+  const many = [
+    [stayed.length - retimed.length, clock ? "stay as planned (within 5 min)" : "stay with their vehicle"],
+    [retimed.length, "stay with their vehicle, but 5 min or more earlier or later"],
+    [moved.length, "move to another vehicle"],
+    [fresh.length, "are new"],
+    [others.length, "were left out, and are now visited"],
+    [dropped.length + unserved.length, "are left out"],
+    [cancelled.length, "are cancelled"],
+  ];
+  return { said, many: manySaid(many), last: words.last(vans, lanes), vehicles: vehiclesOf(vans, lanes, out, words) };
 }
 
-/** The visits that are left, by their stop, with the name of the vehicle. */
+/** How many stops change in each way, such as "Of 20 stops, 16 stay as planned, 3 move to another vehicle and 1 is new."; those of one way "all" do. */
+function manySaid(many) {
+  const there = many.filter(([count]) => count);
+  const all = there.reduce((sum, [count]) => sum + count, 0);
+  if (!all) return "";
+  if (there.length === 1) return all === 1 ? `1 stop ${ofOne(there[0][1])}.` : `All ${all} stops still to visit ${there[0][1]}.`;
+  const parts = there.map(([count, does]) => `${count} ${count === 1 ? ofOne(does) : does}`);
+  return `Of ${all} stops, ${parts.slice(0, -1).join("; ")}; and ${parts.at(-1)}.`;
+}
+
+const ofOne = (does) => does.replace("stay ", "stays ").replace("move ", "moves ").replace("their", "its").replace("are ", "is ").replace("and are", "and is").replace("were ", "was ");
+
+/** The visits that are still to be made, by their stop, with the name of the vehicle. */
 function visitsIn(lanes) {
   const left = lanes.flatMap((lane) => lane.visits.filter(({ kind, done }) => kind === "visit" && !done).map((visit) => [visit.stop, { ...visit, name: lane.name }]));
   return new Map(left);
@@ -63,13 +89,13 @@ function wordsOf(clock) {
   const { said, second } = clock;
   const seconds = (from, to) => (to.begin - from.begin) * second;
   const differ = (from, to) => Math.abs(seconds(from, to)) >= NEAR;
-  const step = (from, to) => (differ(from, to) ? `, ${duration(MINUTE * Math.round(Math.abs(seconds(from, to)) / MINUTE))} ${seconds(from, to) > 0 ? "later" : "earlier"}` : ", at about the same time");
+  const step = (from, to) => (differ(from, to) ? `, ${duration(MINUTE * Math.round(Math.abs(seconds(from, to)) / MINUTE))} ${seconds(from, to) > 0 ? "later" : "earlier"}` : "");
   const lastOf = (all) => Math.max(...all.map(({ visits }) => visits.at(-1).leaves));
-  const last = (before, after) => (after.length ? `The last vehicle is back at ${said(lastOf(after))}${step({ begin: lastOf(before) }, { begin: lastOf(after) })}.` : "");
+  const last = (before, after) => (after.length ? `The last vehicle is back at ${said(lastOf(after))}${step({ begin: lastOf(before) }, { begin: lastOf(after) }) || ", as planned before"}.` : "");
   return {
     differ,
     last,
-    shifted: (from, to) => `${step(from, to)}: ${said(to.begin)}`,
+    shifted: (from, to) => `: ${said(to.begin)}${step(from, to)}`,
     at: ({ begin }) => ` at ${said(begin)}`,
     back: ({ visits }) => said(visits.at(-1).leaves),
   };

@@ -1,9 +1,9 @@
 /** Offer a time for a new order: which slots are possible beside the plan that is driven, and what each costs. */
 
-import { amount } from "../common/amounts.js";
+import { comparedAlike } from "../common/amounts.js";
 import { SECONDS } from "../common/durations.js";
 import { made } from "../common/elements.js";
-import { isMetres } from "../common/objectives.js";
+import { isMetres, namesIn, withUnit } from "../common/objectives.js";
 import { clockUnit, withUnits } from "../fleet/units.js";
 import { Problem } from "../planning/service.js";
 
@@ -29,11 +29,15 @@ export function offersBody({ add, seed, time_limit, ...body }, asked) {
   return { ...body, add: add.toSpliced(row, 1), order: add[row], every: { from: begin, to, length: HOUR / second } };
 }
 
-/** An offer in words, such as "9:00–10:00: +1.2 km, +3 min"; what does not rise is left out. */
-export function offerSaid({ slot, choices }, objectives, clock) {
+/** The rows of a table of offers: when, such as "9:00–10:00", and by how much each objective rises, such as "+1.2 km" or "same". */
+export function offersSaid(offers, objectives, clock) {
   const least = (objective) => (isMetres(objective) ? 1 : 1e-9);
-  const rises = choices[0].rise.map((rise, m) => (Math.abs(rise) < least(objectives[m]) ? "" : `${rise < 0 ? "−" : "+"}${amount(Math.abs(rise), objectives[m])}`));
-  return `${slot.map(clock.said).join("–")}: ${rises.filter(Boolean).join(", ") || "costs nothing"}`;
+  const risen = objectives.map((objective, m) => {
+    const rises = offers.map(({ choices }) => choices[0].rise[m]);
+    const sizes = comparedAlike(rises.map(Math.abs), objective);
+    return rises.map((rise, at) => (Math.abs(rise) < least(objective) ? "same" : `${rise < 0 ? "−" : "+"}${sizes[at]}`));
+  });
+  return offers.map(({ slot }, at) => [slot.map(clock.said).join("–"), ...risen.map((column) => column[at])]);
 }
 
 export class Offers {
@@ -50,6 +54,7 @@ export class Offers {
 
   clear() {
     element("offers").replaceChildren();
+    element("offers").hidden = true;
     element("offers-said").textContent = "";
   }
 
@@ -61,17 +66,26 @@ export class Offers {
       if (row < 0) return this.#say("Add an order without a window, and its place.");
       const { offers, objectives } = await this.#service.post({ path: `front/${id}/offers`, body: offersBody(body, asked) });
       const possible = offers.filter((each) => each.possible);
-      const units = withUnits(objectives, asked);
-      this.#say(possible.length ? `${body.add[row].id} can be visited in any of these hours, each with what it adds to the plan. Press the hour that you promise to the customer, then “Replan what is left”.` : `${body.add[row].id} cannot be visited in any hour.`);
+      const units = withUnits(namesIn({ objectives }), asked);
+      this.#say(possible.length ? `${body.add[row].id} can be visited in any of these hours; beside each stands what it adds to the plan. Press the hour that you promise to the customer, then “Replan the rest of the day”.` : `${body.add[row].id} cannot be visited in any hour.`);
       const take = ({ slot }) => {
         this.clear();
         onTake(row, slot);
       };
-      element("offers").replaceChildren(...possible.map((each) => made("li", {}, made("button", { type: "button", textContent: offerSaid(each, units, clock), onclick: () => take(each) }))));
+      this.#show(offersSaid(possible, units, clock), units, (at) => take(possible[at]));
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       this.#say(`No times: ${error.message}.`);
     }
+  }
+
+  #show(rows, units, take) {
+    if (!rows.length) return;
+    const heads = ["Hour", ...units.map(withUnit)].map((title) => made("th", { scope: "col" }, title));
+    const press = (said, at) => made("th", { scope: "row" }, made("button", { type: "button", onclick: () => take(at) }, `Promise ${said}`));
+    const lines = rows.map(([said, ...rises], at) => made("tr", {}, press(said, at), ...rises.map((rise) => made("td", {}, rise))));
+    element("offers").replaceChildren(made("thead", {}, made("tr", {}, ...heads)), made("tbody", {}, ...lines));
+    element("offers").hidden = false;
   }
 
   #say(text) {

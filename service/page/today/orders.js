@@ -147,7 +147,7 @@ export class Orders {
 
   #freeName() {
     let name;
-    do name = `new ${(this.#number += 1)}`;
+    do name = `extra ${(this.#number += 1)}`;
     while (this.#isKnown(name));
     return name;
   }

@@ -1,5 +1,6 @@
 /** The rest of a fleet's day: as the body of `POST /front/{id}/replan`, and as a request whose plans the page can show. */
 
+import { placesOf, rangesOf } from "../fleet/route_styles.js";
 import { isMeasured } from "../inputs/stops.js";
 import { doneOf, leftOf } from "./progress.js";
 
@@ -9,7 +10,7 @@ import { doneOf, leftOf } from "./progress.js";
  * @param {{ at: number, asked: object }} driven the number of the plan in its front, and the request that it is of
  * @param {{ vans: object[], now: number | null, out: Set<string>, removed: Set<string>, added: object[], isHandFree: boolean }} day how far its
  *   vehicles have come, by `progressOf`, where each of them is in `tip`; the time, and in words; the vehicles that are out of
- *   service, by name; cancelled stops; new ones; and whether the time in hand may be used up
+ *   service, by name; cancelled stops; new ones; and whether the time to spare may be used up
  */
 export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, added, isHandFree }) {
   const { time_limit: seconds, seed } = asked;
@@ -43,6 +44,8 @@ function positionOf({ name, visits, at, share, tip }, asked, nowSaid) {
 export class FleetRest {
   replanned = true;
   #under; // the numbers of the routes whose vehicles have left
+  #isBroken; // whether one is out of service
+  #drivenSaid; // what the plan that is driven is called beside others
 
   /**
    * @param {{ routes: object[], names: string[], asked: object }} driven the plan that is driven
@@ -52,6 +55,8 @@ export class FleetRest {
   constructor(driven, { routes, add, slack = driven.asked.slack }, day) {
     Object.assign(this, { driven, day });
     this.#under = new Set(routes.map(({ route }) => route));
+    this.#isBroken = routes.some((each) => each.broken_down);
+    this.#drivenSaid = add.length ? "the plan before, without new orders" : "the plan before";
     const { asked } = driven;
     const positions = routes.map(({ position }) => position).filter((position) => position?.id);
     const stops = [...asked.stops, ...add, ...positions];
@@ -62,24 +67,27 @@ export class FleetRest {
 
   /** What a link says of it, beside the request of the whole day: stops that are not in that, and the vehicles of the plan that is driven. */
   linked({ stops }) {
-    const { routes, names } = this.driven;
-    const vans = routes.map(({ vehicle, shift, place }, at) => ({ vehicle, shift, place: place ?? at, name: names[at] }));
+    const { routes, names, asked } = this.driven;
+    const places = placesOf(routes, asked);
+    const vans = routes.map(({ vehicle, shift }, at) => ({ vehicle, shift, place: places[at], name: names[at] }));
     const details = this.asked.details?.map(({ texts }) => texts.slice(stops.length));
-    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under], details, slack: this.asked.slack };
+    return { stops: this.asked.stops.slice(stops.length), vans, under: [...this.#under], details, slack: this.asked.slack, broken: this.#isBroken };
   }
 
   /** The rest of a link; null if it says none of this request, as links come from anywhere. */
-  static of(request, { stops, vans, under, details, slack }) {
+  static of(request, { stops, vans, under, details, slack, broken }) {
     const isNamed = (each) => typeof each?.name === "string" && typeof each.vehicle === "string" && Number.isInteger(each.place);
     if (!areStops(stops) || !Array.isArray(vans) || !vans.every(isNamed) || !Array.isArray(under) || !under.every((at) => vans[at])) return null;
     const told = (at) => (Array.isArray(details?.[at]) ? details[at].map(String) : []);
     const asked = { ...request, details: request.details?.map(({ column, texts }, at) => ({ column, texts: [...texts, ...told(at)] })) };
-    return new FleetRest({ routes: vans, names: vans.map(({ name }) => name), asked }, { routes: under.map((route) => ({ route })), add: stops, ...(Number.isFinite(slack) && { slack }) }, null);
+    return new FleetRest({ routes: vans, names: vans.map(({ name }) => name), asked }, { routes: under.map((route) => ({ route, broken_down: Boolean(broken) })), add: stops, ...(Number.isFinite(slack) && { slack }) }, null);
   }
 
   /** The answer of the service, whose vehicles have the names and the colours that they have in the plan that is driven. */
   answer(found) {
-    return { ...found, front: found.front.map((plan) => ({ ...plan, routes: this.#named(plan.routes) })) };
+    const { driven, ...others } = found; // that of vehicles that go on: not what was planned, if one is out of service
+    const beside = driven && !this.#isBroken ? { driven, drivenSaid: this.#drivenSaid } : {};
+    return { ...others, ...beside, front: found.front.map((plan) => ({ ...plan, routes: this.#named(plan.routes) })) };
   }
 
   /** The plan that changes least, of a front that is shown. */
@@ -88,15 +96,16 @@ export class FleetRest {
   }
 
   #named(routes) {
-    const { routes: before, names } = this.driven;
-    const placeOf = (at) => before[at].place ?? at;
+    const { routes: before, names, asked } = this.driven;
+    const places = placesOf(before, asked);
+    const ranges = rangesOf(asked);
     const waiting = before.map((_, at) => at).filter((at) => !this.#under.has(at));
     const taken = new Set(names);
-    let place = Math.max(-1, ...before.map((_, at) => placeOf(at)));
     return routes.map((route) => {
       const at = route.route ?? this.#take(waiting, route);
-      if (at !== undefined) return { ...route, name: names[at], place: placeOf(at) };
-      place += 1;
+      if (at !== undefined) return { ...route, name: names[at], place: places[at] };
+      const place = freePlace(places, ranges.get(route.vehicle));
+      places.push(place);
       return { ...route, name: freeName(route.vehicle, taken), place };
     });
   }
@@ -109,6 +118,12 @@ export class FleetRest {
 }
 
 const areStops = (stops) => Array.isArray(stops) && stops.every((stop) => typeof stop?.id === "string" && Array.isArray(stop.location ?? []));
+
+/** The first place that no vehicle has of those of a type, or else after all. */
+function freePlace(taken, [from, to] = [0, 0]) {
+  for (let place = from; place < to; place++) if (!taken.includes(place)) return place;
+  return Math.max(-1, ...taken) + 1;
+}
 
 /** The name of a vehicle that the plan before did without: "van 3" beside "van 1" and "van 2". */
 function freeName(vehicle, taken) {

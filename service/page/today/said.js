@@ -1,5 +1,6 @@
 /** Say how far a vehicle has come, and what it has on board. */
 
+import { counted } from "../common/numbers.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { doneOf, leftOf } from "./progress.js";
 
@@ -13,22 +14,28 @@ import { doneOf, leftOf } from "./progress.js";
 export function vanSaid(van, { isOutOfService, clock, known, vehicle }) {
   const load = van.isOut && !van.isBack ? onBoard(van, known, vehicle) : "";
   const where = whereOf(van, clock);
-  if (!isOutOfService || van.isBack) return load ? `${where}; ${load} on board` : where;
-  return `${where}; ${/[1-9]/.test(load) ? `others bring the ${load} that it has on board` : "others take over what is left"}`;
+  if (!isOutOfService || van.isBack) return load ? `${where}; load ${ofCapacity(load, known, vehicle)}` : where;
+  return `${where}; ${/[1-9]/.test(load) ? `others take over its load of ${load}` : "others take over its stops still to visit"}`;
+}
+
+/** What is on board of what a vehicle holds, such as "9 of 22". */
+function ofCapacity(load, { types }, vehicle) {
+  const { capacity } = types.get(vehicle);
+  return load.split(", ").map((each, kind) => `${each} of ${capacity[kind]}`).join(", ");
 }
 
 function whereOf(van, clock) {
   const { visits, at, share, leaves, isOut, isBack } = van;
-  const done = doneOf(van).length;
-  const all = done + leftOf(van).length;
-  if (!isOut) return clock ? `leaves at ${clock.said(visits[0].leaves)}` : "has not left";
+  const all = doneOf(van).length + leftOf(van).length;
+  const done = doneOf(van).length - isThere(van);
+  if (!isOut) return clock ? `sets off at ${clock.said(visits[0].leaves)}` : "has not set off";
   if (isBack) return `all ${all} done${visits[at].kind === "end" ? `, back at ${visits[at].stop}` : ""}`;
   const next = visits.slice(at + 1).find(({ done: isDone }) => !isDone);
   const where = share >= 1 ? `waits at ${next.stop}` : share > 0 ? `on the way to ${next.stop}` : `at ${visits[at].stop}${leaves === null ? "" : ` until ${clock.said(leaves)}`}`;
   return `${done} of ${all} done, ${where}`;
 }
 
-/** What a vehicle has on board for the stops that are left until it loads again, one number for each kind of load; "" without a capacity. */
+/** What a vehicle has on board for the stops still to visit until it loads again, one number for each kind of load; "" without a capacity. */
 export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
   const { capacity } = types.get(vehicle) ?? {};
   if (!capacity) return "";
@@ -60,9 +67,13 @@ export function loadingSaid(vans, routes, { vehicles, stops }, out) {
   return canLoad ? "" : NO_LOADING;
 }
 
+/** Whether a vehicle is at a stop whose visit has begun, and is not over: it counts as done for what is planned anew. */
+export const isThere = ({ visits, at, leaves }) => leaves !== null && visits[at].kind === "visit";
+
 /** How many stops are done by now, and how to change that; `isPlanned` says whether all of that is by the plan. */
 export function doneSaid(vans, now, isPlanned) {
-  const [done, left] = [doneOf, leftOf].map((of) => vans.flatMap(of).length);
-  const far = now === null ? "Say what time it is, or mark what is done." : `${done} of ${done + left} stops are done by then${isPlanned ? ", as planned" : ""}.`;
+  const [done, toVisit] = [doneOf, leftOf].map((of) => vans.flatMap(of).length);
+  const there = vans.filter(isThere).length;
+  const far = now === null ? "Say what time it is, or mark what is done." : `${done - there} of ${counted(done + toVisit, "stop is", "stops are")} done by then${there ? `, and ${counted(there, "vehicle is", "vehicles are")} at a stop` : ""}${isPlanned ? ", if all went as planned" : ""}.`;
   return `${far} Press a stop to mark it as done or as not done, and × to cancel it.`;
 }

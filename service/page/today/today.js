@@ -56,7 +56,7 @@ export class Today {
       if (!set.delete(each)) set.add(each);
       this.#draw();
     };
-    this.#list = new VanList(element("vans"), { onTurn: turn(this.#turned), onCancel: turn(this.#cancelled), onOut: turn(this.#out) });
+    this.#list = new VanList(element("vans"), element("vans-key"), { onTurn: turn(this.#turned), onCancel: turn(this.#cancelled), onOut: turn(this.#out) });
     this.#orders = new Orders(service, result.wait);
     this.#offers = new Offers(service, () => ({ ...this.asked, asked: this.#driven.asked, clock: this.#clock }), (row, window) => this.#orders.promise(row, window));
     element("today").addEventListener("toggle", () => this.#open());
@@ -92,12 +92,12 @@ export class Today {
     this.#showHand(found.asked);
   }
 
-  /** Asks whether vehicles that are late may use up the time in hand, if there is any. */
+  /** Asks whether vehicles that are late may use up the time to spare, if there is any. */
   #showHand({ slack, ...asked }) {
     const label = element("today-hand");
     label.hidden = !slack;
     label.control.checked = false;
-    label.lastChild.data = ` Vehicles that are late may use up the ${amount(slack ?? 0, { measure: "waiting", unit: clockUnit(asked) })} in hand`;
+    label.lastChild.data = ` Vehicles that are late may use up the ${amount(slack ?? 0, { measure: "waiting", unit: clockUnit(asked) })} to spare before windows close`;
   }
 
   /** Takes the plan that is selected, and its number in the front: it is driven, unless it is proposed. */
@@ -157,7 +157,7 @@ export class Today {
     if (!this.#driven) return;
     const isOpen = element("today").open;
     if (isOpen) this.#drawVans();
-    this.#result.pass(isOpen ? [...this.#past, ...this.#lines] : []);
+    this.#result.pass(isOpen ? [...this.#past, ...this.#lines] : [], isOpen && Boolean(this.#proposed?.plan) && this.#cancelled.size > 0);
     element("changes").hidden = !this.#proposed?.plan;
     if (this.#proposed?.plan) this.#drawChanges();
   }
@@ -165,12 +165,12 @@ export class Today {
   #drawVans() {
     const { routes, asked } = this.#driven;
     const { vans, clock } = progressOf(this.#driven, { now: this.#now, turned: this.#turned });
-    const [styles, known] = [stylesOf(routes), knownFleet(asked)];
+    const [styles, known] = [stylesOf(routes, asked), knownFleet(asked)];
     this.#clock = clock;
     this.#lines = [];
     this.#vans = vans.map((van, at) => {
       const line = this.#lineOf(routes[at], van);
-      if (line) this.#lines.push({ places: line, tip: van.isBack ? null : styles[at].colour });
+      if (line) this.#lines.push({ places: line, tip: van.isBack ? null : styles[at].colour, out: this.#out.has(van.name) ? { name: van.name, style: styles[at] } : null });
       const said = vanSaid(van, { isOutOfService: this.#out.has(van.name), clock, known, vehicle: routes[at].vehicle });
       return { ...van, style: styles[at], said, tip: line?.at(-1).map(rounded) };
     });
@@ -189,7 +189,7 @@ export class Today {
     const { plan, way } = this.#proposed;
     const { asked, day } = way;
     const { vans, clock } = progressOf({ routes: plan.routes, names: namesOf(plan.routes, VEHICLES, asked), asked }, PLANNED);
-    showChanges(plan, changesOf(day.vans, vans, clock?.second ? clock : null, { ...day, unassigned: plan.unassigned ?? [], customerOf: customersIn(asked) }));
+    showChanges(changesOf(day.vans, vans, clock?.second ? clock : null, { ...day, unassigned: plan.unassigned ?? [], customerOf: customersIn(asked) }));
   }
 
   /** Has the proposed plan driven from now on. */
