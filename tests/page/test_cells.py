@@ -9,7 +9,8 @@ from tests.helpers.node import Node
 CELL = """async ([table, title, text, second]) => {
   const { columnsOf } = await import("./page/fleet/columns.js");
   const { cellText, hintOf, isUnread, withText } = await import("./page/fleet/cells.js");
-  const asked = { stops: [{ id: "depot" }], vehicles: [{ id: "van" }], clock: "time" };
+  const objectives = [{ name: "distance", unit: "m" }, { name: "time", unit: "s" }];
+  const asked = { stops: [{ id: "depot" }], vehicles: [{ id: "van" }], objectives, clock: "time" };
   const column = columnsOf(table, asked).find((each) => each.title === title);
   const { id, ...item } = withText({ id: "it" }, column, text, second);
   const read = isUnread(item, column) ? null : item;
@@ -64,6 +65,24 @@ def read(node: Node, table: str, title: str, text: str, second: int = 1) -> list
         ("vehicles", "Breaks", "12-13 30", {"breaks": [LUNCH]}, "12:00-13:00 30 min"),
         ("vehicles", "Longest route", "8 h", {"longest": 8 * HOUR}, "480 min"),
         ("vehicles", "Start", "depot", {"start": "depot"}, "depot"),
+        ("vehicles", "Speed, %", "80 %", {"speed_factor": 0.8}, "80"),
+        ("vehicles", "Time at stops, %", "125", {"service_factor": 1.25}, "125"),
+        ("vehicles", "Price per km", "0,5", {"per_distance": 0.0005}, "0.5"),
+        ("vehicles", "Price per hour", "36", {"per_time": 0.01}, "36"),
+        ("vehicles", "Most distance, km", "90", {"max_distance": 90_000}, "90"),
+        ("vehicles", "Most driving", "4:30", {"max_driving": 4.5 * HOUR}, "270 min"),
+        (
+            "stops",
+            "Service by vehicle",
+            "van: 10; cargo bike: 5 min",
+            {
+                "services": [
+                    {"vehicle": "van", "service": 600},
+                    {"vehicle": "cargo bike", "service": 300},
+                ]
+            },
+            "van: 10 min; cargo bike: 5 min",
+        ),
         ("vehicles", "Count", "", {}, ""),
     ],
 )
@@ -93,6 +112,8 @@ def test_a_cell_is_read_as_people_write_it(
         ("stops", "Due", "8.5", "a time, as 10:30"),
         ("stops", "Due", "10:30-10:00", "or from when and until when"),
         ("vehicles", "Breaks", "12:00-13:00", "when it may begin and how long it takes"),
+        ("vehicles", "Speed, %", "0", "a number of per cent"),
+        ("stops", "Service by vehicle", "10 min", "how long it takes by some vehicles"),
         ("vehicles", "Start", "yard", None),
         ("vehicles", "End", "yard", None),
     ],

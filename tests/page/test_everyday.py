@@ -104,6 +104,30 @@ def test_vehicles_leave_early_or_late_and_with_time_in_hand(node: Node) -> None:
     assert given(node, METRES, ("withSlack", 900))[0]["clock"] == "longest route"
 
 
+RUSH = """async ([asked, hours]) => {
+  const { canHaveDay, changingOver, hoursIn } = await import("./page/inputs/day.js");
+  const changed = changingOver(asked, hours);
+  return [canHaveDay(asked), changed, hoursIn(changed)];
+}"""
+
+
+def test_rush_hours_of_a_fleet_are_of_all_that_its_clock_measures(node: Node) -> None:
+    straight, hours = {"from": "great_circle", "speed": 20}, [[25200, 1.8], [32400, 1.1]]
+    timed = [{"name": "driving", **straight}, {"name": "longest", **straight, "over": "max"}]
+    asked = {**FLEET, "objectives": timed, "clock": "driving"}
+    can, changed, known = node.evaluate(RUSH, [asked, hours])
+    assert (can, known) == (True, hours)
+    assert changed == {**asked, "objectives": [{**each, "over_the_day": hours} for each in timed]}
+    metres = {"name": "distance", "from": "great_circle"}
+    own = {**asked, "objectives": [metres, {"name": "vehicles", "measure": "vehicles"}]}
+    own["clock"] = {"name": "time", **straight}
+    can, changed, known = node.evaluate(RUSH, [own, hours])
+    assert (can, known) == (True, hours)
+    assert changed == {**own, "clock": {**own["clock"], "over_the_day": hours}}
+    assert node.evaluate(RUSH, [changed, []])[1] == own
+    assert node.evaluate(RUSH, [{**asked, "clock": None}, []])[0] is False
+
+
 def test_a_depot_is_a_row_or_a_place_and_moves_with_its_vehicles(node: Node) -> None:
     rows = {**FLEET, "stops": [{"id": "yard", "location": YARD, "service": 60}, *ORDERS]}
     asked, *_ = given(node, rows, ("withDepotAt", "yard"))

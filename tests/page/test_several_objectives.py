@@ -249,7 +249,7 @@ def test_a_tour_is_said_beside_the_least_of_each(page: Page) -> None:
     limit(page, "Way").press("Home")
     choice = page.locator("#choice")
     expect(choice).to_have_text(
-        re.compile(r"^The least way of all, .*more people passed.* and .*more climb.*of each\.$")
+        re.compile(r"^The least way of all; .*more people passed.* and .*more climb.*of each\.$")
     )
 
 

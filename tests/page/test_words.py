@@ -49,6 +49,8 @@ def test_times_are_in_hours_and_minutes_on_the_chart(
         ({"name": "vehicles", "measure": "vehicles", "unit": ""}, "Vehicles", "7"),
         ({"name": "people passed", "unit": "people"}, "People passed", "7.2"),
         ({"name": "risk", "unit": TIMES_M}, TIMES_M.capitalize(), "7.2"),
+        ({"name": "overlap", "measure": "overlap", "unit": "%"}, "Overlap, %", "720"),
+        ({"name": "stops changed", "measure": "changes", "unit": "stops"}, "Stops changed", "7.2"),
     ],
 )
 def test_the_title_of_an_axis_says_the_unit_where_nothing_else_does(
@@ -257,7 +259,7 @@ def front(*lengths: list[float]) -> list[dict[str, Any]]:
             0,
             [METRES, RISK, SECONDS],
             TOURS,
-            "The least distance of all, 200 % more risk and the least driving of all"
+            "The least distance of all and the least driving of all; 200 % more risk"
             " than the best of each.",
         ),
     ],

@@ -4,7 +4,7 @@ import { amount, compared, figure } from "../common/amounts.js";
 import { svgElement } from "../common/elements.js";
 import { titled, withUnit } from "../common/objectives.js";
 
-const MARGIN = { left: 64, right: 16, top: 28, bottom: 40 };
+const MARGIN = { left: 76, right: 16, top: 28, bottom: 40 };
 const REACH = 40; // pixels within which a click selects a dot
 const SHADES = 5; // of the colour, from the least to the greatest
 const CHOICES = [["across", "Across"], ["up", "Up"], ["shade", "Colour"]];

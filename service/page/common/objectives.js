@@ -2,7 +2,7 @@
 
 import { SECONDS } from "./durations.js";
 
-const TIMES = ["driving", "service", "waiting", "lateness", "earliness", "weighted_arrival", "overtime", "longest", "shortest", "imbalance"]; // measures of plans
+const TIMES = ["driving", "service", "waiting", "lateness", "earliness", "weighted_arrival", "overtime", "longest", "shortest", "imbalance"]; // measures of plans that are times
 const THINGS = ["people", "pedestrians", "accidents", "vehicles", "stops", "orders", "parcels", "customers", "visits", "turns", "crossings"];
 
 const SHORT = 16; // letters
@@ -61,7 +61,9 @@ export const isMetres = ({ unit }) => unit === "m";
 export const [LOAD_KM, LOAD_HOURS] = ["load-km", "load-hours"];
 
 /** How many of what the service counts in are one of the unit. */
-export const perUnit = ({ measure, unit }) => (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1;
+export const perUnit = ({ measure, unit }) => (measure === "overlap" ? PER_CENT : (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1);
+
+const PER_CENT = 0.01; // of a share
 
 /** The unit, if it is short enough to stand beside a number. */
 export const shortUnit = ({ unit }) => (unit && unit.length < SHORT ? unit : "");

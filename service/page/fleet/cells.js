@@ -7,6 +7,7 @@ import { clockUnit } from "./units.js";
 const [MINUTE, HOUR] = [60, 3600]; // seconds
 const LASTING = /^(?:(\d+) ?h(?: |$))?(?:(\d+) ?min(?: |$))?(?:(\d+(?:\.\d+)?) ?s)?$/;
 const BREAK = /^(.+?[-–—].+?)[\s,]+(\S+(?: (?:s|min|h))?)$/;
+const BY_VEHICLE = /^(.+?)\s*:\s*(\S+(?: (?:s|min|h))?)$/;
 const MINUTES = /^\d{3}$/; // in a unit of minutes: 540 is 9:00
 const DOUBTFUL = /^\d\d?[.,]\d$/; // 8.5 may be 8:30 or 8:50
 const HALF_OF_DAY = /[ap]\.?m\.?$/i;
@@ -19,6 +20,7 @@ const NUMBERS = {
   latitude: numbers((value) => Math.abs(value) <= 90, "a number, -90 to 90"),
   amount: numbers((value) => value >= 0, "a number, 0 or more"),
   limit: numbers((value) => value > 0, "a number above 0"),
+  price: numbers((value) => value >= 0, "a number, 0 or more"),
   count: numbers((value) => value >= 1 && Number.isInteger(value), "a whole number, 1 or more"),
 };
 
@@ -38,6 +40,16 @@ const TYPES = {
     hint: "a time, as 10:30, or from when and until when, as 10:00-10:30",
   },
   lasting: { write: lastingText, read: lasting, hint: "how long it takes, as 5 min, 0:05 or 300 s" },
+  percent: {
+    write: (value) => String(cellNumber(100 * value)),
+    read: (text) => only((value) => value > 0 && value <= 100, (number(text.replace(/\s*%$/, "")) ?? NaN) / 100),
+    hint: "a number of per cent, as 80, of what it is without",
+  },
+  services: {
+    write: (value, second) => listOf(value).map((each) => `${each?.vehicle}: ${lastingText(each?.service, second)}`).join("; "),
+    read: (text, second) => all(pieces(text, /;/), (each) => serviceOf(each, second)),
+    hint: "how long it takes by some vehicles, as van: 10 min; bike: 5 min",
+  },
   long: { write: lastingText, read: (text, second) => (second && isPlain(text) ? undefined : lasting(text, second)), hint: "how long it is, as 8 h, 480 min or 8:00" },
   spans: {
     write: (value, second) => spansOf(value).map((span) => spanText(span, second)).join("; "),
@@ -57,7 +69,8 @@ export const secondsIn = (asked) => (asked.clock ? SECONDS.get(clockUnit(asked))
 /** The text of a stop's or vehicle's cell. What was not understood is shown as it was typed. */
 export function cellText(item, column, second) {
   const value = valueOf(item, column);
-  return value === undefined || value === null ? "" : typeof value === "string" ? value : TYPES[column.type].write(value, second);
+  if (value === undefined || value === null) return "";
+  return typeof value === "string" ? value : TYPES[column.type].write(typeof value === "number" ? value / (column.per ?? 1) : value, second);
 }
 
 const isNumber = (type) => type in NUMBERS;
@@ -80,12 +93,13 @@ export const unknownIn = (item, column) =>
   listOf(valueOf(item, column)).find((each) => typeof each === "string" && !(column.names?.includes(each) ?? ["text", "words"].includes(column.type)));
 
 /** What to write into a cell of a column. */
-export const hintOf = ({ type }, second) => (!second && ["time", "due", "spans", "lasting", "long"].includes(type) ? COUNTED : TYPES[type].hint);
+export const hintOf = ({ type }, second) => (!second && ["time", "due", "spans", "lasting", "long", "services"].includes(type) ? COUNTED : TYPES[type].hint);
 
 /** A stop or vehicle with another text in one of its cells; without text, its member goes. */
-export function withText(item, { member, several, part, type }, text, second) {
+export function withText(item, { member, several, part, type, per = 1 }, text, second) {
   const changed = { ...item };
-  const value = text && (TYPES[type].read(text, second) ?? text);
+  const read = text && (TYPES[type].read(text, second) ?? text);
+  const value = typeof read === "number" ? read * per : read;
   if (part !== undefined) return { ...changed, [member]: (item[member] ?? [0, 0]).with(part, value) };
   for (const each of [member, several]) delete changed[each];
   if (!text) return changed;
@@ -164,6 +178,13 @@ function span(text, second) {
 
 /** Spans that each begin after the one before; undefined if they do not. */
 const apart = (spans) => (spans?.every(([from], at) => !at || from > spans[at - 1][1]) ? spans : undefined);
+
+/** How long a visit takes by vehicles of an id. */
+function serviceOf(text, second) {
+  const [, vehicle, long] = BY_VEHICLE.exec(text) ?? [];
+  const service = long === undefined ? undefined : lasting(long, second);
+  return service === undefined ? undefined : { vehicle, service };
+}
 
 function pause(text, second) {
   const [, between, long] = BREAK.exec(text) ?? [];

@@ -1,7 +1,7 @@
 /** The measures of a plan, as rows of a table. */
 
 import { titled, withUnit } from "../common/objectives.js";
-import { clockUnit, loadUnit, unitOfRoutes } from "./units.js";
+import { PLAIN, clockUnit, loadUnit, unitOfRoutes } from "./units.js";
 
 const NAMES = {
   vehicles: "Vehicles used",
@@ -17,6 +17,8 @@ const NAMES = {
   imbalance: "Longest minus shortest",
   unassigned: "Prizes left out",
   load_distance: "Load carried",
+  overlap: "Overlap of routes",
+  changes: "Stops changed",
 };
 
 /**
@@ -38,5 +40,5 @@ function unitsOf(objectives, request) {
   const time = clockUnit(request);
   const times = { driving: time, service: time, waiting: time, lateness: time, earliness: time, weighted_arrival: time, overtime: time };
   const route = unitOfRoutes(request);
-  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit, load_distance: loadUnit(objectives) };
+  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit, load_distance: loadUnit(objectives), ...PLAIN };
 }

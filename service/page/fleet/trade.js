@@ -17,6 +17,7 @@ export const AGAINST = {
   weighted_arrival: { title: "Customer wait, by urgency", name: "customer wait", stops: "urgency" },
   imbalance: { title: "Longest minus shortest route", name: "imbalance" },
   load_distance: { title: "Load carried", name: "load carried", vehicles: "capacity" },
+  overlap: { title: "Overlap of routes", name: "overlap of routes" },
 };
 const COSTS = ["max", "sum"];
 

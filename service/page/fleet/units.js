@@ -2,6 +2,9 @@
 
 import { LOAD_HOURS, LOAD_KM, isUnnamed, namesIn } from "../common/objectives.js";
 
+/** The units of measures that are the same for all requests. */
+export const PLAIN = { overlap: "%", changes: "stops" };
+
 /** The unit of the clock of a request: that of an objective, or of times that are not an objective; "" if it is not known. */
 export function clockUnit({ clock, objectives }) {
   const source = typeof clock === "string" ? objectives?.find(({ name }) => name === clock) : clock;
@@ -33,7 +36,7 @@ export function namesShown({ objectives: named, scale }, before, instance) {
 /** These objectives with units for those that are measures of plans of a request, or cost layers of its map. */
 export function withUnits(objectives, request) {
   const time = clockUnit(request ?? {});
-  const units = { lateness: time, earliness: time, weighted_arrival: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives) };
+  const units = { lateness: time, earliness: time, weighted_arrival: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives), ...PLAIN };
   const unit = ({ name, measure }) => (measure ? (units[measure] ?? "") : request?.grid ? `${name} × m` : "");
   return objectives.map((each) => (each.unit ? each : { ...each, unit: unit(each) }));
 }

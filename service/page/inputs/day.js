@@ -1,15 +1,22 @@
 /** The time of day in a request: when tours may leave, and how the times of travel change. */
 
-import { unitOf } from "../fleet/units.js";
+import { clockUnit, unitOf } from "../fleet/units.js";
 import { kindOf } from "../common/kinds.js";
 import { timeOfDay, timeText } from "../common/durations.js";
 
 const [LEAST, MOST] = [0.01, 100]; // factors that the service takes
+export const OWN = -2; // in place of the number of an objective
 const BETWEEN = /\s*[;\n]\s*|\s*,\s*(?=\d{1,3}:)/;
 const PAIR = /^(\d[\d:]*)\s*[×x*=\s]\s*(\d+(?:[.,]\d+)?)$/i;
 
-/** Whether tours of a request can leave at a time. */
-export const canHaveDay = (asked) => Boolean(asked.stops && Array.isArray(asked.objectives)) && !kindOf(asked).movers;
+/** Whether the times of a request can change over the day. */
+export const canHaveDay = (asked) => Boolean(asked.stops && Array.isArray(asked.objectives)) && (!kindOf(asked).movers || isTimed(asked));
+
+/** Whether tours of a request can leave at a time; the vehicles of a fleet leave within their shifts. */
+export const canDepart = (asked) => !kindOf(asked).movers;
+
+/** Whether a fleet has times, in seconds. */
+const isTimed = (asked) => clockUnit(asked) === "s";
 
 /** When tours may leave: the earliest and the latest second of the day; null if at no time in particular. */
 export function departuresIn({ departure }) {
@@ -24,8 +31,9 @@ export function leaving({ departure: _, ...others }, times) {
   return { ...others, departure: earliest === latest ? earliest : { earliest, latest } };
 }
 
-/** The index of the objective that is measured in seconds of travel, as the service finds it; -1 if none is. */
+/** The index of the objective that is measured in seconds of travel, as the service finds it; OWN if a fleet has times of its own, -1 if there are none. */
 export function clockIn({ objectives, clock }) {
+  if (typeof clock === "object" && clock) return OWN;
   if (clock != null) return objectives.findIndex(({ name }) => name === clock);
   const changing = objectives.findIndex(({ over_the_day: factors, slices, traffic }) => factors?.length || slices?.length || traffic);
   return changing < 0 ? objectives.findIndex((each) => unitOf(each) === "s") : changing;
@@ -33,24 +41,40 @@ export function clockIn({ objectives, clock }) {
 
 /** How the times of travel change: pairs of a second of the day and a factor from then on. */
 export function hoursIn(asked) {
-  const { over_the_day: factors, slices } = asked.objectives[clockIn(asked)] ?? {};
+  const { over_the_day: factors, slices } = clockOf(asked);
   return slices?.length ? relative(slices) : (factors ?? []);
 }
 
 /** Where the times at each hour come from, if they are not typed: "slices" of a file, or "traffic" that a routing engine knows; else null. */
-export function hoursFrom({ objectives, clock }) {
-  const { slices, traffic } = objectives[clockIn({ objectives, clock })] ?? {};
+export function hoursFrom(asked) {
+  const { slices, traffic } = clockOf(asked);
   return slices?.length ? "slices" : traffic ? "traffic" : null;
 }
 
-/** The request whose times of travel change so; its tours leave from the first of these hours on, if they left at no time. */
-export function changingOver(asked, hours) {
+/** What measures the times of travel. */
+function clockOf(asked) {
   const axis = clockIn(asked);
-  const { over_the_day: _, ...objective } = asked.objectives[axis];
-  const changed = hours.length ? { ...objective, over_the_day: hours } : objective;
-  const departure = hours.length ? (asked.departure ?? hours[0][0]) : asked.departure;
-  return { ...asked, objectives: asked.objectives.with(axis, changed), ...(departure != null && { departure }) };
+  return (axis === OWN ? asked.clock : asked.objectives[axis]) ?? {};
 }
+
+/**
+ * The request whose times of travel change so; those of a fleet under all objectives that are measured as its clock is. Its tours leave from the
+ * first of these hours on, if they left at no time.
+ */
+export function changingOver(asked, hours) {
+  const clock = clockOf(asked);
+  const source = canDepart(asked) ? null : sourceOf(clock);
+  const changed = (each) => {
+    if (each !== clock && (!source || typeof each !== "object" || each.measure || sourceOf(each) !== source)) return each;
+    const { over_the_day: _, ...others } = each;
+    return hours.length ? { ...others, over_the_day: hours } : others;
+  };
+  const departure = hours.length && canDepart(asked) ? (asked.departure ?? hours[0][0]) : asked.departure;
+  return { ...asked, objectives: asked.objectives.map(changed), ...(asked.clock != null && { clock: typeof asked.clock === "object" ? changed(asked.clock) : asked.clock }), ...(departure != null && { departure }) };
+}
+
+/** What costs are measured by, whose total or maximum is an objective. */
+const sourceOf = ({ name: _, over: __, over_the_day: ___, unit: ____, ...source }) => JSON.stringify(source);
 
 export const hoursText = (hours) => hours.map(([from, factor]) => `${timeText(from) ?? from} ${factor}`).join("; ");
 

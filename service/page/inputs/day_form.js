@@ -1,6 +1,6 @@
 /** The fields about the time of day: when tours may leave, and a picture of how the times of travel change. */
 
-import { canHaveDay, changingOver, clockIn, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
+import { canDepart, canHaveDay, changingOver, clockIn, OWN, departuresIn, hoursFrom, hoursIn, hoursText, hoursTyped, leaving } from "./day.js";
 import { svgElement } from "../common/elements.js";
 import { isRead } from "../planning/faults.js";
 import { timeOfDay, timeText } from "../common/durations.js";
@@ -41,7 +41,7 @@ export class DayForm {
   open(asked) {
     for (const field of fields) field.setCustomValidity("");
     this.show(asked);
-    element("day").open = canHaveDay(asked) && departuresIn(asked) !== null;
+    element("day").open = canHaveDay(asked) && (departuresIn(asked) !== null || (!canDepart(asked) && hoursIn(asked).length > 0));
   }
 
   /** Shows a changed request; what is not understood stays in its field. */
@@ -51,10 +51,11 @@ export class DayForm {
     this.#asked = asked;
     const [hours, times] = [hoursIn(asked), departuresIn(asked)];
     for (const [axis, id] of ENDS.entries()) write(element(id), times ? written(times[axis]) : "");
+    element("departures").hidden = !canDepart(asked);
     element("departure-sliders").hidden = !times;
     if (times) for (const [axis, slider] of sliders.entries()) place(slider, scaleOf(hours, times), times[axis]);
     write(element("hours"), hoursFrom(asked) ? "" : hoursText(hours));
-    element("hours").disabled = Boolean(hoursFrom(asked)) || clockIn(asked) < 0;
+    element("hours").disabled = Boolean(hoursFrom(asked)) || isTimeless(asked);
     element("hours-help").textContent = helpOn(asked);
     draw(hours, times);
   }
@@ -100,9 +101,11 @@ const pushed = (times, axis, value) => times.map((time, at) => (at === axis ? va
 function helpOn(asked) {
   const brought = GIVEN[hoursFrom(asked)];
   if (brought) return brought;
-  if (clockIn(asked) < 0) return "No objective is a time: measure one by road, or in straight lines at a speed.";
+  if (isTimeless(asked)) return "No objective is a time: measure one by road, or in straight lines at a speed.";
   return "From each time on, travel takes so much longer: 7:30 1.6 is 1.6 times as long.";
 }
+
+const isTimeless = (asked) => clockIn(asked) < 0 && clockIn(asked) !== OWN;
 
 /** The first and the last second of the picture and its sliders: whole hours around all that is in it. */
 function scaleOf(hours, times) {

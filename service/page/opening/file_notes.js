@@ -51,12 +51,6 @@ export class FileNotes {
     if (this.#name) this.#status.replaceChildren(made("p", {}, `Still open: ${this.#name}, as it was read before.`));
   }
 
-  /** Says that files wait for others, in place of notes. */
-  awaiting(said) {
-    this.dismiss();
-    this.#status.replaceChildren(made("p", {}, said));
-  }
-
   /** The name of what was opened last; "" once its notes are dismissed. */
   get name() {
     return this.#name;

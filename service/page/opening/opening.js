@@ -12,6 +12,7 @@ import { Problem } from "../planning/service.js";
 import { say } from "../planning/status.js";
 
 const MOST_COUNTED = 1000; // wrong cells: the service does not read on
+const WAITING = "waiting"; // the code of files of vehicles that wait for stops
 const element = (id) => document.getElementById(id);
 
 export class Opening {
@@ -68,6 +69,7 @@ export class Opening {
   forget() {
     this.examples.forget();
     this.#ofStops = [];
+    this.#ofVehicles = [];
     this.#notes.dismiss();
     this.surroundings.forget();
   }
@@ -89,7 +91,6 @@ export class Opening {
   /** Opens files as a request, or says why that is not possible; until then nothing can be planned. `columns` were chosen. */
   async openFiles(files, columns = []) {
     if (!files.length) return;
-    if (!columns.length && !this.#ofStops.length && (await areOfVehicles(files).catch(() => false))) return this.#await(files);
     const words = files.length > 1 ? "The files are being read." : "The file is being read.";
     try {
       await this.run(words, async ({ signal }) => {
@@ -110,13 +111,6 @@ export class Opening {
     }
   }
 
-  /** Keeps files of vehicles until there are stops. */
-  #await(files) {
-    this.#ofVehicles = files;
-    clearFaults();
-    this.#notes.awaiting(`${files.map(({ name }) => name).join(", ")}: vehicles without stops. Open the table of their stops next: the vehicles then serve these.`);
-  }
-
   /** Says that a folder cannot be opened. */
   refuseFolder(name) {
     const problem = new Problem({ code: "folder", detail: `${name} is a folder: drop its files` });
@@ -134,13 +128,13 @@ export class Opening {
 
   /** What was read from files, and these; a table of vehicles joins the files of stops that are open, or are opened next. */
   async #joined(files, columns, signal) {
-    const waiting = this.#ofVehicles;
-    this.#ofVehicles = [];
-    if (waiting.length && !columns.length) {
-      const opened = [...files, ...waiting];
-      return { brought: await this.#read(opened, columns, signal), opened: files, shown: opened };
+    if (!columns.length && (await areOfVehicles(files))) {
+      if (this.#ofStops.length) return this.#joining(files, columns, signal);
+      this.#ofVehicles = files;
+      throw new Problem({ code: WAITING, detail: `${files.map(({ name }) => name).join(", ")}: vehicles, which wait for their stops: open the table of these next` });
     }
-    if (this.#ofStops.length && !columns.length && (await areOfVehicles(files).catch(() => false))) return this.#joining(files, columns, signal);
+    const opened = [...files, ...this.#ofVehicles.splice(0)];
+    if (opened.length > files.length) return { brought: await this.#read(opened, columns, signal), opened: files, shown: opened };
     try {
       return { brought: await this.#read(files, columns, signal), opened: files };
     } catch (error) {
@@ -212,6 +206,7 @@ function tellUnread(error) {
   if (!(error instanceof Problem)) throw error;
   const { code, message, errors, wrongCells } = error;
   if (code === "unauthorized") showFaults(error);
+  else if (code === WAITING) showFault("file", message);
   else if (wrongCells > 1) showFault("file", `not opened: ${countOf(wrongCells)} cannot be read`, listed(errors, wrongCells));
   else showFault("file", `not opened: ${message}`);
 }

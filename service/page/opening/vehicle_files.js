@@ -13,6 +13,7 @@ export async function areOfVehicles(files) {
 
 async function isOfVehicles(file) {
   if (!NAMES.test(file.name)) return false;
-  const [heading] = (await file.slice(0, HEADING).text()).split(/[\r\n]/);
+  const begin = await file.slice(0, HEADING).text().catch(() => ""); // what cannot be read is said where it is read
+  const [heading] = begin.split(/[\r\n]/);
   return OF_VEHICLES.test(heading) && !OF_STOPS.test(heading.replaceAll("_", " "));
 }

@@ -1,7 +1,7 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
-import { amount, wordsOf } from "../common/amounts.js";
-import { capital, isCounted, isLongest, shortUnit } from "../common/objectives.js";
+import { amount, compared, wordsOf } from "../common/amounts.js";
+import { capital, isCounted, isLongest, namesThings, shortUnit } from "../common/objectives.js";
 
 /** The sentence about the tour of a link whose front the service no longer keeps; `noun` is what the front called it. */
 export const choiceKept = ({ one }) =>
@@ -37,14 +37,15 @@ function reached(front, tour, objective, many) {
 
 /** How much more than the least of the front a tour has of each of three or four objectives. */
 function ofSeveral(front, tour, objectives) {
-  const said = objectives.map((objective, axis) => {
-    const least = front.reduce((best, each) => (each.lengths[axis] < best.lengths[axis] ? each : best));
-    if (tour.lengths[axis] !== least.lengths[axis]) return step(least, tour, axis, objectives, wordsOf(objective).more);
-    return isLongest(objective) ? theLeast(objective) : `${theLeast(objective)} of all`;
-  });
-  const more = front.some(({ lengths }) => lengths.some((value, axis) => value < tour.lengths[axis])) ? " than the best of each" : "";
-  return capital(`${said.slice(0, -1).join(", ")} and ${said.at(-1)}${more}.`);
+  const best = objectives.map((_, axis) => front.reduce((least, each) => (each.lengths[axis] < least.lengths[axis] ? each : least)));
+  const isBest = (_, axis) => tour.lengths[axis] === best[axis].lengths[axis];
+  const leasts = objectives.filter(isBest).map((objective) => (isLongest(objective) ? theLeast(objective) : `${theLeast(objective)} of all`));
+  const others = objectives.flatMap((objective, axis) => (isBest(objective, axis) ? [] : [step(best[axis], tour, axis, objectives, wordsOf(objective).more)]));
+  const more = others.length ? [`${listed(others)} than the best of each`] : [];
+  return capital(`${[...(leasts.length ? [listed(leasts)] : []), ...more].join("; ")}.`);
 }
+
+const listed = (parts) => (parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}` : parts[0]);
 
 /** What the best of all is under one objective, such as "the least driving". */
 const theLeast = (objective) => `the ${isLongest(objective) ? `${objective.name} at its shortest` : `${wordsOf(objective).least} ${objective.name}`}`;
@@ -62,7 +63,7 @@ function step(from, to, axis, objectives, word) {
   const said = amount(by, objective);
   const is = objectives.length > 2 ? "" : " is"; // several are listed
   if (isLongest(objective)) return `the ${name}${is} ${objective.measure || before === 0 ? `${said} ${word}` : `${percent((100 * by) / before)} ${word} (${said})`}`;
-  if (objective.measure || before === 0) return `${said} ${word} ${name}`;
+  if (objective.measure || before === 0) return `${namesThings(objective) ? compared(by, objective) : said} ${word} ${name}`;
   return `${percent((100 * by) / before)} ${word} ${name}${shortUnit(objective) && ` (${said})`}`;
 }
 

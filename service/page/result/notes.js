@@ -10,6 +10,8 @@ const OWN = "added up from stop to stop, in the unit of your numbers";
 const NEAR = 0.01; // the share by which the parts of a route may miss its length
 const MEASURED = {
   load_distance: "each load times how far it is carried, added up",
+  overlap: "how many neighbours ride with different vehicles, the nearest counting most",
+  changes: "visited by another vehicle, or later, than in the plan before",
   weighted_arrival: "how long each stop waits for its visit, times its urgency, added up",
 };
 const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "waiting"], ["breaks", "in breaks"]];

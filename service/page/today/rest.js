@@ -8,11 +8,12 @@ import { doneOf, leftOf } from "./progress.js";
  * What is asked of the service.
  *
  * @param {{ at: number, asked: object }} driven the number of the plan in its front, and the request that it is of
- * @param {{ vans: object[], now: number | null, out: Set<string>, removed: Set<string>, added: object[], isHandFree: boolean }} day how far its
+ * @param {{ vans: object[], now: number | null, out: Set<string>, removed: Set<string>, added: object[], isHandFree: boolean, changes: object | null }} day how far its
  *   vehicles have come, by `progressOf`, where each of them is in `tip`; the time, and in words; the vehicles that are out of
- *   service, by name; cancelled stops; new ones; and whether the time to spare may be used up
+ *   service, by name; cancelled stops; new ones; whether the time to spare may be used up; and
+ *   how stops that change are counted, if they are
  */
-export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, added, isHandFree }) {
+export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, added, isHandFree, changes }) {
   const { time_limit: seconds, seed } = asked;
   const left = new Set(vans.flatMap(leftOf));
   const under = vans.flatMap((van, route) => (van.isOut || out.has(van.name) ? [{ route, ...wayOf(van, out.has(van.name), asked, nowSaid) }] : []));
@@ -20,6 +21,7 @@ export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, 
     plan,
     ...(now !== null && { now }),
     ...(isHandFree && { slack: 0 }),
+    ...(changes && { changes }),
     routes: under,
     add: added,
     remove: [...removed].filter((stop) => left.has(stop)),

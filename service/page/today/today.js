@@ -3,6 +3,7 @@
 import { amount } from "../common/amounts.js";
 import { SECONDS, timeText } from "../common/durations.js";
 import { kindNamed } from "../common/kinds.js";
+import { changesAsked, showFew } from "./few_changes.js";
 import { withText } from "../fleet/cells.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { stylesOf } from "../fleet/route_styles.js";
@@ -90,6 +91,7 @@ export class Today {
     element("today-clock").hidden = !found.asked.clock;
     if (!found.asked.clock) this.#now = null;
     this.#showHand(found.asked);
+    showFew(found.asked);
   }
 
   /** Asks whether vehicles that are late may use up the time to spare, if there is any. */
@@ -115,7 +117,7 @@ export class Today {
   /** What is asked of the service: the `id` of the front, the `body`, and the `way` by which the rest is shown. Throws a Problem where something cannot be read. */
   get asked() {
     const added = this.#orders.added;
-    const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added, told: this.#orders.told, isHandFree: !element("today-hand").hidden && element("today-hand").control.checked };
+    const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added, told: this.#orders.told, isHandFree: !element("today-hand").hidden && element("today-hand").control.checked, changes: changesAsked(this.#driven.asked) };
     const body = bodyOf(this.#driven, day);
     return { id: this.#found.state.answer.id, body, way: new FleetRest(this.#driven, body, day) };
   }
