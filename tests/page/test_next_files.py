@@ -45,7 +45,7 @@ VANS = "plate,driver,capacity\nAB-1,Pekka,4\nAB-2,Anna,5\n"
 def test_a_table_of_vehicles_joins_the_stops_that_are_open(window: Page) -> None:
     window.get_by_role("button", name="Clear").click()
     open_files(window, {"vans.csv": VANS})
-    expect(window.locator("#file-fault")).to_contain_text("vans.csv: vehicles, which wait")
+    expect(window.locator("#file-fault")).to_contain_text("The vehicles of vans.csv wait")
     open_files(window, {"orders.csv": ORDERS.format("order")})
     expect(window.locator("#file-notes")).to_contain_text("orders.csv, vans.csv")
     expect(window.get_by_label("Name of vehicle 2")).to_have_value("Anna, AB-2")

@@ -131,7 +131,7 @@ export class Opening {
     if (!columns.length && (await areOfVehicles(files))) {
       if (this.#ofStops.length) return this.#joining(files, columns, signal);
       this.#ofVehicles = files;
-      throw new Problem({ code: WAITING, detail: `${files.map(({ name }) => name).join(", ")}: vehicles, which wait for their stops: open the table of these next` });
+      throw new Problem({ code: WAITING, detail: `the vehicles of ${files.map(({ name }) => name).join(", ")} wait for their stops: open the table of these next` });
     }
     const opened = [...files, ...this.#ofVehicles.splice(0)];
     if (opened.length > files.length) return { brought: await this.#read(opened, columns, signal), opened: files, shown: opened };
