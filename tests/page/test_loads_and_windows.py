@@ -107,7 +107,7 @@ def test_stops_that_are_reached_just_before_they_close_say_so(shown: Page) -> No
     )
     expect(shown.locator("#fleet-lanes .tight")).to_have_count(2)
     expect(shown.locator("#fleet-signs .tight")).to_have_text(
-        "up to 5 min before the window closes"
+        "the stop above it begins at most 5 min before its window closes"
     )
     stop = shown.locator("#fleet-lanes").get_by_role("button", name="order-1")
     expect(stop).to_have_attribute(

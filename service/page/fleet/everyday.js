@@ -1,7 +1,6 @@
 /** Read and write a depot, minutes at the stops, shifts, time to spare and a speed as members of a request: what every dispatcher has. */
 
 import { duration, timeText } from "../common/durations.js";
-import { counted } from "../common/numbers.js";
 import { isMeasured, withAnother, without } from "../inputs/stops.js";
 import { secondsIn } from "./cells.js";
 import { byIds } from "./references.js";
@@ -67,13 +66,11 @@ export function usualService(asked) {
   return given.reduce((usual, value) => (count(value) > count(usual) ? value : usual), given[0]);
 }
 
-/** How many stops there are to visit, and how many depots beside them, in words. */
-export function stopsSaid(asked) {
-  const { stops = [] } = asked;
+/** How many of the stops are depots, which are not visited, in words; "" if none is. */
+export function depotsSaid(asked) {
   const ends = depotsIn(asked);
-  const depots = stops.filter((stop) => ends.has(stop.id) && !isOrder(stop, asked)).length;
-  const visited = counted(stops.length - depots, "stop", "stops");
-  return depots ? `${visited}, ${counted(depots, "depot", "depots")}` : visited;
+  const depots = (asked.stops ?? []).filter((stop) => ends.has(stop.id) && !isOrder(stop, asked)).length;
+  return depots > 1 ? `with ${depots} depots` : depots ? "with the depot" : "";
 }
 
 /** The stops at which no vehicle starts, ends or loads again. */

@@ -1,12 +1,15 @@
 /** The request of a fleet or of robots: in a few words, and as JSON in a part of the form that unfolds. */
 
 import { counted } from "../common/numbers.js";
-import { stopsSaid } from "./everyday.js";
 
 /** How many vehicles there are of all types. */
 export const vehiclesIn = ({ vehicles }) => vehicles.reduce((all, each) => all + (Number(each?.count ?? 1) || 0), 0);
 
-export const describedFleet = (asked) => `A fleet: ${counted(vehiclesIn(asked), "vehicle", "vehicles")}, ${stopsSaid(asked)}.`;
+export function describedFleet({ vehicles, stops }) {
+  const count = vehiclesIn({ vehicles });
+  const fleet = `${counted(count, "vehicle", "vehicles")} and ${counted(stops?.length ?? 0, "stop", "stops")}`;
+  return `A fleet: ${fleet}.`;
+}
 
 /** Robots that share a map, which is described. */
 export const describedRobots = ({ robots }, map) =>

@@ -5,7 +5,7 @@ import { DayForm } from "./day_form.js";
 import { detailsOfTyped, detailsWithAnother, detailsWithout, withSoundDetails, withoutDetails } from "./details.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, inPlanes, ownNames, requestFor } from "./instance.js";
-import { stopsSaid } from "../fleet/everyday.js";
+import { depotsSaid } from "../fleet/everyday.js";
 import { FleetForm } from "../fleet/fleet_form.js";
 import { byIds, servedBy, stopRenamed } from "../fleet/references.js";
 import { RequestText } from "../fleet/fleet_request.js";
@@ -266,7 +266,8 @@ export class RequestForm {
     const shown = this.#isFleet || hasTable(form);
     if (this.#isFleet) this.#fleet.show(this.#brought);
     else this.#table.show(columnsOfPlaces(form, this.#brought, this.#objectives), rowsOfPlaces(form, this.#brought, this.#rows));
-    element("count").textContent = this.#isFleet ? stopsSaid(this.#brought) : shown ? counted(count, "stop", "stops") : "";
+    element("count").textContent = shown ? counted(count, "stop", "stops") : "";
+    element("count-depots").textContent = this.#isFleet ? depotsSaid(this.#brought) : "";
     const isFixed = form !== "coordinates" && !isMeasured(this.#brought);
     element("add").disabled = element("place").disabled = isFixed;
     element("add").hidden = element("place").hidden = !shown;
