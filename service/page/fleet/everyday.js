@@ -70,7 +70,7 @@ export function usualService(asked) {
 export function depotsSaid(asked) {
   const ends = depotsIn(asked);
   const depots = (asked.stops ?? []).filter((stop) => ends.has(stop.id) && !isOrder(stop, asked)).length;
-  return depots > 1 ? `with ${depots} depots` : depots ? "with the depot" : "";
+  return depots > 1 ? `with ${depots} depots` : depots ? "with depot" : "";
 }
 
 /** The stops at which no vehicle starts, ends or loads again. */
