@@ -209,6 +209,14 @@ def front(*lengths: list[float]) -> list[dict[str, Any]]:
             "10 % more distance (400 m) than the least, for 33 % less risk.",
         ),
         (
+            [[4000, 9], [4400, 6], [5000, 7]],
+            2,
+            [METRES, RISK],
+            PLANS,
+            "Another plan is better under both objectives, but this one changes less of the plan"
+            " before.",
+        ),
+        (
             [[4000, 9], [4400, 6], [5000, 3]],
             2,
             [METRES, RISK],

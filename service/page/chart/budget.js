@@ -1,6 +1,7 @@
 /** Budget lines across the chart: a limit on one objective, whose labelled handle is dragged or moved by keys. */
 
 import { amount, wordsOf } from "../common/amounts.js";
+import { lastOf } from "../result/tours.js";
 import { UNNAMED, isCounted, isLongest, namesThings } from "../common/objectives.js";
 
 const STEPS = [
@@ -157,7 +158,7 @@ export class Budget {
   }
 
   #ends(axis) {
-    const ends = [this.#front[0], this.#front.at(-1)].map(({ lengths }) => lengths[axis]);
+    const ends = [this.#front[0], this.#front[axis ? lastOf(this.#front) : this.#front.length - 1]].map(({ lengths }) => lengths[axis]);
     return [Math.min(...ends), Math.max(...ends)];
   }
 }

@@ -7,7 +7,7 @@ import { UNNAMED } from "../common/objectives.js";
 import { Budget } from "./budget.js";
 import { Labels } from "./labels.js";
 import { Plot } from "./plot.js";
-import { drawnNearest } from "../result/tours.js";
+import { drawnNearest, isBeaten, lastOf } from "../result/tours.js";
 
 const REACH = 40; // pixels within which a click selects a point
 const MARGINS = { top: 28, right: 30, bottom: 24, left: 64 }; // pixels beside the plot: for the handles and the ticks
@@ -95,8 +95,9 @@ export class FrontChart {
     const rooms = [() => BESIDE, roomUp];
     const axes = this.#objectives.map((objective, axis) => ({ ...axisOf(objective), range: (pixels) => roomy(this.#ranges[axis], rooms[axis](pixels)) }));
     const points = (front) => front.map(({ lengths }) => lengths);
+    const [beside, online] = [true, false].map((each) => this.#improved.filter((item) => isBeaten(this.#improved, item) === each));
     // No line through the quick first result: it would seem to lead to the names of others.
-    this.#plot.show(axes, [{ name: "alone", points: points(this.#alone) }, { name: "improved", points: points(this.#improved), line: stair }]);
+    this.#plot.show(axes, [{ name: "alone", points: points(this.#alone) }, { name: "improved", points: points(online), line: stair }, { name: "improved", points: points(beside) }]);
   }
 
   /** Marks a point as "selected", "pinned" or "previewed", or before the next front that of the plan that is "driven"; null removes the mark. */
@@ -172,7 +173,7 @@ function roomy(range, share) {
 }
 
 function described(front, objectives, { one, many }) {
-  const end = (axis, pick) => figure(pick(front[0].lengths[axis], front.at(-1).lengths[axis]), objectives[axis]);
+  const end = (axis, pick) => figure(pick(...[front[0], front.at(-1), front[lastOf(front)]].map(({ lengths }) => lengths[axis])), objectives[axis]);
   const ranges = objectives.map(({ name }, axis) => `${name} from ${end(axis, Math.min)} to ${end(axis, Math.max)}`);
   return `A choice of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;
 }

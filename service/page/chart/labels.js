@@ -1,6 +1,7 @@
 /** Name both ends of a front and its knee on the chart: buttons that preview and select their tours. */
 
 import { leastOf } from "../common/amounts.js";
+import { lastOf } from "../result/tours.js";
 
 const KNEE = "compromise"; // the knee, as people call it
 const LAST = 2; // of the three
@@ -29,7 +30,7 @@ export class Labels {
 
   /** Names the tours of a front: fewer names if it has fewer than three tours, or its knee is an end. */
   show(front, objectives) {
-    this.#indices = front.length > 1 ? [0, kneeOf(front), front.length - 1] : [];
+    this.#indices = front.length > 1 ? [0, kneeOf(front), lastOf(front)] : [];
     const [first, last] = objectives.map(leastOf);
     const said = [first, KNEE, last];
     this.#buttons.forEach((button, which) => (button.textContent = said[which]));
@@ -69,7 +70,7 @@ const touch = (one, other) => one.left < other.right && other.left < one.right &
 
 /** The tour with the least sum of both lengths, each scaled to 0 to 1 over the front. */
 export function kneeOf(front) {
-  const ends = [front[0], front.at(-1)].map(({ lengths }) => lengths);
+  const ends = [front[0], front[lastOf(front)]].map(({ lengths }) => lengths);
   const [low, high] = [Math.min, Math.max].map((pick) => [0, 1].map((axis) => pick(ends[0][axis], ends[1][axis])));
   const sum = ({ lengths }) => lengths.reduce((all, at, axis) => all + (at - low[axis]) / (high[axis] - low[axis] || 1), 0);
   const sums = front.map(sum);

@@ -1,6 +1,7 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
 import { amount, compared, wordsOf } from "../common/amounts.js";
+import { isBeaten, lastOf } from "./tours.js";
 import { capital, isCounted, isLongest, namesThings, shortUnit } from "../common/objectives.js";
 
 /** The sentence about the tour of a link whose front the service no longer keeps; `noun` is what the front called it. */
@@ -22,6 +23,7 @@ function sentence(front, tour, objectives, { one, many }) {
     const dearer = isLongest(objectives[0]) ? `but ${has(objectives[0], first.more)}` : `for ${first.more} ${objectives[0].name}`;
     return `${capital(theLeast(objectives[0]))}. Every other ${one} ${has(objectives[1], second.less)}, ${dearer}.`;
   }
+  if (isBeaten(front, tour)) return `Another ${one} is better under both objectives, but this one changes less of the plan before.`;
   const cost = capital(step(least, tour, 0, objectives, first.more));
   const gain = step(least, tour, 1, objectives, second.less);
   const joined = isLongest(objectives[1]) ? "and" : "for";
@@ -30,7 +32,7 @@ function sentence(front, tour, objectives, { one, many }) {
 
 /** Says that a tour has the least second length of those found, or that a measure of plans is 0. */
 function reached(front, tour, objective, many) {
-  if (tour.lengths[1] !== front.at(-1).lengths[1]) return "";
+  if (tour.lengths[1] !== front[lastOf(front)].lengths[1]) return "";
   if (objective.measure && tour.lengths[1] === 0) return ": none at all";
   return `: the ${wordsOf(objective).least} of all ${many} found`;
 }

@@ -10,6 +10,13 @@ export const drawnNearest = (front, place, position) =>
     return Math.hypot(x - place[0], y - place[1]);
   });
 
+/** The index of the tour with the least second length. */
+export const lastOf = (front) => least(front, ({ lengths }) => lengths[1]);
+
+/** Whether another tour of a front is better under both objectives: a plan that changes little of the one that is driven may be. */
+export const isBeaten = (front, { lengths: [first, second] }) =>
+  front.some(({ lengths: [other, another] }) => other <= first && another <= second && (other < first || another < second));
+
 /** The index of the first tour that is least far; 0 if there is none. */
 function least(front, distance) {
   const far = front.map(distance);
