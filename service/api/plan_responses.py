@@ -81,7 +81,7 @@ class PlanItem(BaseModel):
     measures: dict[str, float] = Field(
         description="what plans are compared by, as far as the request allows: vehicles, driving,"
         " service, waiting, lateness, earliness, weighted_arrival, overtime, longest, shortest,"
-        " imbalance, unassigned, load_distance, overlap, changes"
+        " imbalance, unassigned, load_distance, overlap, changes, on_time, duration, duration_p90"
     )
     routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
     unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")

@@ -16,6 +16,7 @@ from service.fleet.fleet import Array, Fleet
 from service.fleet.of_times import OF_TIMES, changes
 from service.fleet.overlap import overlap
 from service.fleet.plans import Plan, Route, path_of
+from service.fleet.punctuality import punctuality
 from service.fleet.rounding import is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of
@@ -107,6 +108,7 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     - `overlap`: how much neighbours count that do not ride with each other, from 0 to 1
     - `changes`: the number of promised stops that are left out, or that another vehicle visits, or
       later than with the tolerance
+    - `on_time`, `duration`, `duration_p90`: where times spread, as `punctuality` has them
     - `unassigned`: the prizes of the stops that are left out
     - `load_distance`: the sum over all legs of the first costs times the load, in its first
       dimension
@@ -115,6 +117,7 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     found: dict[str, float] = {"vehicles": len(plan.routes)}
     if rules.clock is not None:
         found |= _times(fleet, plan, [schedule(fleet, route) for route in plan.routes])
+        found |= punctuality(fleet, plan)
     if rules.limited is not None:
         lengths = [cost_length(fleet, route, rules.limited) for route in plan.routes]
         longest, shortest = max(lengths, default=0.0), min(lengths, default=0.0)

@@ -84,6 +84,8 @@ class Rules:
             without a change; None for any time.
         leave: Whether a vehicle leaves as late as makes nothing later, or as early as it may.
         groups: The groups of stops that share a vehicle, or must not, or have an order.
+        spread: The standard deviation of the time of each leg, as a share of it; None if times are
+            the same every day. No rule reads it: plans are kept on an average day.
 
     Raises:
         Refusal: The rules contradict each other, or are not supported.
@@ -99,6 +101,7 @@ class Rules:
     tolerance: float | None = None
     leave: Leave = "late"
     groups: Groups = NO_GROUPS
+    spread: float | None = None
 
     def __post_init__(self) -> None:
         if len(self.layers) != len(self.over):

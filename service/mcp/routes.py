@@ -10,7 +10,10 @@ from paretour.kinds import kind_of
 from service.amounts.said import amount, clock_time
 
 # Measures of plans that are times by the clock; others are counts, prizes or lengths.
-_TIMES = ("driving", "service", "waiting", "lateness", "overtime", "longest", "shortest")
+_TIMES = (
+    *("driving", "service", "waiting", "lateness", "overtime", "longest", "shortest"),
+    *("duration", "duration_p90"),
+)
 
 
 @dataclass(frozen=True)

@@ -155,6 +155,7 @@ class FleetRequest(SearchFields):
             tolerance=self._tolerance,
             leave=self.leave,
             groups=self._groups(ids),
+            spread=self._spread,
         )
         kinds = tuple(dict.fromkeys(profiles))
         stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops, kinds))
@@ -174,6 +175,20 @@ class FleetRequest(SearchFields):
     def check_road_profiles(self, known: Sequence[str]) -> None:
         """Raise a refusal of a profile that the operator's routing engine does not know."""
         check_road_profiles([i.profile for i in self.vehicles], self._costs.values(), known)
+
+    @property
+    def _spread(self) -> float | None:
+        """How the times of legs spread, as a share of them; None if they do not.
+
+        Raises:
+            Refusal: An objective spreads that is not the clock.
+        """
+        for index, item in enumerate(self.objectives):
+            if item.spread is not None and (item.of_plan is not None or item.name != self.clock):
+                raise invalid(f"objectives/{index}/spread", "spread-of-clock")
+        if isinstance(self.clock, ClockItem):
+            return self.clock.spread
+        return next((item.spread for item in self.objectives if item.name == self.clock), None)
 
     @property
     def _tolerance(self) -> float | None:

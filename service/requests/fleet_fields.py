@@ -24,6 +24,7 @@ from service.requests.fields import (
     without_default,
 )
 from service.requests.profile_fields import OF_PROFILES, ProfileCostsItem
+from service.requests.spread_fields import SpreadOfTimes
 from service.requests.stop_fields import NamedStop, StopReference, find_index
 from service.requests.validation import nearest
 
@@ -331,7 +332,7 @@ class VehicleItem(StrictModel):
         ]
 
 
-class ClockItem(ProfileCostsItem):
+class ClockItem(SpreadOfTimes, ProfileCostsItem):
     """The source of travel times that are not an objective, maybe over the day."""
 
     name: Text = Field(default="time", description="of the times, which are not an objective")
@@ -343,7 +344,7 @@ Clock = Annotated[
 ]
 
 
-class FleetObjectiveItem(ProfileCostsItem):
+class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
     It has exactly one of matrix, matrices, coordinates, from, slices and measure.

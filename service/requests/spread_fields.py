@@ -23,6 +23,15 @@ _SpreadOf = Annotated[
 ]
 
 
+class SpreadOfTimes(StrictModel):
+    """How the times of legs spread from day to day."""
+
+    spread: _Factor | None = optional(
+        "of the clock's times: the standard deviation of each leg, as a share of it; each plan then"
+        " says how surely it is `on_time`"
+    )
+
+
 class MatrixItem(StrictModel):
     """The costs of one day."""
 

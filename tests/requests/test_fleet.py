@@ -82,6 +82,16 @@ def changed(path: str, value: Any) -> dict[str, Any]:
     return request
 
 
+@pytest.mark.parametrize("clock", ["time", {"matrix": [[1] * 8] * 8, "spread": 0.3}])
+def test_the_times_of_a_clock_spread(clock: Any) -> None:
+    request = fleet_request() | {"clock": clock}
+    if clock == "time":
+        request["objectives"][1]["spread"] = 0.3
+    else:
+        request["objectives"][1] = {"name": "vans", "measure": "vehicles"}
+    assert fleet_of(request).rules.spread == 0.3
+
+
 def promised(vehicle: str, *stops: str, tolerance: Any = None, **members: Any) -> dict[str, Any]:
     """Return a promised plan of one route."""
     route = {"vehicle": vehicle, "stops": list(stops), **members}
@@ -146,6 +156,8 @@ REFUSED = [
     ("objectives/0/name", "time", "/objectives/1/name"),
     ("objectives/1/matrix", [[0.0]], "/objectives/1/matrix"),
     ("objectives/0/from", "road_time", "/objectives/0/from"),
+    ("objectives/0/spread", 0.2, "/objectives/0/spread"),
+    ("objectives/1/spread", -1, "/objectives/1/spread"),
     ("clock", "minutes", "/clock"),
     ("clock", None, "/vehicles/0/shift"),
     ("time_limit", 0, None),

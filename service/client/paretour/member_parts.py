@@ -168,6 +168,7 @@ FleetObjectiveRequest = TypedDict(
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
         "matrices": Sequence[ProfileMatrixRequest],
+        "spread": float | None,
         "measure": Measure | None,
         "over": Literal["sum", "max"],
     },
@@ -210,6 +211,7 @@ ClockRequest = TypedDict(
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
         "matrices": Sequence[ProfileMatrixRequest],
+        "spread": float | None,
     },
     total=False,
 )

@@ -1,0 +1,118 @@
+"""How surely plans are on time, against 10,000 days that other code drives."""
+
+from dataclasses import replace
+from itertools import permutations
+from math import inf
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from service.fleet.evaluation import measures, route_violations
+from service.fleet.fleet import Fleet
+from service.fleet.plans import Plan, Route
+from service.fleet.rules import Rules
+from service.fleet.schedule import schedule
+from service.fleet.vehicles import VehicleType, Visit
+from tests.helpers.fleets import random_fleet
+
+DAYS = 10_000
+SPREAD = 0.3
+
+
+def spreading(seed: int) -> tuple[Fleet, Route] | None:
+    """Return a fleet whose times spread, and a route through all its stops that keeps the rules."""
+    fleet = random_fleet(seed, ("sum", "sum"))
+    if fleet.rules.clock is None or not any(v.windows[0][1] < inf for v in fleet.rules.visits):
+        return None
+    rules = replace(fleet.rules, spread=SPREAD)
+    fleet = Fleet(rules=rules, costs=fleet.costs)
+    for stops in permutations(rules.clients):
+        route = Route(0, stops)
+        if not any(route_violations(fleet, route)):
+            return fleet, route
+    return None
+
+
+def driven(fleet: Fleet, route: Route, seed: int) -> tuple[float | None, np.ndarray]:
+    """Return the share of visits on time, and how long the route takes on each day."""
+    rules, random = fleet.rules, np.random.default_rng(seed)
+    vehicle = rules.vehicles[route.vehicle]
+    left = schedule(fleet, route).arrivals[0]
+    now, at, kept = np.full(DAYS, left), vehicle.start, []
+    for stop in route.stops:
+        if at is not None:
+            leg = fleet.costs[rules.clock, at, stop] / vehicle.speed_factor
+            now = now + random.normal(leg, SPREAD * leg, DAYS)
+        opens, closes = rules.visits[stop].windows[0]
+        if closes < inf:
+            kept.append((now <= closes).mean())
+        now = np.maximum(now, opens) + rules.service(route.vehicle, stop)
+        at = stop
+    if vehicle.end is not None:
+        leg = fleet.costs[rules.clock, at, vehicle.end] / vehicle.speed_factor
+        now = now + random.normal(leg, SPREAD * leg, DAYS)
+    return (float(np.mean(kept)) if kept else None), now - left
+
+
+def test_simulated_days_are_as_the_measures_say() -> None:
+    found = [(seed, pair) for seed in range(150) if (pair := spreading(seed))]
+    misses = []
+    for seed, (fleet, route) in found:
+        said = measures(fleet, Plan((route,)))
+        on_time, durations = driven(fleet, route, seed)
+        assert said.get("on_time") == (on_time and pytest.approx(on_time, abs=0.08))
+        misses += [] if on_time is None else [said["on_time"] - on_time]
+        assert said["duration"] == pytest.approx(durations.mean(), abs=0.4)
+        most = np.quantile(durations, 0.9)
+        assert said["duration_p90"] == pytest.approx(most, rel=0.05)
+    assert len(misses) > 50
+    assert np.sqrt(np.mean(np.square(misses))) < 0.01
+
+
+def fleet_of(*visits: Visit, spread: float | None = 0.5) -> Fleet:
+    costs = np.full((2, len(visits) + 1, len(visits) + 1), 8.0)
+    rules = Rules(
+        visits=(Visit(), *visits),
+        vehicles=(VehicleType(start=0, end=0, count=2, shift=(0, inf)),),
+        clock=0,
+        leave="early",
+        spread=spread,
+    )
+    return Fleet(rules=rules, costs=costs)
+
+
+@pytest.mark.parametrize(
+    ("visit", "share"),
+    [
+        (Visit(windows=((0, 8),)), 0.5),
+        (Visit(windows=((0, 12),)), NormalDist().cdf(1)),
+        (Visit(due=4), 1 - NormalDist().cdf(1)),
+        (Visit(windows=((0, 9),), due=8), 0.5),
+    ],
+)
+def test_a_visit_is_on_time_on_a_share_of_days(visit: Visit, share: float) -> None:
+    found = measures(fleet_of(visit, Visit()), Plan((Route(0, (1,)), Route(0, (2,)))))
+    assert found["on_time"] == pytest.approx(share)
+
+
+def test_all_routes_together_take_what_their_variances_say() -> None:
+    fleet = fleet_of(Visit(service=3), Visit())
+    found = measures(fleet, Plan((Route(0, (1,)), Route(0, (2,)))))
+    assert "on_time" not in found
+    assert found["duration"] == pytest.approx(4 * 8 + 3)
+    assert found["duration_p90"] == pytest.approx(35 + NormalDist().inv_cdf(0.9) * 4 * 2)
+
+
+def test_who_waits_long_is_on_time_afterwards_whatever_the_leg_took() -> None:
+    fleet = fleet_of(Visit(windows=((50, 60),)), Visit(windows=((0, 62),)))
+    late = NormalDist(58, 4)
+    found = measures(fleet, Plan((Route(0, (1, 2)),)))
+    assert found["on_time"] == pytest.approx((1 + late.cdf(62)) / 2)
+
+
+def test_times_that_do_not_spread_have_no_such_measures() -> None:
+    fleet = fleet_of(Visit(), spread=None)
+    assert not {"on_time", "duration"} & measures(fleet, Plan((Route(0, (1,)),))).keys()
+    sure = measures(fleet_of(Visit(due=8), spread=0.0), Plan((Route(0, (1,)),)))
+    assert (sure["on_time"], sure["duration_p90"]) == (1, 16)
