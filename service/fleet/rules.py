@@ -312,7 +312,8 @@ class Rules:
         return tuple(alone)
 
     def _servers_alone(self, visit: Visit) -> frozenset[int]:
-        named = visit.vehicles or range(len(self.vehicles))
+        types = range(len(self.vehicles))
+        named = [each for each in visit.vehicles if each in types] if visit.vehicles else types
         needed = set(visit.skills)
         return frozenset(each for each in named if needed <= set(self.vehicles[each].skills))
 

@@ -22,7 +22,8 @@ class Visit:
             the difference.
         release: The earliest time at which a vehicle can load what it brings there.
         skills: The skills that its vehicle must have, all of them.
-        vehicles: The types of vehicles that may visit it; empty for any.
+        vehicles: The types of vehicles that may visit it, also some of which none is left; empty
+            for any.
         wanted: The time before which the visit should not begin. If it does, the plan is early by
             the difference.
         urgency: What a unit of time until the visit begins counts in weighted arrivals.

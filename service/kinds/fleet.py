@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from paretour.choice import balances, losses
 from pydantic_core import to_json
 
-from service.errors import NoTour, Refusal
+from service.errors import Fault, NoTour, Refusal
 from service.fleet.evaluation import (
     first_broken,
     measures,
@@ -27,7 +27,9 @@ from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
 from service.remedies.asked import AskedFleet
 from service.remedies.look import remedies_of
+from service.remedies.rest import AskedRest
 from service.requests.limits import check_reference_point
+from service.requests.stops import Labels
 from service.requests.task import Task, UnmeasuredFleet, VehicleName
 from service.watch import Watch
 
@@ -76,11 +78,24 @@ def run_fleet(
     known["driven"] = None if driven is None else _lengths_of(fleet, driven)
     timings = {**task.timings, "costs": 1000 * watch.spent}
     try:
+        _check_reach(subject, task.labels)
         front = plan_front(task, fleet, actor, watch.converting(encoded), driven)
     except Refusal as refusal:
         named = refusal.named(task.city_names) if isinstance(refusal, NoTour) else refusal
         raise _with_remedies(named, fleet, subject, task, tools, watch) from None
     return encoded(replace(front, timings={**timings, **front.timings}))
+
+
+def _check_reach(subject: UnmeasuredFleet, labels: Labels) -> None:
+    """Raise a refusal if no vehicle that is left may visit some stops."""
+    pairs = ((stop, labels.stops[stop].id) for stop in subject.out_of_reach)
+    pointer = labels.city_names.pointer
+    faults = [
+        Fault("no-vehicle-for-stop", pointer=pointer(stop), values={"stop": name})
+        for stop, name in pairs
+    ]
+    if faults:
+        raise Refusal("no-plan", errors=faults)
 
 
 def _with_remedies(
@@ -91,22 +106,13 @@ def _with_remedies(
     tools: Tools,
     watch: Watch[FrontDocument],
 ) -> Refusal:
-    """Return the refusal of a fleet with changes that help, if it has no plan and some are found.
-
-    A request to replan has no members for them.
-    """
-    if refusal.code != "no-plan" or subject.is_rest:
+    """Return the refusal with changes that help, if a fleet has no plan and some are found."""
+    if refusal.code != "no-plan":
         return refusal
-    assert task.labels is not None
-    unit = None if subject.clock is None else subject.clock.unit
     obstacles = refusal.obstacles if isinstance(refusal, NoTour) else ()
-    asked = AskedFleet(
-        fleet=fleet,
-        stops=[each.id for each in task.labels.stops],
-        vehicles=[name.id for name in subject.vehicles],
-        unit=unit,
-        at_fault=[stop for each in obstacles for stop in each.cities],
-    )
+    at_fault = [*subject.out_of_reach, *(stop for each in obstacles for stop in each.cities)]
+    assert task.labels is not None
+    asked = _asked(fleet, subject, task.labels, at_fault)
     actor = tools.actors.get(task.actor)
 
     def plan(fleet: Fleet, seconds: float, watch: Watch[FleetFront]) -> FleetFront:
@@ -115,6 +121,34 @@ def _with_remedies(
 
     limit, most = task.options.time_limit, tools.limits.seconds
     return refusal.with_remedies(remedies_of(asked, limit, most, plan, watch))
+
+
+def _asked(
+    fleet: Fleet, subject: UnmeasuredFleet, labels: Labels, at_fault: Sequence[int]
+) -> AskedFleet:
+    """Return a fleet without a plan as its request names it; `at_fault` are stops at fault."""
+    known: dict[str, Any] = {
+        "fleet": fleet,
+        "stops": [each.id for each in labels.stops],
+        "vehicles": [name.id for name in subject.vehicles],
+        "unit": None if subject.clock is None else subject.clock.unit,
+        "at_fault": at_fault,
+    }
+    if subject.changes is None:
+        return AskedFleet(**known)
+    names = [*enumerate((*subject.vehicles, *subject.names_of_spares))]
+    more: dict[str, int] = {}
+    for number, name in (*names[len(subject.vehicles) :], *names[: len(subject.vehicles)]):
+        if name.route is None:
+            more.setdefault(name.id, number)
+    return AskedRest(
+        **known,
+        parts=labels.parts or [""] * subject.n,
+        changed_stops=subject.changes["stops"],
+        changed_vehicles=subject.changes["vehicles"],
+        spares=subject.spares,
+        more=more,
+    )
 
 
 def plan_front(

@@ -60,11 +60,19 @@ def refusal_text(error: Refused) -> str:
     heading, *remedies = in_words(error.remedies) or [""]
     lines = [str(error), *([heading] if heading else [])]
     for said, remedy in zip(remedies, error.remedies, strict=True):
-        patch = json.dumps(remedy.patch)
-        if len(patch) > _LONGEST_PATCH:
-            patch = f"{json.dumps(remedy.patch[0])} and {len(remedy.patch) - 1} more like it"
-        lines.append(f"{said}: {patch}")
+        lines.append(f"{said}: {_patch_text(remedy.patch)}")
     return "\n".join(lines)
+
+
+def _patch_text(patch: Sequence[Named]) -> str:
+    """Return a JSON patch, of a long one its first operation, or the first item of its list."""
+    text, (first, *others) = json.dumps(patch), patch
+    if len(text) <= _LONGEST_PATCH:
+        return text
+    if others or not isinstance(first.get("value"), list):
+        return f"{json.dumps(first)} and {len(others)} more like it"
+    item, *items = first["value"]
+    return f"{json.dumps([{**first, 'value': [item]}])} with {len(items)} more items like it"
 
 
 def unreadable_text(error: Refused) -> str:

@@ -72,12 +72,23 @@ class AskedFleet:
         changes = {item: change(item, self.first_of(item)) for item in self.items}
         pairs = zip(self.vehicles, self.rules.vehicles, strict=True)
         vehicles = tuple(replace(each, **changes[item]) for item, each in pairs)
-        operations = (
+        return replace(self.rules, vehicles=vehicles), self.patch_of_vehicles(changes)
+
+    def patch_of_vehicles(self, changes: Mapping[str, Members]) -> Patch:
+        """Return the operations that change members of the vehicles of each id."""
+        return tuple(
             _operation(f"/vehicles/{index}/{name}", value)
-            for index, members in enumerate(changes.values())
+            for index, item in enumerate(self.items)
+            for name, value in changes[item].items()
+        )
+
+    def patch_of_stops(self, changes: Mapping[int, Members]) -> Patch:
+        """Return the operations that change members of stops."""
+        return tuple(
+            put(f"/stops/{stop}/{name}", value)
+            for stop, members in changes.items()
             for name, value in members.items()
         )
-        return replace(self.rules, vehicles=vehicles), tuple(operations)
 
     def least_change(
         self,

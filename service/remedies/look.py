@@ -11,14 +11,22 @@ from service.fleet.plans import FleetFront
 from service.fleet.rules import Rules
 from service.remedies.asked import AskedFleet, Look
 from service.remedies.patch import put
+from service.remedies.rest import AskedRest
 from service.remedies.stops import any_vehicle, leave_out
-from service.remedies.times import earlier_shifts, later_windows, longer_routes, longer_shifts
+from service.remedies.times import (
+    earlier_shifts,
+    later_windows,
+    longer_routes,
+    longer_shifts,
+    no_slack,
+)
 from service.remedies.vehicles import (
     larger_vehicles,
     load_again,
     more_skills,
     more_stops,
     more_vehicles,
+    send_more,
 )
 from service.watch import Watch
 
@@ -43,7 +51,9 @@ _KINDS: tuple[Look, ...] = (
     more_skills,
     any_vehicle,
     larger_vehicles,
+    no_slack,
 )
+_KINDS_OF_REST: tuple[Look, ...] = (leave_out, send_more, longer_shifts, later_windows, no_slack)
 # Plans a fleet within some seconds, and raises a refusal if it finds no plan.
 PlanWithin = Callable[[Fleet, float, Watch[Any]], FleetFront]
 
@@ -67,7 +77,7 @@ def remedies_of(
     found: list[Remedy] = []
     if time_limit < trial and (remedy := _more_time(asked, min(_ENOUGH, most), longer)):
         found.append(remedy)
-    for look in _KINDS:
+    for look in _KINDS_OF_REST if isinstance(asked, AskedRest) else _KINDS:
         looking.begin()
         if remedy := look(asked, looking.tried):
             found.append(remedy)

@@ -6,8 +6,8 @@ from dataclasses import replace
 from service.errors import CityNames, Remedy
 from service.fleet.plans import FleetFront
 from service.remedies.amounts import rounded_up
-from service.remedies.asked import AskedFleet, Try
-from service.remedies.patch import Operation, put, remove
+from service.remedies.asked import AskedFleet, Patch, Try
+from service.remedies.patch import remove
 
 _DETOURS = 3.0  # prizes, in largest legs: more than a visit costs
 
@@ -22,13 +22,15 @@ def leave_out(asked: AskedFleet, tried: Try) -> Remedy | None:
         len(few) < len(asked.required) and _without(asked, few, prize, tried)
     ):
         named = CityNames("stop", asked.stops).of(few)
-        return Remedy("leave-these-out", _prizes(few, prize), {"prize": prize, "named": named})
+        return Remedy(
+            "leave-these-out", _prizes(asked, few, prize), {"prize": prize, "named": named}
+        )
     front = _without(asked, asked.required, prize, tried)
     if front is None:
         return None
     visited = max(len(set(plan.visited()) & {*rules.clients}) for plan in front.plans)
     counts = {"prize": prize, "visited": visited, "stops": len(rules.clients)}
-    return Remedy("leave-out", _prizes(asked.required, prize), counts) if visited else None
+    return Remedy("leave-out", _prizes(asked, asked.required, prize), counts) if visited else None
 
 
 def _without(
@@ -39,8 +41,8 @@ def _without(
     return tried(asked.with_visits(visits))
 
 
-def _prizes(stops: Sequence[int], prize: float) -> tuple[Operation, ...]:
-    return tuple(put(f"/stops/{stop}/prize", prize) for stop in stops)
+def _prizes(asked: AskedFleet, stops: Sequence[int], prize: float) -> Patch:
+    return asked.patch_of_stops({stop: {"prize": prize} for stop in stops})
 
 
 def _more_than_a_visit(asked: AskedFleet) -> float:

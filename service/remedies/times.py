@@ -69,7 +69,7 @@ def later_windows(asked: AskedFleet, tried: Try) -> Remedy | None:
     if not late or tried(_later(asked, late, more)) is None:
         late = closing  # with which it was tried
     rules = _later(asked, late, more)
-    patch = tuple(each for stop in late for each in _windows(rules, stop))
+    patch = asked.patch_of_stops({stop: _windows(rules, stop) for stop in late})
     named = CityNames("stop", asked.stops).of(late)
     return Remedy("later-windows", patch, {"named": named, **_values(asked, more)})
 
@@ -83,10 +83,9 @@ def _later(asked: AskedFleet, stops: Sequence[int], more: float) -> Rules:
     return asked.with_visits(later)
 
 
-def _windows(rules: Rules, stop: int) -> tuple[Operation, Operation]:
-    """Return the operations that give a stop its windows, whether it had one or several."""
-    windows = [list(span) for span in rules.visits[stop].windows]
-    return put(f"/stops/{stop}/windows", windows), put(f"/stops/{stop}/window", None)
+def _windows(rules: Rules, stop: int) -> Members:
+    """Return the members that give a stop its windows, whether it had one or several."""
+    return {"windows": [list(span) for span in rules.visits[stop].windows], "window": None}
 
 
 def _fewest_late(asked: AskedFleet, front: FleetFront, closing: Sequence[int]) -> list[int]:
@@ -110,6 +109,13 @@ def _late_of(asked: AskedFleet, fleet: Fleet, plan: Plan, closing: Sequence[int]
     }
     closes = {stop: asked.rules.windows[stop][-1][1] for stop in closing}
     return [stop for stop in closing if arrivals.get(stop, 0.0) > closes[stop]]
+
+
+def no_slack(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let vehicles reach stops as late as their windows close."""
+    if not asked.rules.slack or tried(replace(asked.rules, slack=0.0)) is None:
+        return None
+    return Remedy("no-slack", (put("/slack", 0.0),), {})
 
 
 def longer_routes(asked: AskedFleet, tried: Try) -> Remedy | None:

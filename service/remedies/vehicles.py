@@ -5,7 +5,8 @@ from functools import partial
 
 from service.errors import Remedy
 from service.fleet.vehicles import VehicleType
-from service.remedies.asked import AskedFleet, Members, Try
+from service.remedies.asked import AskedFleet, Members, Try, least_that_works
+from service.remedies.rest import AskedRest
 
 _MOST_ITEMS = 3  # ids of vehicles that are tried, the first in the request
 _MORE = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
@@ -36,6 +37,19 @@ def more_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
             before = asked.first_of(item).count
             counts = {"count": before + more, "before": before}
             return Remedy("more-vehicles", patch, {"vehicle": item, **counts})
+    return None
+
+
+def send_more(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Have more vehicles of one id leave from now on: as few as are needed."""
+    assert isinstance(asked, AskedRest)
+    amounts = [more for more in _MORE if more <= len(asked.rules.clients)]
+    for item in [*asked.more][:_MOST_ITEMS]:
+        with_more = partial(asked.with_more, item)
+        if found := least_that_works(amounts, lambda more: with_more(more)[0], tried):  # noqa: B023
+            more, _ = found
+            text = "1 more vehicle" if more == 1 else f"{more} more vehicles"
+            return Remedy("send-more", with_more(more)[1], {"vehicle": item, "text": text})
     return None
 
 

@@ -45,6 +45,7 @@ SpeedFactor = Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)]
 ServiceFactor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 # A pair in JSON, and a list so that OpenAPI has its length.
 TimeSpan = Pair[Cost]
+Windows = Annotated[list[TimeSpan], Field(max_length=_MOST_WINDOWS, fail_fast=True)]
 Due = Annotated[
     Annotated[Cost, Tag("[time]")] | Annotated[TimeSpan, Tag("[span]")],
     Discriminator(lambda value: "[span]" if isinstance(value, list) else "[time]"),
@@ -79,7 +80,7 @@ class FleetStopItem(NamedStop):
         )
     )
     window: TimeSpan | None = optional("when a visit may begin, from and to")
-    windows: Annotated[list[TimeSpan], Field(max_length=_MOST_WINDOWS, fail_fast=True)] = Field(
+    windows: Windows = Field(
         default_factory=list,
         description="when a visit may begin, from and to: in one of up to 20, by ascending time",
     )
@@ -122,7 +123,7 @@ class FleetStopItem(NamedStop):
             demand=tuple(self.demand),
             pickup=tuple(self.pickup),
             service=self.service,
-            windows=tuple(_spans(self.window, self.windows, f"{part}/window")),
+            windows=tuple(spans_of(self.window, self.windows, f"{part}/window")),
             prize=self.prize,
             due=inf if due is None else due,
             release=self.release,
@@ -328,7 +329,7 @@ class VehicleItem(StrictModel):
                 profile=profile,
                 breaks=tuple((each.window[0], each.window[1], each.length) for each in self.breaks),
             )
-            for shift in _spans(self.shift, self.shifts, f"{part}/shift")
+            for shift in spans_of(self.shift, self.shifts, f"{part}/shift")
         ]
 
 
@@ -377,7 +378,7 @@ class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
     )
 
 
-def _spans(one: list[float] | None, several: list[list[float]], part: str) -> list[Span]:
+def spans_of(one: list[float] | None, several: list[list[float]], part: str) -> list[Span]:
     """Return the windows or shifts, whether one or several were given; always, without any.
 
     Raises:

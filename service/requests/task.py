@@ -11,6 +11,7 @@ from service.errors import CityNames
 from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.plans import Route
 from service.fleet.rules import Measure, Over, Rules
+from service.fleet.vehicles import VehicleType
 from service.front import PlanOptions
 from service.objectives import Objective
 from service.replanning.earlier_tours import EarlierTours
@@ -68,6 +69,10 @@ class UnmeasuredFleet:
         driven: What is left of the routes of a plan that is being driven.
         clock: The name and unit of its times, if it has a clock.
         profiles: The names of these profiles; None for vehicles without one.
+        spares: The types of vehicles of which none is left, though there may be more. Where visits
+            name types, the first spare follows the last type of the rules.
+        names_of_spares: The name of each of them.
+        changes: The members of a request to replan that remedies change; None if it is none.
     """
 
     rules: Rules
@@ -76,6 +81,9 @@ class UnmeasuredFleet:
     driven: tuple[Route, ...] = ()
     clock: Objective | None = None
     profiles: tuple[str | None, ...] = (None,)
+    spares: tuple[VehicleType, ...] = ()
+    names_of_spares: tuple[VehicleName, ...] = ()
+    changes: Mapping[str, Any] | None = None
 
     @property
     def n(self) -> int:
@@ -88,9 +96,15 @@ class UnmeasuredFleet:
         return self.stops.city_names
 
     @property
-    def is_rest(self) -> bool:
-        """Whether it is what is left of a plan that is driven."""
-        return bool(self.driven) or any(each.route is not None for each in self.vehicles)
+    def out_of_reach(self) -> list[int]:
+        """The stops that must be visited by a type of vehicles of which none is left."""
+        return [
+            stop
+            for stop, visit in enumerate(self.rules.visits)
+            if visit.prize is None
+            and visit.vehicles
+            and min(visit.vehicles) >= len(self.rules.vehicles)
+        ]
 
     def members(self, labels: Labels) -> dict[str, Any]:
         """Return the members of an answer that name stops, objectives and clock, ready for JSON."""

@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from paretour import Refused
 
 from tests.helpers.serving import app_of, serving
 from tests.helpers.straight_lines import metres_between
@@ -183,6 +184,34 @@ def test_the_rest_of_the_rest_is_replanned_too(client: httpx.Client, front: dict
         assert {stop for route in each["routes"] for stop in visits_of(route)} == left
 
 
+def test_each_change_that_would_help_gives_a_plan(
+    client: httpx.Client, front: dict[str, Any]
+) -> None:
+    plan = full_plan(front)
+    routes = front["front"][plan]["routes"]
+    out = {"route": 0, "done": routes[0]["stops"][1:2], "broken_down": True}
+    away = [{"route": i, "done": routes[i]["stops"][1:2]} for i in range(1, len(routes))]
+    late = {"id": "late", "location": [24.95, 60.17], "window": [0, NOW + 60]}
+    table: dict[str, dict[str, Any]] = {
+        "leave-out": {"routes": [out]},
+        # Nobody is at the depot, and a request to replan may have changed a stop already.
+        "leave-these-out": {
+            "routes": [out, *away],
+            "stops": [{"stop": routes[0]["stops"][2], "prize": 3}],
+        },
+    }
+    for first, changes in [*table.items(), ("leave-these-out", {"add": [late]})]:
+        # On a busy machine a trial may take longer than the time that there is.
+        tries = (replan(client, front, plan=plan, **changes).json() for _ in range(9))
+        remedies = next(found for each in tries if (found := Refused(each).remedies))
+        assert first in {each.code for each in remedies}
+        for each in remedies:
+            answer = replan(client, front, **each.applied_to({"plan": plan, **changes}))
+            assert answer.status_code == 200, (each, answer.text)
+            left_out = min(len(found["unassigned"]) for found in answer.json()["front"])
+            assert left_out <= (1 if "out" not in each.code else 12)
+
+
 NEW = {"id": "new", "location": [24.95, 60.17]}
 REFUSED = [
     ({"now": None}, "/now"),
@@ -193,6 +222,9 @@ REFUSED = [
     ({"routes": [{"route": 0, "position": "nowhere"}]}, "/routes/0/position"),
     ({"remove": ["depot"]}, "/remove/0"),
     ({"add": [{"id": "order-1", "location": [25, 60]}]}, "/add/0/id"),
+    ({"stops": [{"stop": "depot", "prize": 3}]}, "/stops/0/stop"),
+    ({"stops": [{"stop": "order-1", "windows": [[9, 3]]}]}, "/stops/0/windows/0"),
+    ({"vehicles": [{"vehicle": "ship", "more": 1}]}, "/vehicles/0/vehicle"),
     ({"add": [{"id": "new"}]}, "/add/0/location"),
     # What is checked, or found to be impossible, of the fleet that is made of the rest:
     ({"add": [{**NEW, "demand": [1, 1]}]}, "/add/0/demand"),

@@ -316,6 +316,22 @@ class NewFleetStopRequest(TypedDict, total=False):
     prize: float | None
 
 
+class ChangedStopRequest(TypedDict, total=False):
+    """What is asked of a stop of the front from now on, in place of what was."""
+
+    stop: Required[int | str]
+    prize: float | None
+    windows: ArrayLike
+
+
+class ChangedVehicleRequest(TypedDict, total=False):
+    """What vehicles of an id may do from now on."""
+
+    vehicle: Required[str]
+    more: int
+    max_overtime: float | None
+
+
 class ChangesRequest(TypedDict, total=False):
     """An objective that counts the stops which change vehicle, or are visited later."""
 

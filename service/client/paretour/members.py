@@ -11,6 +11,8 @@ from paretour.frames import Costs, Frame
 from paretour.member_parts import (
     ApartRequest,
     BeforeRequest,
+    ChangedStopRequest,
+    ChangedVehicleRequest,
     ChangesRequest,
     ClockRequest,
     CostEntryRequest,
@@ -156,6 +158,8 @@ class ReplanFleetRequest(SearchOptions, total=False):
     routes: Sequence[RouteOnTheWayRequest]
     add: Sequence[NewFleetStopRequest]
     remove: Sequence[int | str] | ArrayLike
+    stops: Sequence[ChangedStopRequest] | Frame
+    vehicles: Sequence[ChangedVehicleRequest]
     costs: Sequence[CostEntryRequest]
     changes: ChangesRequest | None
     geometry: Literal["straight", "roads"]
@@ -170,6 +174,8 @@ class OffersRequest(TypedDict, total=False):
     routes: Sequence[RouteOnTheWayRequest]
     add: Sequence[NewFleetStopRequest]
     remove: Sequence[int | str] | ArrayLike
+    stops: Sequence[ChangedStopRequest] | Frame
+    vehicles: Sequence[ChangedVehicleRequest]
     costs: Sequence[CostEntryRequest]
     order: Required[OfferedOrderRequest]
     slots: ArrayLike

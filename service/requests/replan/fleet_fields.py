@@ -1,9 +1,13 @@
 """Requests to replan a fleet: the fields that say what has changed since its front was planned."""
 
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Annotated
 
 from pydantic import Discriminator, Field, Tag
 
+from service.errors import invalid
+from service.fleet.vehicles import Visit
 from service.requests.fields import (
     GEOMETRY,
     Cost,
@@ -15,9 +19,9 @@ from service.requests.fields import (
     Text,
     optional,
 )
-from service.requests.fleet_fields import FleetStopItem
+from service.requests.fleet_fields import FleetStopItem, Windows, spans_of
 from service.requests.replan.fields import CostEntry, NewCosts, NewStop
-from service.requests.stop_fields import StopReference
+from service.requests.stop_fields import StopReference, find_index
 
 _Place = Annotated[
     Annotated[StopReference, Tag("[stop]")] | Annotated[NewStop, Tag("[place]")],
@@ -53,6 +57,47 @@ class RouteOnTheWay(StrictModel):
     )
 
 
+class ChangedStop(StrictModel):
+    """What is asked of a stop of the front from now on, in place of what was."""
+
+    stop: StopReference
+    prize: Cost | None = optional("added to the first length if the stop is left out")
+    windows: Windows = Field(
+        default_factory=list, description="when the visit may begin, from and to, by ascending time"
+    )
+
+    def index(self, part: str, ids: Mapping[str, int], depots: Collection[int]) -> int:
+        """Return the index of the stop, whose part of the request is `part`.
+
+        Raises:
+            Refusal: It is no stop of the front, or a depot.
+        """
+        stop = find_index(self.stop, ids, f"{part}/stop", len(ids))
+        if stop in depots:
+            raise invalid(f"{part}/stop", "removed-depot", came=self.stop)
+        return stop
+
+    def of(self, visit: Visit, part: str) -> Visit:
+        """Return a visit with what is asked otherwise of it.
+
+        Raises:
+            Refusal: Windows are not in order.
+        """
+        prize = visit.prize if self.prize is None else self.prize
+        spans = tuple(spans_of(None, self.windows, f"{part}/window"))
+        return replace(visit, prize=prize, windows=spans if self.windows else visit.windows)
+
+
+class ChangedVehicle(StrictModel):
+    """What vehicles of an id may do from now on."""
+
+    vehicle: Text = Field(description="the id of the type")
+    more: NonNegativeInteger = Field(
+        default=0, description="how many more of them can leave from now on, where the others did"
+    )
+    max_overtime: Cost | None = optional("how long after the end of its shift a route may end")
+
+
 class FleetChanges(StrictModel):
     """The changes since a fleet was planned."""
 
@@ -74,6 +119,12 @@ class FleetChanges(StrictModel):
     add: Items[NewFleetStop] = Field(default_factory=list, description="more stops to visit")
     remove: Items[StopReference] = Field(
         default_factory=list, description="stops that are no longer visited"
+    )
+    stops: Items[ChangedStop] = Field(
+        default_factory=list, description="what is asked otherwise of stops of the front"
+    )
+    vehicles: Items[ChangedVehicle] = Field(
+        default_factory=list, description="what vehicles may do otherwise, and more of them"
     )
     costs: Items[CostEntry] = Field(
         default_factory=list, description="single costs that have changed"

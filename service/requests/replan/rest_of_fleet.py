@@ -24,8 +24,6 @@ from service.requests.limits import (
 )
 from service.requests.parser import actor_for_plans
 from service.requests.replan.changes import (
-    NamedType,
-    by_route,
     objectives_with,
     promised_begin,
     tolerance_of,
@@ -35,9 +33,10 @@ from service.requests.replan.day import Way, day_of, removed_stops
 from service.requests.replan.fields import NewStop
 from service.requests.replan.fleet_costs import sources_of_rest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.vehicles import changed_fleet, vehicles_of_rest
 from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.stops import Labels, Stops, locations_of
-from service.requests.task import Task, UnmeasuredFleet, VehicleName, types_by_id
+from service.requests.task import Task, UnmeasuredFleet, types_by_id
 from service.requests.validation import parse_json, too_many_cities
 
 _LATER = 1e-6  # of the greatest time: what cannot be loaded now is released this much later
@@ -91,11 +90,12 @@ class _Rest:
         fleet: UnmeasuredFleet,
         labels: Labels,
     ) -> None:
-        self._request, self._fleet, self._rules, self._known = request, fleet, fleet.rules, labels
         if (request.now is None) != (fleet.rules.clock is None):
             timed = fleet.rules.clock is not None
             raise invalid("now", "fleet-has-clock" if timed else "fleet-has-no-clock")
         ids = {stop.id: index for index, stop in enumerate(labels.stops)}
+        fleet = changed_fleet(request, fleet, ids)
+        self._request, self._fleet, self._rules, self._known = request, fleet, fleet.rules, labels
         self._day = day_of(request, stored, fleet, ids)
         self._all = _all_stops(request, labels)
         self._removed = removed_stops(request, self._day, fleet.rules, ids)
@@ -105,7 +105,13 @@ class _Rest:
         known, changes = labels.objectives, request.changes
         self._objectives, self._over = objectives_with(changes, known, fleet.rules)
         self._tolerance = tolerance_of(changes, self._over, fleet.rules)
-        self.names, self._types, self._old = self._vehicles()
+        by_routes = "changes" in self._over
+        self._vehicles = vehicles_of_rest(
+            request, fleet, self._day, self._place_of, by_routes=by_routes
+        )
+        self.names = tuple(name for name, _, _ in self._vehicles.left)
+        self._types = [vehicle for _, vehicle, _ in self._vehicles.left]
+        self._old = [old for _, _, old in self._vehicles.all]
         if not self._types:
             raise Refusal("no-plan", errors=[Fault("no-vehicle-left")])
 
@@ -116,8 +122,7 @@ class _Rest:
     @cached_property
     def _ends(self) -> frozenset[int]:
         """The stops at which the vehicles start, end or load again."""
-        ends = (end for each in self._types for end in (each.start, each.end, *each.reload))
-        return frozenset(end for end in ends if end is not None)
+        return self._vehicles.ends
 
     @cached_property
     def _place(self) -> dict[int, int]:
@@ -154,9 +159,27 @@ class _Rest:
         chosen = np.array(list(self._place), np.int64)
         sources = sources_of_rest(self._fleet, self._known.objectives, *changed, chosen)
         stops = Stops(locations_of(self.labels.stops), sources)
-        driven = tuple(self._driven())
-        fleet = self._fleet
-        return UnmeasuredFleet(rules, self.names, stops, driven, fleet.clock, fleet.profiles)
+        return UnmeasuredFleet(
+            rules,
+            self.names,
+            stops,
+            tuple(self._driven()),
+            self._fleet.clock,
+            self._fleet.profiles,
+            spares=tuple(self._placed(vehicle) for _, vehicle, _ in self._vehicles.spares),
+            names_of_spares=tuple(name for name, _, _ in self._vehicles.spares),
+            changes={"stops": self._changed_stops(), "vehicles": self._changed("vehicles")},
+        )
+
+    def _changed(self, name: str) -> list[dict[str, Any]]:
+        found = self._request.model_dump(include={name}, exclude_unset=True)
+        return [each for _, items in found.items() for each in items]
+
+    def _changed_stops(self) -> list[dict[str, Any]]:
+        """Return what is asked otherwise of stops, which are named by their ids."""
+        ids = [stop.id for stop in self._known.stops]
+        named = ((each, each["stop"]) for each in self._changed("stops"))
+        return [{**each, "stop": ids[x] if isinstance(x, int) else x} for each, x in named]
 
     def _carriers(self) -> dict[int, int]:
         """Return, by stop, the vehicle on its way that carries what it brings there."""
@@ -172,73 +195,13 @@ class _Rest:
                     carried[stop] = number
         return carried
 
-    def _vehicles(self) -> tuple[tuple[VehicleName, ...], list[VehicleType], list[int]]:
-        """Return the names of all vehicles that may drive, their types, and their old types.
-
-        First those on their way, then those that have not left.
-        """
-        found, waiting = list[NamedType](), list[NamedType]()
-        for number, way in zip(self._day.numbers, self._day.ways, strict=True):
-            name = replace(self._fleet.vehicles[way.type], route=number)
-            if not way.broken_down:
-                found.append((name, self._on_the_way(way), way.type))
-        used = [way.type for way in self._day.ways]
-        for index, vehicle in enumerate(self._rules.vehicles):
-            count = vehicle.count - used.count(index)
-            begin, end = max(vehicle.shift[0], self._now), vehicle.shift[1]
-            if count > 0 and begin <= end and begin <= vehicle.leaves_by:
-                later = replace(vehicle, count=count, shift=(begin, end))
-                waiting.append((self._fleet.vehicles[index], later, index))
-        if "changes" in self._over or any(name.route is not None for name, _, _ in waiting):
-            waiting = list(by_route(waiting, self._day.waiting))
-        found += waiting
-        names, types, old = zip(*found, strict=True) if found else ((), (), ())
-        return tuple(names), list(types), list(old)
+    def _place_of(self, way: Way) -> int:
+        """Return the index of the new position of a vehicle."""
+        return self._all.n + list(self._all.new).index(f"{way.part}/position")
 
     @property
     def _now(self) -> float:
         return self._request.now or 0.0
-
-    def _on_the_way(self, way: Way) -> VehicleType:
-        """Return a vehicle on its way as a type of its own."""
-        vehicle = self._rules.vehicles[way.type]
-        if vehicle.is_capped:
-            raise invalid(way.part, "capped-on-the-way")
-        position = way.position
-        if position is None:
-            position = self._all.n + list(self._all.new).index(f"{way.part}/position")
-        timed = self._rules.clock is not None
-        leaves = max(self._now, way.leaves)
-        gone = 0.0 if way.departure is None else max(0.0, leaves - way.departure)
-        visits, trips = vehicle.max_stops, vehicle.max_trips
-        return replace(
-            vehicle,
-            count=1,
-            start=position,
-            home=way.home,
-            shift=(leaves, max(leaves, vehicle.shift[1])) if timed else vehicle.shift,
-            leaves_by=leaves if timed and not way.is_back else inf,
-            longest=max(0.0, vehicle.longest - gone),
-            fixed=0.0,
-            max_stops=None if visits is None else max(0, visits - len(way.done)),
-            min_stops=max(0, vehicle.min_stops - len(way.done)),
-            shortest=max(0.0, vehicle.shortest - gone),
-            max_trips=None if trips is None else max(1, trips - way.trips),
-            initial_load=self._on_board(way, vehicle),
-        )
-
-    def _on_board(self, way: Way, vehicle: VehicleType) -> tuple[int, ...]:
-        """Return the load that stays on board to the end: from the start, and from stops.
-
-        A vehicle that holds too much takes on no more.
-        """
-        taken = [self._rules.visits[stop].pickup for stop in way.done]
-        if way.trips or way.is_back:
-            return ()
-        if not any(map(any, taken)):
-            return vehicle.initial_load
-        loads = [load for load in (vehicle.initial_load, *taken) if load]
-        return tuple(map(min, map(sum, zip(*loads, strict=True)), vehicle.capacity))
 
     def _visit(self, stop: int) -> Visit:
         """Return what a stop of the rest asks for."""
@@ -246,7 +209,7 @@ class _Rest:
             return Visit()
         if stop >= self._all.n:
             index = stop - self._all.n
-            types = types_by_id(self._fleet.vehicles)
+            types = types_by_id((*self._fleet.vehicles, *self._fleet.names_of_spares))
             visit = self._request.add[index].visit(f"add/{index}", types)
         else:
             visit = self._known_visit(stop)
@@ -288,7 +251,7 @@ class _Rest:
         return replace(visit, demand=pickup.demand, prize=pickup.prize)
 
     def _servers(self, stop: int, visit: Visit) -> tuple[int, ...]:
-        """Return the types of the rest that may visit a stop; empty for all.
+        """Return the types of the rest that may visit a stop, and spares; empty for all of them.
 
         What a vehicle carries stays with it. Vehicles on their way cannot load what they do not
         carry, unless they come to a stop for loading again, or are back.
@@ -305,10 +268,8 @@ class _Rest:
         if self._must_be_loaded(stop, visit):
             out = [i for i, number in enumerate(working) if not self._day.ways[number].is_back]
             able = [i for i in able if i not in out or self._types[i].reload]
-        if not able:
-            fault = Fault("no-vehicle-for-stop", values={"stop": self._all.stops[stop].id})
-            raise Refusal("no-plan", errors=[fault])
-        return () if len(able) == len(self._types) else tuple(able)
+        nobody = len(self._old)
+        return () if len(able) == nobody else tuple(able or [nobody])
 
     def _may_ride(self, stop: int, index: int) -> bool:
         """Return whether a stop may ride with what vehicles of a type have visited by now.
