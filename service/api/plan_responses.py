@@ -38,6 +38,9 @@ class RouteItem(BaseModel):
         description="if there is a clock: when it reaches each stop. At the first stop: when it"
         " leaves, as late as possible without finishing later",
     )
+    ends: list[float] | SkipJsonSchema[None] = Field(
+        default=None, description="if there is a clock: when the visit at each stop ends"
+    )
     breaks: list[float] | SkipJsonSchema[None] = Field(
         default=None, description="when each break on the way begins"
     )

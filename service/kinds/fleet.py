@@ -276,6 +276,10 @@ def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
     if fleet.rules.clock is not None:
         times = schedule(fleet, route)
         members["arrivals"] = list(times.arrivals)
+        members["ends"] = [
+            begin + fleet.rules.service(route.vehicle, stop)
+            for begin, stop in zip(times.begins, path_of(fleet.rules, route), strict=True)
+        ]
         if times.breaks:
             members["breaks"] = list(times.breaks)
     return members

@@ -1,14 +1,15 @@
 """Make the members of a request to replan from what an agent says of a fleet's day."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from paretour import FleetFront, FleetPlan, FrontOfAnyKind, Refused
+from paretour import FleetFront, FleetPlan, FleetRoute, FrontOfAnyKind, Refused
 from paretour.choice import knee
 
+from service.amounts.said import clock_time
 from service.mcp.times import with_times
 
 AS_PLANNED = "as planned"
@@ -82,7 +83,8 @@ def _of_fleet(front: FleetFront, members: dict[str, Any]) -> Day:
     parts: dict[int, dict[str, str]] = {}
     depots = _depots(plan)
     if done == AS_PLANNED:
-        ways, assumed = _as_planned(plan, members.get("now"))
+        unit = None if front.clock is None else front.clock.unit
+        ways, assumed = _as_planned(plan, members.get("now"), unit)
         parts = {at: {"done": f"done of {plan.routes[at].vehicle}"} for at in ways}
     elif isinstance(done, Mapping):
         for name, stops in done.items():
@@ -109,7 +111,9 @@ def _of_fleet(front: FleetFront, members: dict[str, Any]) -> Day:
     return Day({**members, "plan": number}, assumed, named)
 
 
-def _as_planned(plan: FleetPlan, now: float | None) -> tuple[dict[int, dict[str, Any]], list[str]]:
+def _as_planned(
+    plan: FleetPlan, now: float | None, unit: str | None
+) -> tuple[dict[int, dict[str, Any]], list[str]]:
     """Return what each vehicle has done by now if it drives as planned, and say it."""
     if now is None:
         raise ValueError(f'now is needed with done "{AS_PLANNED}", such as "11:00"')
@@ -119,12 +123,30 @@ def _as_planned(plan: FleetPlan, now: float | None) -> tuple[dict[int, dict[str,
             raise ValueError("the fleet has no clock, so done must name the stops of each vehicle")
         if route.arrivals[0] > now:
             continue
-        pairs = zip(route.stops, route.arrivals.tolist(), strict=True)
-        done = [stop for stop, time in pairs if time <= now and stop not in depots]
-        ways[number] = {"route": number, "done": done}
+        reached = int((route.arrivals <= now).sum())
+        done = [stop for stop in route.stops[:reached] if stop not in depots]
+        where = _where(route, reached - 1, now, depots)
+        ways[number] = {"route": number, "done": done, **where}
         stops = ", ".join(done) or "no stop yet"
-        assumed.append(f"route {number} ({route.vehicle}) has visited as planned: {stops}")
+        begun = f", the last until {clock_time(where['leaves'], unit)}" if "leaves" in where else ""
+        assumed.append(f"route {number} ({route.vehicle}) has visited as planned: {stops}{begun}")
     return ways, assumed
+
+
+def _where(route: FleetRoute, last: int, now: float, depots: Collection[str]) -> dict[str, Any]:
+    """Return where a vehicle goes on, unless at the last visit, and when, if a visit has begun.
+
+    Args:
+        route: Its route.
+        last: The place in it that it has reached last.
+        now: The present time.
+        depots: The stops that are no visits.
+    """
+    stop = route.stops[last]
+    found: dict[str, Any] = {"position": stop} if last and stop in depots else {}
+    if route.ends is not None and route.ends[last] > now:
+        found["leaves"] = float(route.ends[last])
+    return found
 
 
 def _depots(plan: FleetPlan) -> set[str]:

@@ -155,7 +155,28 @@ async def check_replanning(
     )
     assert f"route 0 ({routes[0]['vehicle']}) has visited as planned" in as_planned["assumed"][0]
     check_plan(as_planned)
-    return as_planned
+    # The visit has begun that is to take 10 minutes.
+    (begun,) = (each for each in as_planned["routes"] if each.get("was_route") == 0)
+    assert begun["leaves"] == clock_time(routes[0]["arrivals"][2] + 600, "s")
+    return await check_breakdown(client, planned, routes)
+
+
+async def check_breakdown(
+    client: Any, planned: dict[str, Any], routes: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """Replan when a van breaks down: others, which load again at the depot, bring what is left."""
+    out = {"done": "as planned", "broken_down": [routes[0]["vehicle"]]}
+    rest = await call(client, "replan", **planned, **out)
+    check_plan(rest)
+    assert not any(each.get("was_route") == 0 for each in rest["routes"])
+    left = set(routes[0]["stops"][3:-1])
+    assert left
+    assert left <= {stop for each in rest["routes"] for stop in each["stops"]}
+    tight = [{"stop": stop, "windows": [[0, 1]]} for stop in sorted(left)]
+    refused = await said(client, "replan", True, **planned, **out, stops=tight)
+    assert "- leave stop" in refused
+    assert "out where that helps" in refused
+    return rest
 
 
 def test_a_client_that_asks_for_progress_hears_what_a_tool_waits_for(

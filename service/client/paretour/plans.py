@@ -25,6 +25,7 @@ class FleetRoute:
         lengths: Its lengths, shape (m,).
         arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
             (len(stops),). None without a clock.
+        ends: When the visit at each of these stops ends, shape (len(stops),). None without a clock.
         breaks: When each break on the way begins.
         shift: The number of its shift, if its vehicle has several.
         route: The number of its route in the plan that is driven, if it is on its way.
@@ -36,6 +37,9 @@ class FleetRoute:
     stops: tuple[str, ...]
     lengths: Array
     arrivals: Array | None = field(metadata={"read": lambda route: floats(len(route["stops"]))})
+    ends: Array | None = field(
+        default=None, metadata={"read": lambda route: floats(len(route["stops"]))}
+    )
     breaks: tuple[float, ...] = ()
     shift: int | None = None
     route: int | None = None
