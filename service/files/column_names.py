@@ -81,6 +81,12 @@ _NAMES = {
     " chauffeur veicolo furgone autista vehiculo conductor veiculo motorista voertuig ajoneuvo"
     " kuljettaja",
     "prize": "prize",
+    "together": "together togetherwith ridetogether ridewith rideswith samevehicle samevan"
+    " samedriver sameroute ordergroup linkedorder linkedorders zusammen",
+    "apart": "apart apartfrom keepapart notwith nottogether nottogetherwith separate separatefrom"
+    " incompatible incompatiblewith getrennt",
+    "before": "before visitbefore precedes mustprecede",
+    "after": "after visitafter follows mustfollow predecessor predecessors",
     "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
 }
 _AMOUNT = f"({'|'.join(sorted(_NAMES['demand'].split(), key=len, reverse=True))})"
@@ -200,6 +206,7 @@ def _names_of_stops() -> dict[str, str]:
 
 
 NAMES_OF_STOPS = _names_of_stops()
+GROUPS = ("together", "apart", "before", "after")  # how stops of a fleet ride with each other
 FLEET = (
     *(field for field in NAMES_OF_STOPS if field.startswith("window")),
     *("demand", "service", "due", "due_from", "release", "skills", "vehicle", "prize", "urgency"),

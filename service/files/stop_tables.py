@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.files.cells.times import read_calendar
-from service.files.column_names import FLEET, PLANES
+from service.files.column_names import FLEET, GROUPS, PLANES
 from service.files.columns import Columns, columns_of, place_in
 from service.files.depots import for_stops
 from service.files.fleets import Stop, fleet_of_tables
+from service.files.groups import groups_of, without_groups
 from service.files.places import note_places, out_of_range, weighted
 from service.files.planes import (
     called_planes,
@@ -61,6 +62,7 @@ def reading_of_columns(columns: Columns) -> Reading:
     recognise_pasted(columns)
     if any(each in FLEET for each in columns.fields):
         return _fleet(columns)
+    without_groups(columns)
     return _located(columns) if _is_located(columns) else _in_planes(columns)
 
 
@@ -160,9 +162,11 @@ def _fleet(columns: Columns) -> Reading:
     stops, plane = visits_of(columns)
     read_calendar([columns])
     add_visits(columns, stops)
+    groups = groups_of(columns, stops)
     stops, vehicles = for_stops(columns, stops, plane)
     columns.report()
-    return source.reading("fleet", fleet_of_tables(source, stops, vehicles, plane))
+    request = fleet_of_tables(source, stops, vehicles, plane)
+    return source.reading("fleet", {**request, **groups})
 
 
 def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
@@ -173,7 +177,7 @@ def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
     """
     source, fields = columns.source, columns.fields
     if _is_located(columns):
-        columns.keep((*_ON_EARTH, *FLEET), "a fleet has no costs or planes of its own")
+        columns.keep((*_ON_EARTH, *FLEET, *GROUPS), "a fleet has no costs or planes of its own")
         stops = _stops(columns, _places(columns))
         note_places(source, stops)
         return stops, None
@@ -183,7 +187,7 @@ def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
         if fleet:
             raise source.refusal("no-places-beside", names=fleet)
         raise source.refusal("no-places-of-fleet")
-    columns.keep(("x", "y", *FLEET), "a fleet has no costs or other planes of its own")
+    columns.keep(("x", "y", *FLEET, *GROUPS), "a fleet has no costs or other planes of its own")
     source.note("objectives", "Distances in the plane of x and y are time as well.")
     plane = columns.numbers([fields.index("x"), fields.index("y")])
     return _stops(columns, None), plane

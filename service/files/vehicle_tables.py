@@ -15,6 +15,7 @@ from service.files.column_names import fields_of, is_about_vehicles, plain_name
 from service.files.columns import Columns, columns_of, columns_of_vehicles
 from service.files.depots import with_depots
 from service.files.fleets import Stop, Vehicle, fleet_of_tables, have_times, spans
+from service.files.groups import groups_of
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
@@ -49,6 +50,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     columns = _columns_of_vehicles(other, of_vehicles[1], stops)
     read_calendar([visits, columns])
     units = add_visits(visits, stops)
+    groups = groups_of(visits, stops)
     if plane is None:
         recognise_hours(columns)
         read_units(columns)
@@ -65,7 +67,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     _add_limits(columns, vehicles, clock)
     _add_costs(columns, vehicles, located=plane is None)
     columns.report()
-    request = fleet_of_tables(source, stops, vehicles, plane)
+    request = {**fleet_of_tables(source, stops, vehicles, plane), **groups}
     return reading_of_several("fleet", request, (source, other))
 
 

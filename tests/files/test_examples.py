@@ -83,6 +83,7 @@ EARTH = {
     "risk.csv": ids("a b c", None, "objectives"),
     "second-plane.csv": ids("depot shop"),
     "zero-zero.csv": ids("a b c", None, "place"),
+    "groups-of-customers.csv": ids("a b c", None),
     "one-swapped.csv": ids("a b c", None, "swapped"),
     "far.csv": ids("a b c", None, "far"),
     "qgis.geojson": ids("depot shop"),
@@ -109,6 +110,19 @@ OTHERS = {
     "two-demands.csv": fleet("depot a b", vehicles=van(capacity=[3, 12])),
     "rfc3339.csv": fleet("job1 job2", "dates", vehicles=[{"id": "vehicle", "capacity": [3]}]),
     "skills.csv": fleet("depot a", "vehicle", vehicles=van(capacity=[2], skills=["fridge"])),
+    "groups.csv": fleet(
+        "depot oven hob hood bottles paint",
+        "groups",
+        together=[["oven", "hob", "hood"]],
+        apart=[{"stops": ["hob", "bottles"]}],
+        before=[{"first": ["oven"], "then": ["hob", "hood"]}],
+    ),
+    "groups-by-id.csv": fleet(
+        "D A1 A2 B",
+        together=[["A1", "A2"]],
+        apart=[{"stops": ["B"], "others": ["A1", "A2"]}],
+        before=[{"first": ["A1"], "then": ["B"]}],
+    ),
     "assigned.csv": fleet(
         "home boiler_1 boiler_2 roof",
         "vehicle",

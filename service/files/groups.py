@@ -1,0 +1,90 @@
+"""Read columns that say which stops ride together, which apart, and which come before others."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from service.files.column_names import GROUPS
+from service.files.columns import Columns
+from service.files.fleets import Stop
+from service.files.reading import quoted
+from service.files.visits import texts_in
+
+_MOST = 100  # stops of a group
+_SAID = {
+    "together": "Stops with the same {name} ride together, on one route.",
+    "apart": "Stops with the same {name} do not ride together.",
+}
+Named = list[tuple[str, list[str]]]  # the id of each stop with a text, and the ids or labels in it
+
+
+def without_groups(columns: Columns) -> None:
+    """Take no column for groups: they alone do not make a fleet of stops."""
+    for at, field in enumerate(columns.fields):
+        if field in GROUPS and not columns.is_chosen(at):
+            columns.fields[at] = None
+
+
+def groups_of(columns: Columns, stops: Sequence[Stop]) -> dict[str, Any]:
+    """Return the members of a request for a fleet that columns of groups are for.
+
+    A field has ids of other stops, or of `together` and `apart` a text that several stops share.
+    A column of stops before others, or after them, that has no ids of stops is not used.
+
+    Raises:
+        UnreadableFile: A stop is named that does not exist.
+    """
+    ids = [str(stop["id"]) for stop in stops]
+    found: dict[str, list[Any]] = {}
+    for field in GROUPS:
+        if (at := columns.find(field)) is None:
+            continue
+        named = [(ids[row], texts_in(columns, row, at)) for row in columns.filled(at)]
+        if any(text in ids for _, texts in named for text in texts):
+            _check_ids(columns, at, ids)
+            groups = list(_by_ids(field, named))
+        elif field in _SAID:
+            groups = list(_by_labels(columns, at, field, named))
+        else:
+            columns.leave_out(field, ", as it names no stops")
+            continue
+        if groups:
+            found.setdefault("before" if field == "after" else field, []).extend(groups)
+    return found
+
+
+def _check_ids(columns: Columns, at: int, ids: Sequence[str]) -> None:
+    """Keep the fields of a column that name stops which do not exist as wrong."""
+    for row in columns.filled(at):
+        others = [text for text in texts_in(columns, row, at) if text not in ids]
+        if others:
+            columns.refuse(row, at, "no-such-stops", came=others[0])
+
+
+def _by_ids(field: str, named: Named) -> Iterator[Any]:
+    """Yield the group of each stop that names others."""
+    for stop, texts in named:
+        others = [text for text in dict.fromkeys(texts) if text != stop]
+        if others:
+            yield {
+                "together": [stop, *others],
+                "apart": {"stops": [stop], "others": others},
+                "before": {"first": [stop], "then": others},
+                "after": {"first": others, "then": [stop]},
+            }[field]
+
+
+def _by_labels(columns: Columns, at: int, field: str, named: Named) -> Iterator[Any]:
+    """Yield the stops that share each text, of two stops or more, and note what that means."""
+    shared: dict[str, list[str]] = {}
+    for stop, texts in named:
+        for text in dict.fromkeys(texts):
+            shared.setdefault(text, []).append(stop)
+    groups = {text: stops for text, stops in shared.items() if len(stops) > 1}
+    name = quoted(columns.names[at])
+    if large := [text for text, stops in groups.items() if len(stops) > _MOST]:
+        columns.leave_out(field, f", as more than {_MOST} stops have {quoted(large[0])}")
+        return
+    if groups:
+        columns.source.note("groups", _SAID[field].format(name=name))
+    for stops in groups.values():
+        yield stops if field == "together" else {"stops": stops}
