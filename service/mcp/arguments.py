@@ -23,11 +23,10 @@ _RARE = {
     " initial_tours augment geometry",
     "DayObjectiveItem": "over_the_day slices traffic days",
     "FleetRequest": "size reference_point seed geometry",
-    "FleetStopItem": "windows due release skills vehicle",
-    "VehicleItem": "shift shifts max_overtime longest fixed skills max_stops reload max_trips"
-    " initial_load breaks",
-    "FleetObjectiveItem": "over_the_day slices traffic",
-    "ClockItem": "matrix coordinates over_the_day slices traffic",
+    "FleetStopItem": "windows release",
+    "VehicleItem": "shifts longest fixed max_trips initial_load breaks",
+    "FleetObjectiveItem": "slices traffic",
+    "ClockItem": "matrix coordinates slices traffic",
     "ReplanRequest": "size reference_point seed preferences repairs arrivals bound actor objectives"
     " geometry pose grid blocked freed cost_layer cost_layers paths",
     "ReplanFleetRequest": "size reference_point seed geometry add",

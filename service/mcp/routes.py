@@ -4,15 +4,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from paretour import FleetFront, FleetPlan, FleetRoute, FrontOfAnyKind, Tour
+from paretour import FleetFront, FleetPlan, FleetRoute, FrontOfAnyKind, Objective, Tour
 from paretour.kinds import kind_of
 
 from service.amounts.said import amount, clock_time
 
 # Measures of plans that are times by the clock; others are counts, prizes or lengths.
 _TIMES = (
-    *("driving", "service", "waiting", "lateness", "overtime", "longest", "shortest"),
-    *("duration", "duration_p90"),
+    *("driving", "service", "waiting", "lateness", "earliness", "overtime", "longest"),
+    *("shortest", "duration", "duration_p90"),
 )
 
 
@@ -43,16 +43,23 @@ def ways_of(front: FrontOfAnyKind, number: int) -> list[Way]:
 
 
 def measures_of(front: FrontOfAnyKind, number: int) -> dict[str, Any]:
-    """Return the measures of a plan, times as "2:10 h"; none of a tour."""
+    """Return the measures of a plan, in words; none of a tour."""
     item: Any = front[number]
     if not isinstance(item, FleetPlan) or not isinstance(front, FleetFront):
         return {}
-    unit = None if front.clock is None else front.clock.unit
-    timed = (*_TIMES, "imbalance") if front.clock else ()
-    return {
-        name: amount(value, unit) if name in timed else float(f"{value:.7g}")
-        for name, value in item.measures.items()
-    }
+    clock = front.clock
+    return {name: _measure(name, value, clock) for name, value in item.measures.items()}
+
+
+def _measure(name: str, value: float, clock: Objective | None) -> str | float:
+    """Return a measure in words: times as "2:10 h", shares as "12 %", changes as "3 stops"."""
+    if clock is not None and name in (*_TIMES, "imbalance"):
+        return amount(value, clock.unit)
+    if name == "overlap":
+        return f"{100 * value:.3g} % of neighbours ride with somebody else"
+    if name == "changes":
+        return "1 stop" if value == 1 else f"{value:.7g} stops"
+    return float(f"{value:.7g}")
 
 
 def hours_of(front: FrontOfAnyKind, number: int) -> dict[str, Any]:

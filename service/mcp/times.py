@@ -8,23 +8,18 @@ from service.amounts.read import number_in
 # The members of requests that are times or durations, in the unit of the clock.
 TIMED = frozenset(
     (
-        "at",
-        "departure",
-        "due",
-        "earliest",
-        "latest",
-        "length",
-        "longest",
-        "max_overtime",
-        "now",
-        "over_the_day",
-        "release",
+        *("arrivals", "at", "departure", "due", "earliest", "latest", "leaves", "length"),
+        *("longest", "max_driving", "max_overtime", "now", "over_the_day", "release", "service"),
+        *("shift", "shifts", "shortest", "slack", "slots", "tolerance", "window", "windows"),
     )
-) | {"service", "shift", "shifts", "slots", "window", "windows"}
+)
 # What such members may be in; below other members the same names mean something else.
 _HOLDERS = frozenset(
-    ("add", "breaks", "departure", "objectives", "order", "position", "routes", "stops", "traffic")
-) | {"vehicles"}
+    (
+        *("add", "breaks", "changes", "clock", "departure", "objectives", "order", "position"),
+        *("promised", "routes", "services", "stops", "traffic", "vehicles"),
+    )
+)
 # Members whose own members are times under names that mean something else elsewhere.
 _OWN = {"every": ("from", "to", "length", "step"), "slices": ("from",)}
 

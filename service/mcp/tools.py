@@ -286,8 +286,9 @@ TOOLS = (
     Tool(
         name="replan",
         description="Plan the rest of a tour or of a fleet's day when stops are done, added or"
-        " removed, the vehicle is elsewhere or broken down, or costs have changed. The answer is a"
-        " new front; the earlier one stays as it is.",
+        " removed, the vehicle is elsewhere or broken down, or costs have changed. What is added to"
+        " a fleet has demand, service and window as stops of plan_fleet have. The answer is a new"
+        " front; the earlier one stays as it is.",
         arguments=Changes,
         forms=(Changes, DayOfFleet, ReplanRequest, ReplanFleetRequest),
         run=_replan,

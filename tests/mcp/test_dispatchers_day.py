@@ -296,3 +296,47 @@ def test_budgets_and_times_are_read_and_written() -> None:
     assert amount(14200, "m") == "14.2 km"
     with pytest.raises(ValueError, match="must be a number, a time as 10:00"):
         number_in("soon", "s")
+
+
+def test_what_dispatchers_ask_for_is_asked_for_in_their_words(url: str) -> None:
+    vans = [
+        {**DAY["vehicles"][0], "id": "bike", "speed_factor": 0.8, "service_factor": 0.5},
+        {**DAY["vehicles"][1], "min_stops": 2, "shortest": "0:30 h", "max_driving": "6:00 h"},
+    ]
+    rush = [["0:00", 1], ["9:00", 1.2]]
+    asked = {
+        **DAY,
+        "stops": [
+            {**stop, "due": ["8:30", "15:00"]} if i else stop for i, stop in enumerate(DAY["stops"])
+        ],
+        "vehicles": vans,
+        "objectives": [
+            DAY["objectives"][0],
+            {**DAY["objectives"][1], "over": "sum", "over_the_day": rush},
+            {"name": "mixed areas", "measure": "overlap"},
+        ],
+        "together": [["o1", "o2"]],
+        "apart": [{"stops": ["o1", "o3"]}],
+        "before": [{"first": ["o2"], "then": ["o1"]}],
+        "slack": "10 min",
+        "leave": "early",
+    }
+
+    async def talk() -> None:
+        async with agent(url) as client:
+            shown = next(t for t in (await client.list_tools()).tools if t.name == "plan_fleet")
+            assert asked.keys() <= shown.input_schema["properties"].keys()
+            front = await call(client, "plan_fleet", **asked)
+            routes = [each["stops"] for each in front["routes"]]
+            (both,) = (stops for stops in routes if "o1" in stops)
+            assert both.index("o2") < both.index("o1")
+            assert "o3" not in both
+            plan = front["tours"][0]
+            assert plan["measures"]["overlap"].endswith("% of neighbours ride with somebody else")
+            assert plan["measures"]["earliness"].endswith(("min", "h", "0 s"))
+            assert all(each["leaves"] == "8:00" for each in front["routes"])
+            fewest = {"front": front["front"], "now": "8:00", "changes": {"tolerance": "15 min"}}
+            rest = await call(client, "replan", **fewest, time_limit=0.2)
+            assert min(each["measures"]["changes"] for each in rest["tours"]) == "0 stops"
+
+    asyncio.run(talk())
