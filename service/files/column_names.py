@@ -129,6 +129,7 @@ _OF_VEHICLES_ONLY = {
     "shift_to": "shiftend shiftto workend schichtende",
     "shift": "shift workinghours workhours schicht arbeitszeit",
     "longest_time": "maxtime maxtraveltime maxdrivingtime maxduration maxrouteduration",
+    "shortest_time": "mintime mindrivingtime minduration minrouteduration minhours",
     "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
     "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
     "max_stops": "maxstops maxnumberofstops maxtasks maxorders maxjobs maxvisits maxdeliveries",
@@ -139,6 +140,10 @@ _OF_VEHICLES_ONLY = {
     "initial_load": "initialload startload loadatstart loadonboard onboard "
     + " ".join(f"initial{each}" for each in _AMOUNTS if each != "load"),
     "per_km": "costperkm costkm kmcost perkm priceperkm kmkosten",
+    "per_hour": "costperhour costhour hourlycost hourlyrate hourlywage perhour priceperhour"
+    " wageperhour stundenlohn stundensatz",
+    "speed_factor": "speedfactor speedmultiplier",
+    "service_factor": "servicefactor servicemultiplier servicetimefactor",
 }  # fields that only vehicles have
 NAMES_OF_VEHICLES = {
     "start": "start startid startstop startplace startlocation startdepot",

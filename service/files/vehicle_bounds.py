@@ -1,6 +1,7 @@
 """Read the columns of a table of vehicles that bound routes: skills, stops, trips and overtime."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 
 from service.files.cells.times import seconds_in
 from service.files.columns import Columns
@@ -66,6 +67,7 @@ def add_bounds(columns: Columns, vehicles: list[Vehicle]) -> None:
         ("min_stops", _add_min_stops),
         ("max_trips", _add_max_trips),
         ("max_overtime", _add_max_overtime),
+        ("speed_factor", _add_speed),
     ):
         if (at := columns.find(name)) is not None:
             for row in columns.filled(at):
@@ -96,6 +98,24 @@ def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> Non
             raise columns.refuse(row, at, "no-column-reload")
         vehicle["reload"] = [vehicle["start"]]
     vehicle["max_trips"] = columns.whole(row, at)
+
+
+def _add_speed(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+    factor = columns.amount(row, at)
+    if factor == 0:
+        raise columns.refuse(row, at, "no-speed", came=columns.text(row, at))
+    vehicle["speed_factor"] = factor
+
+
+def add_times(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
+    """Add the least time of routes, and how fast vehicles serve; neither without a clock."""
+    for name, member in (("shortest_time", "shortest"), ("service_factor", "service_factor")):
+        if not clock:
+            columns.leave_out(name, " without times")
+        if (at := columns.find(name)) is not None:
+            read = partial(seconds_in, columns) if member == "shortest" else columns.amount
+            for row in columns.filled(at):
+                vehicles[row][member] = columns.tried(0.0, read, row, at)
 
 
 def _add_max_overtime(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:

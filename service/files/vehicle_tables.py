@@ -19,12 +19,12 @@ from service.files.groups import groups_of
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
-from service.files.vehicle_bounds import add_bounds, add_skills, check_servers
+from service.files.vehicle_bounds import add_bounds, add_skills, add_times, check_servers
 from service.files.vehicle_loads import add_loads
 from service.files.visits import add_visits, texts_in
 
 _ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # members by column
-_KILOMETRE = 1000.0
+_KILOMETRE, _HOUR = 1000.0, 3600.0
 _IN_KILOMETRES = re.compile(r"km\b", re.IGNORECASE)
 
 
@@ -63,8 +63,10 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     visits.report()
     stops, vehicles = with_depots(visits, stops, vehicles, plane)
     add_bounds(columns, vehicles)
-    clock = have_times(stops, vehicles)
+    paid = plane is None and columns.find("per_hour") is not None
+    clock = have_times(stops, vehicles) or paid
     _add_limits(columns, vehicles, clock)
+    add_times(columns, vehicles, clock)
     _add_costs(columns, vehicles, located=plane is None)
     columns.report()
     request = {**fleet_of_tables(source, stops, vehicles, plane), **groups}
@@ -210,12 +212,17 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
 
 
 def _add_costs(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
-    """Add what vehicles cost by the kilometre, if that differs, and by the use."""
+    """Add what vehicles cost by the kilometre, if that differs, by the hour, and by the use."""
     rates = _rates(columns)
+    if not located:
+        columns.leave_out("per_hour", " in a plane")
+    hourly = _hourly(columns)
     differ = len(set(rates)) > 1
-    if located and differ:
-        for vehicle, rate in zip(vehicles, rates, strict=True):
+    if located and (differ or hourly):
+        for vehicle, rate in zip(vehicles, rates or [0.0] * len(vehicles), strict=True):
             vehicle["per_distance"] = rate / _KILOMETRE
+        for vehicle, rate in zip(vehicles, hourly, strict=False):
+            vehicle["per_time"] = rate / _HOUR
         return _add_fixed(columns, vehicles, 1.0, "added to the cost for each vehicle used")
     if differ or 0.0 in rates:
         columns.leave_out("per_km", ", which is 0 or differs by vehicle,")
@@ -238,6 +245,14 @@ def _add_fixed(columns: Columns, vehicles: list[Vehicle], unit: float, means: st
     for row, vehicle in enumerate(vehicles):
         if columns.text(row, at):
             vehicle["fixed"] = columns.tried(0.0, columns.amount, row, at) / unit
+
+
+def _hourly(columns: Columns) -> list[float]:
+    """Return the cost of an hour of each vehicle; nothing without a column."""
+    if (at := columns.find("per_hour")) is None:
+        return []
+    rows = range(len(columns.table.rows))
+    return [columns.tried(0.0, columns.amount, r, at) if columns.text(r, at) else 0.0 for r in rows]
 
 
 def _rates(columns: Columns) -> list[float]:

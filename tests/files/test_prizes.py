@@ -79,3 +79,21 @@ def test_vehicles_that_differ_by_the_kilometre_have_their_own_prices() -> None:
     request = read("prize", "", "100", "80", vans="van,cost per km\nv,0.5\nw,0\n").request
     assert [each["per_distance"] for each in request["vehicles"]] == [0.0005, 0]
     assert request["objectives"][0]["name"] == "cost"
+
+
+def test_vehicles_have_prices_by_the_hour_and_are_slower_or_faster_than_others() -> None:
+    vans = (
+        "van,hourly wage,cost per km,speed factor,service factor,min time\n"
+        "v,36,0.5,,,2:00\nw,18,0,0.8,1.5,\n"
+    )
+    request = read("qty", "", "1", "2", vans=vans).request
+    of_both = {"capacity": [3], "start": "depot", "end": "depot"}
+    slow = {"speed_factor": 0.8, "per_distance": 0, "per_time": 0.005, "service_factor": 1.5}
+    assert request["vehicles"] == [
+        {"id": "v", **of_both, "per_distance": 0.0005, "per_time": 0.01, "shortest": 7200},
+        {"id": "w", **of_both, **slow},
+    ]
+    assert request["clock"] == "time"
+    assert request["objectives"][0]["name"] == "cost"
+    with pytest.raises(UnreadableFile, match="'speed factor' must be over 0"):
+        read("qty", "", "1", "2", vans="van,speed factor\nv,0\n")

@@ -21,7 +21,8 @@ _OF_PROGRAMS = (",", "|", None)  # separators beside which a decimal sign is a p
 _FIELDS = {
     *("longitude", "latitude", "x", "y", "demand", "service", "prize", "cost", "capacity", "count"),
     *("longest_time", "longest_distance", "fixed", "max_stops", "min_stops", "max_trips"),
-    *("max_overtime", "initial_load", "per_km"),
+    *("max_overtime", "initial_load", "per_km", "per_hour", "speed_factor", "service_factor"),
+    "shortest_time",
 }
 
 

@@ -20,6 +20,7 @@ const LABELS = {
   after: "comes after",
   fixed: "cost of using it",
   per_km: "cost by the kilometre",
+  per_hour: "cost by the hour",
   detail: "shown to the driver",
   ignored: "not used",
 };
