@@ -1,6 +1,7 @@
 """plan_fleet(...): from a fleet to its front of plans."""
 
-from itertools import chain
+from collections.abc import Callable
+from itertools import chain, count
 
 from service.construction.first_tours import Constructor
 from service.errors import Cancelled, Refusal
@@ -13,13 +14,18 @@ from service.fleet.fronts import FleetOptions, front_of
 from service.fleet.left_out import with_all_stops
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan
-from service.fleet.search.search import BRIEF, RuinSearch
+from service.fleet.search.search import RuinSearch
 from service.watch import Watch
 
 _ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
 _TRYING = 0.9  # share of the time limit, until when routes are tried if a search found no plan
 _LEAST_TRYING = 0.1  # seconds for that
 _FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
+# Without a time limit steps are counted, so that the same request has the same answer on any
+# machine: some tenths of a second. A step of the necessary conditions takes the longer the more
+# stops there are.
+_MOST_STEPS = 30_000
+_MOST_ENTRIES = 1e8  # of costs that are compared
 
 
 def plan_fleet(
@@ -48,17 +54,32 @@ def plan_fleet(
         ValueError: A component of the reference point is not positive, or the size is below 1.
     """
     watch = (watch or Watch()).lasting(options.time_limit)
-    check_necessary(fleet, watch.until(_FINDING_FAULTS * watch.seconds or BRIEF).ended)
+    entries = int(_MOST_ENTRIES / max(1, fleet.rules.n) ** 2)
+    check_necessary(fleet, _ended(watch, _FINDING_FAULTS, min(_MOST_STEPS, entries)))
     if is_enumerable(fleet.rules):
-        all_plans = exact_plans(fleet, watch.until(_ENUMERATING * watch.seconds or BRIEF).ended)
+        all_plans = exact_plans(fleet, _ended(watch, _ENUMERATING, _MOST_STEPS))
         if all_plans is not None:
             if not all_plans:
                 sentence = "no plan keeps every rule: all were tried"
-                raise no_plan(fleet, sentence, watch.until(watch.seconds or 2 * BRIEF).ended)
+                raise no_plan(fleet, sentence, _ended(watch, 1.0, _MOST_STEPS))
             return front_of(fleet, options, all_plans, "converged", watch)
     if options.time_limit == 0:
         return _without_search(fleet, options, constructor, watch)
     return _searched(fleet, options, watch)
+
+
+def _ended(watch: Watch[FleetFront], share: float, steps: int) -> Callable[[], bool]:
+    """Return a function that says whether a part of planning must end, and is called at each step.
+
+    Args:
+        watch: Watches all of planning.
+        share: The share of the time limit after which the part ends.
+        steps: After how many steps it ends where there is no time limit.
+    """
+    if watch.seconds:
+        return watch.until(share * watch.seconds).ended
+    taken = count(1)
+    return lambda: watch.stopped() or next(taken) > steps
 
 
 def _without_search(

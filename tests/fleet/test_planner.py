@@ -4,6 +4,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import count
 from math import inf
 from typing import Any
 
@@ -278,6 +279,16 @@ def test_without_time_the_tours_of_the_network_are_cut() -> None:
     assert (front.terminated, len(front.plans)) == ("converged", 4)
     assert front.constructed >= front.found >= 4
     assert [violations(fleet, plan) for plan in front.plans] == [[]] * 4
+
+
+@pytest.mark.parametrize("pause", [0.0, 1e-3, 9.0])
+def test_without_time_a_fleet_has_the_same_plans_on_any_machine(pause: float) -> None:
+    """Between two looks at the clock of a slow machine, much time passes."""
+    ticks = count()
+    watch = Watch[FleetFront](clock=lambda: pause * next(ticks))
+    front = plan_fleet(deliveries(6), FleetOptions(time_limit=0), shuffler(), watch)
+    assert points_of(front) == points_of(plan_fleet(deliveries(6), ENOUGH))
+    assert front.constructed == 0  # all plans were compared
 
 
 def test_what_is_too_large_to_be_cut_is_refused_without_time() -> None:
