@@ -122,13 +122,13 @@ def test_stops_that_are_reached_just_before_they_close_say_so(shown: Page) -> No
 
 def test_a_vehicle_says_the_most_that_it_carries_of_what_it_can(shown: Page) -> None:
     """The second of two trips is the fuller one: 14 and 2,100, where the first has 13 and 550."""
-    assert loads(shown) == ["14 of 20, 2,100 of 1,500"]
+    assert loads(shown) == ["14 of 20 at once, 2,100 of 1,500 at once"]
 
 
 @pytest.mark.parametrize(
     ("vehicle", "others", "said"),
     [
-        ({"initial_load": [10, 5], "reload": ["depot"]}, {}, "23 of 20, 2,100 of 1,500"),
+        ({"initial_load": [10, 5], "reload": ["depot"]}, {}, "23 of 20 at once, 2,100 of 1,500 at once"),
         # What is picked up at order 2 comes on board after order 1.
         ({}, {"shipments": [{"pickup": 2, "delivery": "order-3"}]}, "16 of 20, 1,400 of 1,500"),
     ],

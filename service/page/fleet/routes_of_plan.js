@@ -49,8 +49,8 @@ export function visits(route, { through }, asked) {
 }
 
 /**
- * The most load that a vehicle has on board at once, of its capacity, such as "18 of 20": one for each kind of load.
- * "" if it has no capacity.
+ * The most load that a vehicle has on board at once, of its capacity, such as "18 of 20", or "18 of 20 at once" if it loads
+ * again: one for each kind of load. "" if it has no capacity.
  */
 export function loadOf(route, { stops: asked, types, pickups }) {
   const { vehicle } = route;
@@ -59,7 +59,7 @@ export function loadOf(route, { stops: asked, types, pickups }) {
   const loads = (capacity ?? []).map((most, kind) => {
     const demand = (stop) => asked.get(stop)?.demand?.[kind] ?? 0;
     const carried = tripsIn(stops, reload).map((trip, at) => onBoard(trip, demand, pickups, at ? 0 : (initial?.[kind] ?? 0)));
-    return `${length(Math.max(...carried))} of ${length(most)}`;
+    return `${length(Math.max(...carried))} of ${length(most)}${carried.length > 1 ? " at once" : ""}`;
   });
   return loads.join(", ");
 }

@@ -131,12 +131,15 @@ export class Planes {
   }
 }
 
-/** Says the position of a stop on a tour, or on the only one of these routes that visits it; "" for a depot. */
+/** Says the position of a stop on a tour, or, without depots, on the only one of these routes that visits it; "" for a depot. */
 export function turnOf(city, tour, routes) {
   if (tour?.includes(city)) return `: ${ordinal(tour.indexOf(city) + 1)} on the tour`;
   const visiting = routes.filter(({ stops }) => stops.includes(city));
   if (visiting.length !== 1) return "";
-  return `: ${ordinal(visiting[0].stops.indexOf(city) + 1)} of ${visiting[0].name}`;
+  const [{ stops, name }] = visiting;
+  const isDepot = (stop) => (stops.length > 1 && stop === stops[0] && stop === stops.at(-1)) || routes.some((route) => route !== visiting[0] && route.stops.includes(stop));
+  const turn = stops.slice(0, stops.indexOf(city) + 1).filter((stop) => !isDepot(stop)).length;
+  return turn ? `: ${ordinal(turn)} of ${name}` : "";
 }
 
 /** The cities of a tour, back to the first if it is closed. */

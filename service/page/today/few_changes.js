@@ -23,6 +23,6 @@ export function changesAsked(asked) {
   if (!asked.clock) return { name: "stops changed" };
   const text = element("today-tolerance").value.trim() || "0";
   const { tolerance } = withText({}, LATER, text, SECONDS.get(clockUnit(asked)));
-  if (typeof tolerance !== "number") throw new Problem({ code: "invalid-request", detail: `later by at most cannot be “${text}”: write ${hintOf(LATER, 1)}` });
+  if (typeof tolerance !== "number") throw new Problem({ code: "invalid-request", detail: `later than planned cannot be “${text}”: write ${hintOf(LATER, 1)}` });
   return { name: "stops changed", tolerance };
 }

@@ -15,7 +15,7 @@ export function vanSaid(van, { isOutOfService, clock, known, vehicle }) {
   const load = van.isOut && !van.isBack ? onBoard(van, known, vehicle) : "";
   const where = whereOf(van, clock);
   if (!isOutOfService || van.isBack) return load ? `${where}; load ${ofCapacity(load, known, vehicle)}` : where;
-  return `${where}; ${/[1-9]/.test(load) ? `others take over its load of ${load}` : "others take over its stops still to visit"}`;
+  return `${where}; ${/[1-9]/.test(load) ? `others bring its load of ${load}, which they load anew, not from this vehicle` : "others take over its stops still to visit"}`;
 }
 
 /** What is on board of what a vehicle holds, such as "9 of 22". */
