@@ -190,7 +190,10 @@ def _reach(body: dict[str, Any]) -> None:
 
 
 def _fit_to_cities(body: dict[str, Any], n: int) -> None:
-    """Replace ends and initial tours by such as fit n cities."""
+    """Replace ends and initial tours by such as fit n cities, which have no names."""
+    for name, known in (("start", 0), ("end", None)):
+        if isinstance(body.get(name), str):
+            body[name] = known
     if isinstance(body.get("start"), int | float) and body["start"] >= n:
         body["start"] = 0
     _fit_ends(body, n)
