@@ -33,6 +33,9 @@ class RouteItem(BaseModel):
         default=None,
         description="of a vehicle on its way: the number of its route in the plan that is driven",
     )
+    profile: str | SkipJsonSchema[None] = Field(
+        default=None, description="the profile of its vehicle, if it has one"
+    )
     arrivals: list[float] | SkipJsonSchema[None] = Field(
         default=None,
         description="if there is a clock: when it reaches each stop. At the first stop: when it"
