@@ -128,7 +128,11 @@ def test_a_vehicle_says_the_most_that_it_carries_of_what_it_can(shown: Page) -> 
 @pytest.mark.parametrize(
     ("vehicle", "others", "said"),
     [
-        ({"initial_load": [10, 5], "reload": ["depot"]}, {}, "23 of 20 at once, 2,100 of 1,500 at once"),
+        (
+            {"initial_load": [10, 5], "reload": ["depot"]},
+            {},
+            "23 of 20 at once, 2,100 of 1,500 at once",
+        ),
         # What is picked up at order 2 comes on board after order 1.
         ({}, {"shipments": [{"pickup": 2, "delivery": "order-3"}]}, "16 of 20, 1,400 of 1,500"),
     ],
