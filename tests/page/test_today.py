@@ -274,6 +274,25 @@ def test_a_day_is_replanned_from_what_is_done_by_now(window: Page) -> None:
     assert found == []
 
 
+@needs_chromium
+def test_what_helps_a_day_that_has_no_plan_is_one_click(window: Page) -> None:
+    """The van that is left has no room for what the other one has on board."""
+    vans = [{**VAN, "id": name, "capacity": [4], "reload": []} for name in ("Pekka", "Anna")]
+    open_files(window, {"fleet.json": json.dumps({**FLEET, "stops": FLEET["stops"][:5], "vehicles": vans})})
+    window.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(window)
+    window.locator("#today > summary").click()
+    say_time(window, "8:30")
+    window.locator("#vans .van", has_text="Anna").get_by_role("checkbox").check()
+    window.locator("#replan-fleet").click()
+    remedies = window.locator("#today-remedies").get_by_role("button")
+    expect(remedies.first).to_be_visible()
+    assert found_on_desk_and_phone(window, "#today") == []
+    remedies.filter(has_text="leave").first.click()
+    expect(window.locator("#changes")).to_contain_text("left out")
+    expect(remedies).to_have_count(0)
+
+
 def left_of_a_planned_day(page: Page) -> list[str]:
     """Plan the fleet, say that it is 9:30, and return the stops that are not done by then."""
     open_files(page, {"fleet.json": json.dumps(FLEET)})

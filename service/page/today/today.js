@@ -13,6 +13,7 @@ import { customersIn } from "../inputs/details.js";
 import { rounded } from "../inputs/places.js";
 import { pastedFile } from "../opening/reading.js";
 import { showFaults } from "../planning/faults.js";
+import { Remedies, patched } from "../planning/remedies.js";
 import { changesOf } from "./changes.js";
 import { Offers } from "./offers.js";
 import { Orders } from "./orders.js";
@@ -35,6 +36,8 @@ export class Today {
   #list;
   #orders;
   #offers;
+  #remedies;
+  #chosen = []; // the changes that were chosen of those that would help
   #found = null; // the front whose plans may be driven, `{ state, way, asked }`
   #driven = null; // the plan that is driven
   #proposed = null; // what is proposed instead, `{ state, way, plan, at }`
@@ -62,7 +65,15 @@ export class Today {
     this.#offers = new Offers(service, () => ({ ...this.asked, asked: this.#driven.asked, clock: this.#clock }), (row, window) => this.#orders.promise(row, window));
     element("today").addEventListener("toggle", () => this.#open());
     element("today-now").addEventListener("change", ({ target }) => this.#readNow(target.value.trim()));
-    element("replan-fleet").addEventListener("click", onReplan);
+    const replan = (chosen) => {
+      this.#chosen = chosen;
+      this.#remedies.clear();
+      onReplan();
+    };
+    this.#remedies = new Remedies(element("today-remedies"), ({ patch }) => replan([...this.#chosen, ...patch]));
+    element("replan-fleet").addEventListener("click", () => replan([]));
+    // They are of the day as it was when it was refused.
+    for (const kind of ["input", "click"]) element("today").addEventListener(kind, ({ target }) => target.closest("#today-remedies") || this.#remedies.clear());
     element("drive").addEventListener("click", () => this.#drive());
     element("to-driven").addEventListener("click", () => onBack(this.#found, this.#driven.item));
     addEventListener("paste", (event) => this.#paste(event), { capture: true });
@@ -118,13 +129,14 @@ export class Today {
   get asked() {
     const added = this.#orders.added;
     const day = { vans: this.#vans, now: this.#now, nowSaid: this.#now === null ? "" : this.#clock.said(this.#now), out: new Set(this.#out), removed: new Set(this.#cancelled), added, told: this.#orders.told, isHandFree: !element("today-hand").hidden && element("today-hand").control.checked, changes: changesAsked(this.#driven.asked) };
-    const body = bodyOf(this.#driven, day);
+    const body = patched(bodyOf(this.#driven, day), this.#chosen);
     return { id: this.#found.state.answer.id, body, way: new FleetRest(this.#driven, body, day) };
   }
 
-  /** Says why the rest was not planned. */
+  /** Says why the rest was not planned, and what would help. */
   refuse(problem) {
     showFaults(problem, "today");
+    this.#remedies.show(problem);
   }
 
   #open() {
