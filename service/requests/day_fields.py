@@ -210,7 +210,7 @@ class TimedObjectiveItem(ObjectiveItem):
         return Slices(np.array(begins), np.stack(matrices))
 
 
-class DayObjectiveItem(SpreadFields, TimedObjectiveItem):
+class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
     """An objective, whose costs may change over the day, or spread from day to day.
 
     It has exactly one source of costs: matrix, coordinates, from, slices or days.

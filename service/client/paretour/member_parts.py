@@ -25,6 +25,12 @@ class StopRequest(TypedDict, total=False):
     service: float
 
 
+class MatrixRequest(TypedDict, total=False):
+    """The costs of one day."""
+
+    matrix: Required[Costs]
+
+
 # A slice of the day, and the costs in it.
 SliceRequest = TypedDict(
     "SliceRequest",
@@ -43,16 +49,13 @@ class TrafficRequest(TypedDict, total=False):
     at: Required[ArrayLike]
 
 
-class MatrixRequest(TypedDict, total=False):
-    """The costs of one day."""
-
-    matrix: Required[Costs]
-
-
 # An objective, whose costs may change over the day, or spread from day to day.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
+        "spread": float | Costs | None,
+        "days": Sequence[MatrixRequest],
+        "percentile": int | None,
         "name": Required[str],
         "unit": str | None,
         "matrix": Costs,
@@ -62,9 +65,6 @@ ObjectiveRequest = TypedDict(
         "over_the_day": ArrayLike,
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
-        "spread": float | Costs | None,
-        "days": Sequence[MatrixRequest],
-        "percentile": int | None,
     },
     total=False,
 )
