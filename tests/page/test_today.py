@@ -278,7 +278,9 @@ def test_a_day_is_replanned_from_what_is_done_by_now(window: Page) -> None:
 def test_what_helps_a_day_that_has_no_plan_is_one_click(window: Page) -> None:
     """The van that is left has no room for what the other one has on board."""
     vans = [{**VAN, "id": name, "capacity": [4], "reload": []} for name in ("Pekka", "Anna")]
-    open_files(window, {"fleet.json": json.dumps({**FLEET, "stops": FLEET["stops"][:5], "vehicles": vans})})
+    open_files(
+        window, {"fleet.json": json.dumps({**FLEET, "stops": FLEET["stops"][:5], "vehicles": vans})}
+    )
     window.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(window)
     window.locator("#today > summary").click()
