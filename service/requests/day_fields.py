@@ -10,6 +10,7 @@ from pydantic import Discriminator, Field, JsonValue, Tag
 from service.errors import invalid
 from service.errors.faults import show
 from service.objectives import Objective
+from service.reliability.spread import Spread
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import (
     ABSENT,
@@ -234,6 +235,16 @@ class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
         if self.sources == ["days"]:
             return Matrix(self.costs_of_days(part, len(stops)).mean(axis=0))
         return super().fixed_source(part, stops)
+
+    def spread_of(self, part: str, n: int) -> Spread | None:
+        """Return how the costs between n stops spread; None if they do not.
+
+        Raises:
+            Refusal: As of SpreadFields, or the costs change over the day as well.
+        """
+        if self.changes and (self.days or self.spread is not None):
+            raise invalid(f"{part}/{'days' if self.days else 'spread'}", "spread-over-the-day")
+        return super().spread_of(part, n)
 
 
 class DayFields(StrictModel):

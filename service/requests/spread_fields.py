@@ -55,24 +55,16 @@ class SpreadFields(StrictModel):
         " default it is the mean"
     )
 
-    @property
-    def changes(self) -> bool:
-        """Whether its costs change over the day."""
-        return False
-
     def spread_of(self, part: str, n: int) -> Spread | None:
         """Return how the costs between n stops spread; None if they do not.
 
         Raises:
-            Refusal: A percentile has no spread, a matrix is not of these stops, or the spread comes
-                beside costs that change over the day.
+            Refusal: A percentile has no spread, or a matrix is not of these stops.
         """
         if self.spread is None and not self.days:
             if self.percentile is not None:
                 raise invalid(f"{part}/percentile", "no-spread")
             return None
-        if self.changes:
-            raise invalid(f"{part}/{'days' if self.days else 'spread'}", "spread-over-the-day")
         if self.days:
             if self.spread is not None:
                 raise invalid(f"{part}/spread", "not-beside", member="days")
