@@ -54,3 +54,10 @@ def test_a_bound_and_times_of_the_day_do_not_go_with_a_spread(members: dict[str,
     with pytest.raises(Refusal) as refused:
         stops_of(WAY, {**LIKELY, "unit": "s"}, **members)
     assert refused.value.errors[0].pointer == f"/{next(iter(members))}"
+
+
+def test_costs_do_not_both_spread_and_change_over_the_day() -> None:
+    changing = {**LIKELY, "unit": "s", "over_the_day": [[0, 1], [9, 2]]}
+    with pytest.raises(Refusal) as refused:
+        stops_of(WAY, changing, departure=0)
+    assert refused.value.errors[0].pointer == "/objectives/1/spread"
