@@ -16,16 +16,10 @@ from torch import Tensor
 
 from models.checkpoint import Run
 from models.data.preferences import random_preferences
+from models.networks.joining.closing import ENOUGH, joined_to_one
 from models.networks.joining.costs import Problem
 from models.networks.joining.fragments import Fragments
-from models.networks.joining.repairs import (
-    ENOUGH,
-    Cuts,
-    cut,
-    laid_out,
-    last_two_joined,
-    repair_problem,
-)
+from models.networks.joining.repairs import Cuts, cut, laid_out, repair_problem
 from models.networks.pa_one import OneActor, rows_of
 from models.networks.rows import Rows, changed, repeated, split, stacked
 from models.rollout_pa_one import joined_by_chance
@@ -120,7 +114,7 @@ def _learned(
         enough=ENOUGH,
     )
     with torch.no_grad():
-        drawn_by_chain = split(last_two_joined(costs_of_drawn, drawn), len(chains))
+        drawn_by_chain = split(joined_to_one(costs_of_drawn, drawn), len(chains))
         advantages = [
             _advantages(chain, rows, repeated(_of(rows, each), times), whole)
             for chain, each, whole in zip(chains, cuts, drawn_by_chain, strict=True)

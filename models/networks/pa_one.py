@@ -28,6 +28,7 @@ from models.networks.joining.candidates import (
     toured,
     without_impossible,
 )
+from models.networks.joining.closing import ENOUGH, joined_to_one
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.features import features_seen
@@ -41,13 +42,7 @@ from models.networks.joining.fragments import (
 from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
 from models.networks.joining.prices import priced_problem
-from models.networks.joining.repairs import (
-    ENOUGH,
-    cut,
-    laid_out,
-    last_two_joined,
-    repair_problem,
-)
+from models.networks.joining.repairs import cut, laid_out, repair_problem
 from models.networks.joining.shortlists import (
     RowLists,
     Sizes,
@@ -98,11 +93,12 @@ class OneActor(Actor):
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
     candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many
-    # cities after the first evaluation, and in repairing tours.
+    # cities after the first evaluation, and in repairing tours. After eight, nearly all rows have
+    # few enough fragments left to close them.
     joinings: ClassVar[int] = 2
     joinings_of_many: ClassVar[int] = 3  # an eighth less time for 0.01 of hypervolume at most
-    repair_joinings: ClassVar[int] = 4
-    last_joinings: ClassVar[int] = 6  # after the first evaluation: one more does for most repairs
+    repair_joinings: ClassVar[int] = 8
+    last_joinings: ClassVar[int] = 6  # after the first evaluation
     list_sizes: ClassVar[Sizes] = Sizes(5, length=48, short=16, ends=256, share=32)
 
     def __init__(self, config: Architecture) -> None:
@@ -272,13 +268,13 @@ class OneActor(Actor):
         return (count > self.list_sizes.ends) & (self.list_sizes.share * count > n)
 
     def joined_to_one(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
-        """Join the few fragments of each row to one; the last two are joined the cheaper way.
+        """Join the few fragments of each row to one, the last five in the cheapest way.
 
         The network is evaluated once for each `joinings` joinings.
         """
         while bool((fragments.left > ENOUGH).any()):
             fragments = self.round_of_few(costs, fragments, joinings).trimmed()
-        return last_two_joined(costs, fragments)
+        return joined_to_one(costs, fragments)
 
     def rejoined(self, costs: Costs, fragments: Fragments) -> Fragments:
         """Join what a repair has left of each row to one fragment."""
@@ -286,11 +282,11 @@ class OneActor(Actor):
         return self.joined_to_one(costs, after.trimmed(), self.last_joinings)
 
     def round_of_few(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
-        """Return the fragments after a round in rows in which more than two are left."""
+        """Return the fragments after joinings in rows in which more are left than are closed."""
         more = (fragments.left > ENOUGH)[:, None]
         to_join = fragments._replace(open=fragments.open & more)
         candidates = cheapest_candidates(costs, to_join, self.candidates)
-        return self.round(costs, fragments, candidates, joinings)
+        return self.round(costs, fragments, candidates, joinings, ENOUGH)
 
     def round(
         self,
@@ -298,16 +294,24 @@ class OneActor(Actor):
         fragments: Fragments,
         candidates: Candidates,
         joinings: int,
+        enough: int = 1,
     ) -> Fragments:
-        """Return the fragments after joining them, `joinings` times, by the best of these edges."""
+        """Return the fragments after joining them, `joinings` times, by the best of these edges.
+
+        After the first time, rows with no more than `enough` fragments stay as they are.
+        """
         logits = self.edge_logits(costs, fragments, candidates)
         mates = [mutual_best(fragments, candidates.positions, logits)]
         growing = [fragments, grown_at_cost(costs, fragments, mates[0])]
+        left = fragments.left
         for _ in range(joinings - 1):
             after = growing[-1]
+            if enough > 1:
+                left = left - (mates[-1] >= 0).sum(dim=1) // 2
+                after = after._replace(open=after.open & (left > enough)[:, None])
             logits = without_impossible(logits, no_more_possible(candidates, fragments, after))
             mates.append(mutual_best(after, candidates.positions, logits))
-            growing.append(grown_at_cost(costs, after, mates[-1]))
+            growing.append(grown_at_cost(costs, growing[-1], mates[-1]))
         return linked(growing, mates)
 
     def judgement(self, joinings: int) -> Judgement:

@@ -11,12 +11,10 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from models.networks.joining.candidates import joined_at_cost
 from models.networks.joining.costs import Costs, Problem, along, costs_between, weighted_sums
 from models.networks.joining.fragments import Fragments
 from models.networks.joining.walks import begun, closed_neighbours, doubled, places_on_tours
 
-ENOUGH = 2  # fragments, which are joined the cheaper way
 _DOUBLINGS = 6  # of the edges that an end sees ahead: enough for 64 ends
 
 
@@ -80,53 +78,6 @@ def _leans(
     until = (onwards.cumsum(dim=1) - onwards).gather(1, columns) + prices.tilts.gather(1, cities)
     alone, first, last = until.tensor_split(3, dim=1)
     return torch.cat((torch.zeros_like(alone), last - first, first - last), dim=1)
-
-
-def last_two_joined(costs: Costs, fragments: Fragments) -> Fragments:
-    """Return one fragment for each row: where two are left, join them the cheaper of two ways.
-
-    Open ends must come first.
-    """
-    partners, open_, left = fragments.partners, fragments.open, fragments.left
-    one = torch.zeros_like(partners[:, :1])  # a position
-    across = partners[:, :1]
-    index = torch.arange(partners.shape[1], device=partners.device)
-    beyond = (open_ & (index != one) & (index != across)).long().argmax(dim=1, keepdim=True)
-    others = torch.cat((beyond, partners.gather(1, beyond)), dim=1)
-    ways = _costs_of_joining(costs, fragments, (one, across), others)
-    # Both ways of joining one city are the same tour, and rounding must not choose where it starts.
-    way = torch.where(across == one, 0, ways.argmin(dim=1, keepdim=True))
-    mate = others.gather(1, way)
-    mates = torch.where(left[:, None] > 1, torch.cat((mate, one), dim=1), -1)
-    both = torch.full_like(partners, -1).scatter(1, torch.cat((one, mate), dim=1), mates)
-    return joined_at_cost(costs, fragments, both)
-
-
-def _costs_of_joining(
-    costs: Costs,
-    fragments: Fragments,
-    ends: tuple[Int[Tensor, "r 1"], Int[Tensor, "r 1"]],
-    others: Int[Tensor, "r 2"],
-) -> Float[Tensor, "r 2"]:
-    """Return the cost of a tour of two fragments, up to a constant, by the mate of the first end.
-
-    The mate is one of the others; the second end is joined to the other one of them.
-    """
-
-    def entries(table: Tensor, start: Tensor, stop: Tensor) -> Float[Tensor, "r 2"]:
-        cities = fragments.ends
-        steps = cities.gather(1, start) * table.shape[2] + cities.gather(1, stop)
-        return table.flatten(1).gather(1, steps)
-
-    one, across = ends
-    flipped = others.flip(1)
-    means = entries(costs.means, one, others) + entries(costs.means, across, flipped)
-    if costs.leans is None or fragments.leans is None:
-        return means
-    # From the first end to its mate, through the other fragment, and back to the second end.
-    leans = entries(costs.leans, one, others) - entries(costs.leans, across, flipped)
-    paths = fragments.leans.gather(1, one) + fragments.leans.gather(1, flipped)
-    return means - (leans - paths).abs()
 
 
 def laid_out(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r n"]:

@@ -8,9 +8,10 @@ from torch import Generator, Tensor
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
 from models.networks.joining.candidates import joined_at_cost, single_cities
+from models.networks.joining.closing import joined_to_one
 from models.networks.joining.costs import Planes, Problem, padded_matrices
 from models.networks.joining.fragments import first_open, joined
-from models.networks.joining.repairs import cut, laid_out, last_two_joined, repair_problem
+from models.networks.joining.repairs import cut, laid_out, repair_problem
 from models.networks.joining.walks import tours_from
 from models.networks.pa_one import OneActor
 from tests.helpers.small_actors import CPU, small_actor
@@ -51,7 +52,7 @@ def test_two_fragments_are_joined_the_cheaper_way() -> None:
     plane = torch.tensor([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
     costs = Problem(Planes(plane.repeat(1, 2)), torch.tensor([[0.5, 0.5]])).tables
     sides = joined(single_cities(costs), torch.tensor([[2, 3, 0, 1]]))
-    whole = last_two_joined(costs, sides)
+    whole = joined_to_one(costs, sides)
     tour = tours_from(whole, first_open(whole))[0]
     assert steps_of(tour) == {frozenset(e) for e in ((0, 1), (1, 3), (3, 2), (2, 0))}
 
@@ -64,8 +65,6 @@ def test_rounding_does_not_choose_where_a_tour_starts() -> None:
     assert pair.leans is not None
     last_ends = set()
     for error in (-1e-6, 1e-6):
-        whole = last_two_joined(
-            costs, pair._replace(leans=pair.leans + torch.tensor([0, error, 0]))
-        )
+        whole = joined_to_one(costs, pair._replace(leans=pair.leans + torch.tensor([0, error, 0])))
         last_ends.add(tuple(whole.open[0].tolist()))
     assert last_ends == {(True, False, True)}
