@@ -147,15 +147,38 @@ def _reductions_of_tables() -> Iterator[None]:
 def inlined(model: ModelProto, functions: Sequence[FunctionProto]) -> ModelProto:
     """Return the model with each function inlined, and all weights in the outermost graph.
 
-    The lines of source that nodes come from are left out: they are four fifths of a file.
+    Equal weights are there once. The lines of source that nodes come from are left out: they are
+    four fifths of a file.
     """
     model.functions.extend(functions)
     for function in model.functions:
         for node in function.node:
             del node.metadata_props[:]
     model = inliner.inline_local_functions(model)
-    model.graph.initializer.extend(_taken_out(model.graph))
+    kept: dict[bytes, TensorProto] = {}
+    names = {}
+    for constant in _taken_out(model.graph):
+        names[constant.name] = kept.setdefault(_content(constant), constant).name
+    model.graph.initializer.extend(kept.values())
+    _rename(model.graph, names)
     return model
+
+
+def _content(constant: TensorProto) -> bytes:
+    """Return the bytes of a constant without its name."""
+    unnamed = TensorProto()
+    unnamed.CopyFrom(constant)
+    unnamed.ClearField("name")
+    return unnamed.SerializeToString()
+
+
+def _rename(graph: GraphProto, names: Mapping[str, str]) -> None:
+    """Give the inputs of all nodes of a graph and its subgraphs new names."""
+    for node in graph.node:
+        node.input[:] = [names.get(name, name) for name in node.input]
+        for attribute in node.attribute:
+            if attribute.type == AttributeProto.GRAPH:
+                _rename(attribute.g, names)
 
 
 def _taken_out(graph: GraphProto) -> list[TensorProto]:

@@ -8,11 +8,11 @@ from export.pa_one_names import Names
 from export.repairs import Rejoin, as_problem, as_tensors, left_of, nearly_solved, present
 from models.data.preferences import weights
 from models.networks.joining.candidates import cheaper_starts
+from models.networks.joining.closing import joined_to_one
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import Costs, Matrices, Problem
 from models.networks.joining.fragments import Fragments, all_alone, cleared
 from models.networks.joining.prices import prices_of
-from models.networks.joining.repairs import last_two_joined
 from models.networks.joining.shortlists import RowLists, first_of, own_lists, own_lists_of
 from models.networks.joining.walks import (
     Walks,
@@ -105,7 +105,7 @@ class _Finish(nn.Module):
         between: tuple[Tensor, ...],
         solved: tuple[Tensor, ...],
     ) -> tuple[Tensor, ...]:
-        whole = last_two_joined(Costs(*between), Fragments(*solved))
+        whole = joined_to_one(Costs(*between), Fragments(*solved))
         tours = expanded(Fragments(*fragments), whole)
         walks = begun_at(tours, cheaper_starts(as_problem(given), tours))
         return *walks, end_out_of_sight(walks)

@@ -5,16 +5,10 @@ from torch import Tensor, nn
 
 from export.onnx_parts import Part
 from export.pa_one_names import CUTS, STATE, Names
+from models.networks.joining.closing import ENOUGH, joined_to_one
 from models.networks.joining.costs import Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.fragments import Fragments, cleared
-from models.networks.joining.repairs import (
-    ENOUGH,
-    Cuts,
-    cut,
-    laid_out,
-    last_two_joined,
-    repair_problem,
-)
+from models.networks.joining.repairs import Cuts, cut, laid_out, repair_problem
 from models.networks.joining.shortlists import RowLists, Shortlists
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import (
@@ -88,7 +82,7 @@ class Keep(nn.Module):
         joined: tuple[Tensor, ...],
     ) -> tuple[Tensor, ...]:
         """Return the state after this repair; the cut cities come before the cuts."""
-        whole = last_two_joined(Costs(*between), Fragments(*joined))
+        whole = joined_to_one(Costs(*between), Fragments(*joined))
         tours = laid_out(Cuts(*cuts[1:]), whole)
         return state_after_repair(as_costs(tables), rows, RepairState(*state), cuts[0], tours)
 
