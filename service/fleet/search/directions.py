@@ -38,13 +38,14 @@ _ANY_START = 0.25  # share of those under three objectives that start from a ran
 _BELOW = 0.95  # how far below the least longest route limits go
 
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
-# to find one vehicle less, for the fewest, and for any number; and the chance of the fewest after
-# that. Where few vehicles are full, only a hotter search gets from one plan to the next, and one
-# that may leave a stop out for a while.
-_DESCENT, _AT_FEWEST, _AT_ANY = 0.07, (0.3, 0.4), 0.5
+# to shorten the first plan, to find one vehicle less, for the fewest, and for any number; and the
+# chance of the fewest after that. Where few vehicles are full, only a hotter search gets from one
+# plan to the next, and one that may leave a stop out for a while.
+_SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, 0.5, 0.6
 _ATTEMPTS = 4  # at one vehicle less
 _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
+_COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
 
 _LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
 
@@ -141,13 +142,13 @@ class Directions:
 
     def _by_vehicles(self) -> Iterator[Step]:
         """Yield directions to the fewest vehicles, and to the least length with each number."""
+        yield self._at_most(inf, self._share(_SHORTEN))
         now, failed = self._ends()[0], 0
         while self._fewest < now and failed < _ATTEMPTS:
             yield replace(self._at_most(now - 1, self._share(_DESCENT)), ends_whole=True)
             found = self._ends()[0]
             now, failed = found, failed + 1 if found == now else 0
-        for share in _AT_FEWEST:
-            yield self._at_most(now, self._share(share))
+        yield self._at_most(now, self._share(_AT_FEWEST))
         yield self._at_most(inf, self._share(_AT_ANY))
         fewest, greatest = self._ends()
         for limit in range(greatest - 1, fewest, -1):
@@ -306,11 +307,20 @@ class Directions:
         if any_start and len(points):
             start = int(self._random.integers(len(points)))
         ruins = max(1.0, rounds * self._per_stop)
-        hotter = _HOTTER if self._counts_vehicles else 1.0
+        hotter = self._hotter(limits)
         heat, cooled = min(_HOTTEST, _HEAT * ruins**_POWER), hotter * unit * _COLDEST
         heat = max(hotter * unit * heat, 2 * cooled)
         direction = self._direction(weights, limits, bounds, unit)
         return Step(direction, start, rounds, heat, cooled)
+
+    def _hotter(self, limits: dict[int, float]) -> float:
+        """Return how many times as hot a search is where vehicles are counted."""
+        if not self._counts_vehicles:
+            return 1.0
+        if limits.get(self._by_limit.index(True), inf) < self._roomy:
+            return _HOTTER
+        colder = min(1.0, _COOLER_STOPS / len(self._rules.clients))
+        return max(1.0, _HOTTER * colder**0.5)
 
     def _direction(
         self, weights: Array, limits: dict[int, float], bounds: Array, unit: float
