@@ -25,23 +25,18 @@ def add_loads(
         return
     if "capacity" in columns.fields:
         found = _columns_of(columns, "capacity", visits, demands)
-        for row, vehicle in enumerate(vehicles):
-            amounts = [columns.tried(_IF_WRONG, columns.amount, row, at) for at in found]
-            vehicle["capacity"] = [int(amount * units) for amount in amounts]
+        capacities = [_capacity(columns, row, found, units) for row in range(len(vehicles))]
     else:
-        _hold_all(columns, vehicles, all_demand(stops))
-    if "initial_load" in columns.fields:
-        found = _columns_of(columns, "initial_load", visits, demands)
-        for row, vehicle in enumerate(vehicles):
-            _add_initial_load(columns, row, found, vehicle, units)
-
-
-def _hold_all(columns: Columns, vehicles: list[Vehicle], demand: list[int]) -> None:
-    """Let each vehicle hold all demand, and note it."""
-    text = f"No column has a capacity: each vehicle holds all demand, {numbers(demand)}."
-    columns.source.note("vehicle", text)
-    for vehicle in vehicles:
-        vehicle["capacity"] = demand
+        demand = all_demand(stops)
+        text = f"No column has a capacity: each vehicle holds all demand, {numbers(demand)}."
+        columns.source.note("vehicle", text)
+        capacities = [demand] * len(vehicles)
+    carries = "initial_load" in columns.fields
+    found = _columns_of(columns, "initial_load", visits, demands) if carries else []
+    for row, (vehicle, capacity) in enumerate(zip(vehicles, capacities, strict=True)):
+        vehicle["capacity"] = capacity
+        if load := _initial_load(columns, row, found, capacity, units):
+            vehicle["initial_load"] = load
 
 
 def _columns_of(columns: Columns, field: str, visits: Columns, demands: list[int]) -> list[int]:
@@ -60,18 +55,23 @@ def _columns_of(columns: Columns, field: str, visits: Columns, demands: list[int
     return found
 
 
-def _add_initial_load(
-    columns: Columns, row: int, found: list[int], vehicle: Vehicle, units: int
-) -> None:
-    """Add the load on board at the start, where a field has one."""
+def _capacity(columns: Columns, row: int, found: list[int], units: int) -> list[int]:
+    amounts = [columns.tried(_IF_WRONG, columns.amount, row, at) for at in found]
+    return [int(amount * units) for amount in amounts]
+
+
+def _initial_load(
+    columns: Columns, row: int, found: list[int], capacity: list[int], units: int
+) -> list[int]:
+    """Return the load on board at the start; nothing if no field has one."""
     filled = [at for at in found if columns.text(row, at)]
     if not filled:
-        return
+        return []
     load = [
         columns.tried(0.0, columns.amount, row, at) * units if at in filled else 0.0 for at in found
     ]
-    for at, loaded, most in zip(found, load, vehicle["capacity"], strict=True):
+    for at, loaded, most in zip(found, load, capacity, strict=True):
         if loaded > most:
             came = f"{loaded / units:g}"
             columns.refuse(row, at, "load-over-capacity", limit=most / units, came=came)
-    vehicle["initial_load"] = [int(each) for each in load]
+    return [int(each) for each in load]

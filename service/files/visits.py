@@ -1,9 +1,9 @@
 """Read the columns of a table that are about visits: demands, times, skills, vehicles, prizes."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Literal, cast
 
 import numpy as np
 
@@ -11,8 +11,9 @@ from service.files.cells.durations import read_units
 from service.files.cells.times import recognise_hours, seconds_in, spans_in
 from service.files.column_names import WINDOWS
 from service.files.columns import Columns
-from service.files.fleets import Stop, spans
+from service.files.fleets import Stop, add_windows
 
+_Member = Literal["service", "due", "release", "skills", "vehicle", "prize", "urgency"]
 _SEPARATOR = re.compile(r"[;|,]")  # between skills or ids
 _AROUND_TEXT = " []{}\"'"  # as Python and JSON write lists
 _MOST = 1e6  # the largest demand
@@ -30,7 +31,7 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
         recognise_hours(columns)
         read_units(columns)
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
-    readers: Mapping[str, Callable[[int, int], Any]] = {
+    readers: Mapping[_Member, Callable[[int, int], Any]] = {
         "service": partial(seconds_in, columns),
         "due": partial(seconds_in, columns),
         "release": partial(seconds_in, columns),
@@ -40,30 +41,21 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
         "urgency": columns.amount,
     }
     for name, read in readers.items():
-        if (at := columns.find(name)) is not None:
-            for row in columns.filled(at):
-                value = columns.tried(None, read, row, at)
-                if value is not None:
-                    stops[row][name] = value
-    _add_wanted(columns, stops)
+        for row, value in columns.values(name, read):
+            stops[row][name] = value
+    for row, pair in columns.values("due_from", partial(_wanted_and_due, columns, stops)):
+        stops[row]["due"] = pair
     for row, stop in enumerate(stops):
-        stop |= spans("window", spans_in(columns, row, WINDOWS))
+        add_windows(stop, spans_in(columns, row, WINDOWS))
     return _add_demands(columns, demands, stops) if demands else 1
 
 
-def _add_wanted(columns: Columns, stops: list[Stop]) -> None:
-    """Make pairs of when visits are due: from the time in a column of its own."""
-    at = columns.find("due_from")
-    if at is not None:
-        for row in columns.filled(at):
-            columns.tried(None, _make_pair, columns, stops[row], row, at)
-
-
-def _make_pair(columns: Columns, stop: Stop, row: int, at: int) -> None:
-    wanted, due = seconds_in(columns, row, at), stop.get("due")
+def _wanted_and_due(columns: Columns, stops: Sequence[Stop], row: int, at: int) -> list[float]:
+    """Return from when on a visit is wanted, and when it is due."""
+    wanted, due = seconds_in(columns, row, at), cast(float | None, stops[row].get("due"))
     if due is None or due < wanted:
         raise columns.refuse(row, at, "wanted-not-before-due", came=columns.text(row, at))
-    stop["due"] = [wanted, due]
+    return [wanted, due]
 
 
 def texts_in(columns: Columns, row: int, at: int) -> list[str]:

@@ -78,9 +78,3 @@ def load_of_jobs(problem: Mapping[str, Any]) -> str:
         return "delivery"
     brought = any(each.get("delivery") or each.get("amount") for each in jobs)
     return "delivery" if brought or problem.get("shipments") else "pickup"
-
-
-def pickup_of(job: Mapping[str, Any], load: str) -> dict[str, Any]:
-    """Return what a job puts on board as a member of a stop, unless that is its demand."""
-    taken = job.get("pickup")
-    return {"pickup": taken} if load == "delivery" and taken not in (None, []) else {}
