@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from service.errors.printable import printable
+from service.errors.printable import printable, shortened
 from service.files.cells.dates import Calendar, are_days
 from service.files.cells.ids import are_names, is_list_of_cities, numbered
 from service.files.cells.signs import decimals_of, is_number, is_numeric, with_plain_numbers
@@ -250,8 +250,9 @@ class Columns:
         pairs = [(each.name, each.taken_for) for each in self.source.columns]
         used = [f"{quoted(name)} ({field})" for name, field in pairs if field not in _UNUSED]
         unused = [quoted(name) for name, field in pairs if field in _UNUSED]
-        not_used = f" Not used: {_listed(unused)}." if unused else ""
-        self.source.note("columns", f"Columns were taken for: {_listed(used)}.{not_used}")
+        not_used = f" Not used: {shortened(unused, _MOST_NAMED)}." if unused else ""
+        text = f"Columns were taken for: {shortened(used, _MOST_NAMED)}.{not_used}"
+        self.source.note("columns", text)
         for at, taken_for in enumerate(self.fields):
             if taken_for is None and are_days(self.table.texts(at)):
                 name = quoted(self.names[at])
@@ -267,12 +268,6 @@ class Columns:
                 short = [printable(" ".join(text.split()))[:_LONGEST_DETAIL] for text in texts]
                 by_id = dict(zip(ids, short, strict=True))
                 self.source.details.append((printable(name)[:LONGEST_NAME], by_id))
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return the first names for a sentence, and how many more there are."""
-    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-    return f"{', '.join(names[:_MOST_NAMED])}{more}"
 
 
 def columns_of(source: Source, table: Table) -> Columns:

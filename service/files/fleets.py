@@ -14,6 +14,7 @@ from paretour.member_parts import (
 )
 from paretour.members import FleetRequest
 
+from service.errors.printable import shortened
 from service.files.reading import Source, quoted
 from service.roads.great_circle import great_circle_distances
 
@@ -207,5 +208,4 @@ def distinct(texts: Iterable[str]) -> list[str]:
 
 def listed(texts: Sequence[str]) -> str:
     """Return the first texts for a sentence, and how many more there are."""
-    more = f" and {len(texts) - _MOST_NAMED} more" if len(texts) > _MOST_NAMED else ""
-    return ", ".join(quoted(each) for each in texts[:_MOST_NAMED]) + more
+    return shortened([quoted(each) for each in texts], _MOST_NAMED)

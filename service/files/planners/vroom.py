@@ -1,11 +1,13 @@
 """Read problems of VROOM, in the JSON of its API: jobs, shipments and vehicles."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from paretour.member_parts import BreakRequest
 
+from service.files.cells.ids import each_once
 from service.files.fleets import (
     ENDS,
     Shipment,
@@ -17,6 +19,7 @@ from service.files.fleets import (
     without,
     without_empty,
 )
+from service.files.json_files.records import is_number
 from service.files.places import check_range
 from service.files.planners.vroom_costs import objectives_of
 from service.files.planners.vroom_members import note_others
@@ -149,13 +152,10 @@ def _vehicles(problem: _Problem, value: dict[str, Any]) -> list[Vehicle]:
 
 def _number_same(source: Source, vehicles: list[Vehicle]) -> None:
     """Number vehicles that share an id, as VROOM allows for the shifts of one vehicle."""
-    seen: dict[str, int] = {}
-    for vehicle in vehicles:
-        name = vehicle["id"]
-        seen[name] = seen.get(name, 0) + 1
-        if seen[name] > 1:
-            vehicle["id"] = f"{name} ({seen[name]})"
-    if shared := [name for name, count in seen.items() if count > 1]:
+    given = [each["id"] for each in vehicles]
+    for vehicle, name in zip(vehicles, each_once(given), strict=True):
+        vehicle["id"] = name
+    if shared := [name for name, count in Counter(given).items() if count > 1]:
         named = ", ".join(map(quoted, shared[:3]))
         source.note("ids", f"Vehicles that share an id were numbered, as {named}.")
 
@@ -194,7 +194,7 @@ def _breaks(source: Source, vehicle: dict[str, Any], where: str) -> list[BreakRe
             source.note("left-out", _NO_BREAKS)
             continue
         part = f"{where}/breaks/{index}"
-        if not _are_numbers([length], 1):
+        if not is_number(length):
             raise source.refusal("no-seconds", f"{part}/service", came=length)
         window = _window(source, windows[0], f"{part}/time_windows/0")
         found.append((window, length))
@@ -252,8 +252,4 @@ def _window(source: Source, window: Any, where: str) -> list[float]:
 
 
 def _are_numbers(value: Any, count: int) -> bool:
-    return (
-        isinstance(value, list)
-        and len(value) == count
-        and all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
-    )
+    return isinstance(value, list) and len(value) == count and all(map(is_number, value))

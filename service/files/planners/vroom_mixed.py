@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, cast
 
 from service.files.fleets import Objective, Vehicle
+from service.files.json_files.records import is_number
 from service.files.planners.vroom_members import note_unused
 from service.files.reading import Source
 
@@ -116,4 +117,4 @@ def _rounded(price: float) -> float:
 
 def is_cost(value: Any) -> bool:
     """Return whether a value is a number from 0."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0
+    return is_number(value) and bool(value >= 0)
