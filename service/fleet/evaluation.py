@@ -6,12 +6,12 @@ Every plan is checked with this code, which shares nothing with the engine that 
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from itertools import accumulate
 from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
+from service.fleet.carried import load_distance, loads_on
 from service.fleet.fleet import Array, Fleet
 from service.fleet.of_times import OF_TIMES, changes
 from service.fleet.overlap import overlap
@@ -209,18 +209,6 @@ def cost_length(fleet: Fleet, route: Route, layer: int) -> float:
     return sum(legs(fleet, route, layer))
 
 
-@lru_cache(REMEMBERED)
-def load_distance(fleet: Fleet, route: Route) -> float:
-    """Return the sum over the legs of the first costs times the load, in its first dimension."""
-    vehicle = fleet.rules.vehicles[route.vehicle]
-    first, *others = trips_of(fleet.rules, route)
-    # The loads before and after each stop. Open routes have no leg at that end.
-    loads = [*_loads(fleet.rules, first, 0, vehicle.initial_load)]
-    loads += [load for trip in others for load in _loads(fleet.rules, trip, 0, ())]
-    loads = loads[vehicle.start is None : len(loads) - (vehicle.end is None)]
-    return sum(cost * load for cost, load in zip(legs(fleet, route, 0), loads, strict=True))
-
-
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
     visits = Counter(
         stop for route in plan.routes for trip in trips_of(rules, route) for stop in trip
@@ -345,38 +333,5 @@ def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:
     for dimension, capacity in enumerate(vehicle.capacity):
         for number, trip in enumerate(trips):
             first = vehicle.initial_load if number == 0 else ()
-            if (most := max(_loads(rules, trip, dimension, first))) > capacity:
+            if (most := max(loads_on(rules, trip, dimension, first))) > capacity:
                 yield Broken("capacity", f"holds {most} of {capacity}")
-
-
-def most_carried(rules: Rules, route: Route) -> list[int]:
-    """Return the most that a vehicle carries at a time on its route, in each dimension."""
-    first = rules.vehicles[route.vehicle].initial_load
-    trips = list(enumerate(trips_of(rules, route)))
-    return [
-        max(max(_loads(rules, trip, each, () if number else first)) for number, trip in trips)
-        for each in range(rules.dimensions)
-    ]
-
-
-def _loads(
-    rules: Rules, trip: Sequence[int], dimension: int, initial_load: Sequence[int]
-) -> Iterator[int]:
-    """Return the load on a trip in one dimension, at its start and after each visit.
-
-    At the start it is the demand of all stops that are not in shipments, and the initial load,
-    which stays on board, as do the pick-ups of stops.
-    """
-    pickups = {each.delivery: each.pickup for each in rules.shipments}
-
-    def change(stop: int) -> int:
-        demand = rules.visits[pickups.get(stop, stop)].demand
-        load = demand[dimension] if demand else 0
-        taken = rules.visits[stop].pickup
-        on = taken[dimension] if taken else 0
-        return load if stop in rules.shipped and stop not in pickups else on - load
-
-    demands = [rules.visits[stop].demand for stop in trip if stop not in rules.shipped]
-    brought = sum(demand[dimension] for demand in demands if demand)
-    brought += initial_load[dimension] if initial_load else 0
-    return accumulate(map(change, trip), initial=brought)

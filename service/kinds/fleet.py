@@ -9,10 +9,10 @@ from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import Fault, NoTour, Refusal
+from service.fleet.carried import most_carried
 from service.fleet.evaluation import (
     first_broken,
     measures,
-    most_carried,
     plan_lengths,
     route_lengths,
     unassigned,

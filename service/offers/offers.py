@@ -12,11 +12,11 @@ from typing import get_args
 
 import numpy as np
 
+from service.fleet.carried import load_distance
 from service.fleet.evaluation import (
     Broken,
     first_broken,
     joined_lengths,
-    load_distance,
     plan_lengths,
     route_lengths,
 )
