@@ -279,8 +279,8 @@ class Fleet:
 
         It is the largest leg, of lateness and earliness by the clock and of imbalance in the costs
         by which routes are compared; otherwise one vehicle, one change, the overlap of a mean stop,
-        the largest prize, the most overtime of a vehicle, the largest leg with the largest
-        capacity, or with the sum of all urgencies.
+        one late visit, the largest prize, the most overtime of a vehicle, the largest leg with the
+        largest capacity, or with the sum of all urgencies.
         Times are those of the slowest vehicle, and the first unit is at the highest prices.
         """
         rules = self.rules
@@ -304,7 +304,7 @@ class Fleet:
     def _unit(self, over: Over | Measure, layer: int) -> float:
         legs, rules = self._slowest_legs, self.rules
         match over:
-            case "vehicles" | "changes":
+            case "vehicles" | "changes" | "on_time":
                 return 1.0
             case "overlap":
                 return 1.0 / max(1, len(rules.clients))

@@ -24,7 +24,7 @@ from service.requests.fields import (
     without_default,
 )
 from service.requests.profile_fields import OF_PROFILES, ProfileCostsItem
-from service.requests.spread_fields import SpreadOfTimes
+from service.requests.spread_fields import Percentile, SpreadOfTimes
 from service.requests.stop_fields import NamedStop, StopReference, find_index
 from service.requests.validation import nearest
 
@@ -368,13 +368,18 @@ class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
         " distance, the first costs of each leg times the load; the overlap, from 0 to 1, which is"
         " the share of neighbours that do not ride with each other, weighted by nearness; or the"
         " changes: how many stops of the plan in `promised` are left out, or visited by another"
-        " vehicle or later than with its tolerance",
+        " vehicle or later than with its tolerance; or, where times have a `spread`, on_time: how"
+        " many visits are late on an average day",
     )
     over: Over = Field(
         default="sum",
         json_schema_extra=without_default,
         description="of costs: whether the length of a plan is the sum over its routes, as by"
         " default, or the longest route; max for one objective at most",
+    )
+    percentile: Percentile | None = optional(
+        "of the clock's times, if they have a `spread`: the length of a plan is what so many days"
+        " of a hundred do not exceed, such as 90; by default it is that of a day as planned"
     )
 
 

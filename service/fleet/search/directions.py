@@ -16,6 +16,7 @@ import numpy as np
 
 from service.fleet.fleet import Array, Fleet
 from service.fleet.necessary import fewest_vehicles
+from service.fleet.punctuality import deviations_of
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -328,15 +329,23 @@ class Directions:
         """Return a direction with weights, shape (m,), and limits and bounds."""
         costs = np.zeros(OBJECTIVES)
         by_measure = dict.fromkeys(self._over, 0.0)
-        longest, routes, penalty = inf, 2**31, 0.0
+        longest, most, routes = inf, inf, 2**31
+        penalty = most_penalty = mean = deviation = 0.0
         for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
-            if over == "sum" and not (index == 0 and self._rules.priced):
+            percent = self._rules.percent(index)
+            if over == "sum" and percent is not None:
+                mean += float(weights[index])
+                deviation += float(weights[index]) * deviations_of(percent)
+            elif over == "sum" and not (index == 0 and self._rules.priced):
                 costs[layer] += weights[index]
             elif over == "max":
                 # Where only the longest route counts, a plan of short routes is a good start.
                 costs[layer] += _LESSER * weights[index]
-                longest = limits.get(index, inf)
-                penalty = _STRICT * unit / self._scale[index]
+                limited = limits.get(index, inf), _STRICT * unit / self._scale[index]
+                if percent is None:
+                    longest, penalty = limited
+                else:
+                    most, most_penalty = limited
             elif over == "vehicles":
                 routes = max(0, int(limits.get(index, routes)))
             by_measure[over] = float(weights[index])
@@ -354,8 +363,14 @@ class Directions:
             arrival=by_measure.get("weighted_arrival", 0.0),
             overlap=by_measure.get("overlap", 0.0),
             changes=by_measure.get("changes", 0.0),
+            late=by_measure.get("on_time", 0.0),
+            mean=mean,
+            deviation=deviation,
+            variance=0.0,
             longest=longest,
             penalty=penalty,
+            most=most,
+            most_penalty=most_penalty,
             beyond=0.0,
             required=(_CHEAP if self._counts_vehicles else _DEAR) * unit
             + float(weights[0]) * self._most_fixed,

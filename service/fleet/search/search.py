@@ -24,7 +24,14 @@ from service.fleet.search.problem import Nodes, Problem, loosened, problem_of
 from service.fleet.search.recreate import FAR, NEAR, RANDOM, SOON, insert_all, set_prices
 from service.fleet.search.rows import clear, load_row, write_point, write_row
 from service.fleet.search.ruin import limit_routes
-from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
+from service.fleet.search.spreading import weight_of_variance
+from service.fleet.search.working_plan import (
+    MISSING,
+    USED,
+    State,
+    make_working_plan,
+    total_cost,
+)
 from service.fleet.units import Units
 from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
@@ -231,6 +238,9 @@ class RuinSearch:
         else:
             row[:] = self._archives.plans.tours[self._rows[step.start]]
         load_row(state, row)
+        if step.direction.deviation > 0:
+            state = _by_variance(state)
+            load_row(state, row)
         limit_routes(state)
         set_prices(state)
         heat, done, most, ends = step.heat, 0, step.rounds, self._ends_of(step)
@@ -312,6 +322,13 @@ class RuinSearch:
         limit = selection_limit(self._options.time_limit)
         selected = selection_seconds(self._options.size, found, len(self._reference_point), limit)
         return self._pause + checked + explained + selected
+
+
+def _by_variance(state: State) -> State:
+    """Return a state whose direction weighs the variance of a plan in place of its deviation."""
+    direction, plan = state.direction, state.plan
+    weight = weight_of_variance(plan, direction.deviation, int(plan.counts[USED]))
+    return state._replace(direction=direction._replace(variance=weight))
 
 
 def _width(problem: Problem) -> int:
