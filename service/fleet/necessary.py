@@ -69,6 +69,28 @@ def least_lengths(fleet: Fleet) -> Array:
     return least / fastest
 
 
+def least_longest(fleet: Fleet) -> float:
+    """Return a length in the swept costs that the longest route of each plan has at least."""
+    rules = fleet.rules
+    if rules.swept is None:
+        return 0.0
+    there: dict[int | None, Array] = {None: np.zeros(rules.n)}
+    back = there.copy()
+    for vehicle in rules.vehicles:
+        if vehicle.start is not None and vehicle.start not in there:
+            there[vehicle.start] = fleet.least_paths(rules.swept, [vehicle.start])
+        if vehicle.end is not None and vehicle.end not in back:
+            back[vehicle.end] = fleet.least_paths(rules.swept, [vehicle.end], back=True)
+    required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
+    ways = []
+    for kind, vehicle in enumerate(rules.vehicles):
+        way = (there[vehicle.start] + back[vehicle.end]) / rules.speed(kind, rules.swept)
+        served = [rules.service(kind, stop) for stop in required]
+        ways.append(way[required] + (np.array(served) if rules.swept == rules.clock else 0.0))
+    alone = np.min(ways, axis=0)
+    return float(alone.max(initial=0.0, where=np.isfinite(alone)))
+
+
 def _required(rules: Rules) -> list[int]:
     """Return the required stops; a shipment counts as its pick-up alone."""
     deliveries = {each.delivery for each in rules.shipments}

@@ -15,7 +15,7 @@ from math import inf
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
-from service.fleet.necessary import fewest_vehicles
+from service.fleet.necessary import fewest_vehicles, least_longest
 from service.fleet.punctuality import deviations_of
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
@@ -100,7 +100,7 @@ class Directions:
         self._left = left
         self._per_stop = ruins / max(1, min(len(fleet.rules.clients), _HOT_STOPS))
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
-        self._bound = _least_longest(fleet)
+        self._bound = least_longest(fleet)
         optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
         self._by_limit = [over in _LIMITED for over in self._over]
         two = len(self._over) == OBJECTIVES and sum(self._by_limit) == 1
@@ -379,25 +379,3 @@ class Directions:
             bounds=bounds,
             strict=_STRICT * unit / self._scale,
         )
-
-
-def _least_longest(fleet: Fleet) -> float:
-    """Return a length in the swept costs that the longest route of each plan has at least."""
-    rules = fleet.rules
-    if rules.swept is None:
-        return 0.0
-    there: dict[int | None, Array] = {None: np.zeros(rules.n)}
-    back = there.copy()
-    for vehicle in rules.vehicles:
-        if vehicle.start is not None and vehicle.start not in there:
-            there[vehicle.start] = fleet.least_paths(rules.swept, [vehicle.start])
-        if vehicle.end is not None and vehicle.end not in back:
-            back[vehicle.end] = fleet.least_paths(rules.swept, [vehicle.end], back=True)
-    required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
-    ways = []
-    for kind, vehicle in enumerate(rules.vehicles):
-        way = (there[vehicle.start] + back[vehicle.end]) / rules.speed(kind, rules.swept)
-        served = [rules.service(kind, stop) for stop in required]
-        ways.append(way[required] + (np.array(served) if rules.swept == rules.clock else 0.0))
-    alone = np.min(ways, axis=0)
-    return float(alone.max(initial=0.0, where=np.isfinite(alone)))
