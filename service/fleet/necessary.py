@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import CityNames, NoTour, Obstacle, Refusal
+from service.fleet.costs import Day
 from service.fleet.evaluation import first_broken
 from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.groups import NO_GROUPS
@@ -260,15 +261,20 @@ def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     """Return whether no detour over a stop is shorter, in the costs that are bounded.
 
     False if legs are forbidden, since then a detour may be the only way to a stop, if some legs
-    become slower over the day than others, and if it ended before all detours were tried.
+    become slower over the day than others or the legs of a day are bounded by themselves, which
+    then depend on the departure, and if it ended before all detours were tried.
     """
     rules = fleet.rules
-    if fleet.forbids or (fleet.day is not None and fleet.day[rules.limited or 0].varies):
+    if fleet.forbids or (fleet.day is not None and _is_uneven(fleet.day, rules)):
         return False
     if fleet.lines:
         return True
     layers = {*rules.capped, *(() if rules.limited is None else (rules.limited,))}
     return all(_has_no_detours(fleet, layer, ended) for layer in layers)
+
+
+def _is_uneven(day: Day, rules: Rules) -> bool:
+    return bool(rules.capped) or day[rules.limited or 0].varies
 
 
 def _has_no_detours(fleet: Fleet, layer: int, ended: Callable[[], bool]) -> bool:

@@ -139,11 +139,6 @@ class VehicleType:
         return self.min_stops > 1 or self.shortest > 0
 
     @property
-    def is_capped(self) -> bool:
-        """Whether the legs of a route are bounded by themselves."""
-        return min(self.max_distance, self.max_driving) < inf
-
-    @property
     def way(self) -> Span:
         """The earliest departure, and the latest end with overtime."""
         return self.shift[0], self.shift[1] + self.max_overtime
