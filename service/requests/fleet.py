@@ -216,9 +216,6 @@ class FleetRequest(SearchFields):
         if named is not None:
             names = [item.name for item in self.objectives]
             check_in_seconds(named, "clock" if own else f"objectives/{names.index(named.name)}")
-        for index, item in enumerate(self.vehicles):
-            for name in item.limits_on_driving:
-                raise invalid(f"vehicles/{index}/{name}", "limit-over-the-day")
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
         """Return the groups of stops.
