@@ -135,6 +135,12 @@ def test_a_replanning_says_how_far_the_vehicles_are_and_what_has_changed(node: N
         {"route": 0, "done": ["A", "B"], "broken_down": True},
         {"route": 1, "done": ["C"], "leaves": 640},
     ]
+    limited = {**DRIVEN["routes"][0], "driving": [0, 20, 50, 80], "distance": [0, 2, 5, 9]}
+    known = {**driven, "routes": [limited, *DRIVEN["routes"][1:]]}
+    way, *_ = node.evaluate(BODY, [known, 575, [[3, 4], None], [], [], []])
+    [first] = way["routes"]
+    assert 20 < first["driving"] < 50
+    assert first["distance"] == 2 + (first["driving"] - 20) / 10
     by_costs, *_ = node.evaluate(BODY, [DRIVEN, 575, [[3, 4], None], [], [], []])
     assert by_costs["routes"] == [{"route": 0, "done": ["A"]}]
 

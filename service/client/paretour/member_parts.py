@@ -294,6 +294,8 @@ class RouteOnTheWayRequest(TypedDict, total=False):
     done: Sequence[int | str] | ArrayLike
     position: int | str | NewStopRequest | None
     leaves: float | None
+    distance: float | None
+    driving: float | None
     broken_down: bool
 
 
