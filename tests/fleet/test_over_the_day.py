@@ -81,7 +81,7 @@ def test_a_route_leaves_when_it_takes_the_least_time_and_nothing_is_later_for_it
 
 def test_what_is_driven_is_bounded_at_the_times_of_the_route() -> None:
     broken = tried = 0
-    for seed in range(third(60)):
+    for seed in range(third(120)):
         fleet = limited_day_fleet(seed)
         for route in routes_of(fleet, seed):
             clock = fleet.rules.clock
