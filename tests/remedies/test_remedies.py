@@ -66,6 +66,16 @@ def of_stops(request: dict[str, Any], *stops: int, **members: Any) -> dict[str, 
     return request
 
 
+def mixed(*capacities: int, **members: Any) -> dict[str, Any]:
+    """Return a request about vehicles that hold so much, and a truck, the last, with members."""
+    asked = request()
+    [van] = asked["vehicles"]
+    held = enumerate(capacities)
+    vehicles = [{**van, "id": f"van {number}", "capacity": [each]} for number, each in held]
+    vehicles[-1] |= {"id": "truck", **members}
+    return {**asked, "vehicles": vehicles}
+
+
 @pytest.fixture(scope="module", autouse=True)
 def loaded() -> None:
     """Load the compiled search, which must not be in the time of a trial."""
@@ -103,6 +113,11 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {
         {"leave-these-out": {"named": "stop 'stop-8'"}, "earlier-shifts": {"more": 30}},
     ),
     "short routes": (request(longest=12), {"longer-routes": {"share": 50}}),
+    "little driving": (request(max_driving=12, max_distance=100), {"longer-routes": {"share": 50}}),
+    "a mixed fleet": (
+        of_stops(mixed(*(3 for _ in range(4)), 9, max_stops=1), 1, 2, demand=[9]),
+        {"more-vehicles": {"vehicle": "truck", "before": 1}},
+    ),
     "few stops of a route": (request(max_stops=5), {"more-stops": {"more": 3}}),
     "a skill that nobody has": (
         of_stops(request(), 2, 3, skills=["lift"]),
