@@ -154,6 +154,15 @@ def test_the_vehicle_drives_that_was_asked_for(thread: str) -> None:
     assert [route["vehicle"] for route in planned(request)["routes"]] == [expected]
 
 
+def test_a_speed_is_of_times_alone() -> None:
+    """vroom#1248: it changes neither distances, nor limits on these, nor costs of their own."""
+    van = {"speed_factor": 0.5, "max_distance": 40, "max_driving": 80}
+    plan = planned(fleet({"job": {"at": FAR}}, van=van))
+    [route] = plan["routes"]
+    assert plan["lengths"] == route["lengths"] == [80, 40]
+    assert (route["distance"], route["driving"]) == ([0, 20, 40], [0, 40, 80])
+
+
 EMPTIES = {
     # Two stops are full of what comes back: the one that gives most is served last.
     "vroom#565": ({"demand": [1], "pickup": [4]}, {"demand": [3], "pickup": [2]}, ["east", "west"]),
