@@ -21,6 +21,7 @@ _OF_ORDERS = re.compile(
     "(?!total|order)(?:net|gross|delivery|shipment|lineitem|parcel|cargo)?"
     rf"{_AMOUNT}(?:load)?(\d?)|(?:order|total)(?!amount){_AMOUNT}(\d?)"
 )
+_OF_PICKUPS = re.compile(rf"(?:pickup|return|takesback|givesback|backhaul){_AMOUNT}s?(\d?)")
 _OF_CAPACITY = re.compile(rf"(?:max|maximum|capacity|initial|vehicle)?{_AMOUNT}(?:capacity)?(\d?)")
 # Windows and visits that are said in full, as `Delivery time slot start`, `Appointment end` and
 # `Transaction duration`.
@@ -125,9 +126,10 @@ def is_about_vehicles(heading: Sequence[str]) -> bool:
 
 
 def amount_of(name: str) -> str:
-    """Return the amount that a column of demands or capacities is about, as `weight`, or ""."""
+    """Return the amount that a column of loads or capacities is about, as `weight`, or ""."""
     plain = plain_name(name)
-    found = _OF_ORDERS.fullmatch(plain) or _OF_CAPACITY.fullmatch(plain)
+    patterns = (_OF_PICKUPS, _OF_ORDERS, _OF_CAPACITY)
+    found = next(filter(None, (each.fullmatch(plain) for each in patterns)), None)
     return "".join(filter(None, found.groups())) if found else ""
 
 
@@ -224,7 +226,7 @@ def _rank(
         found = of_place
     if found:
         return found[1:]
-    patterns = {"capacity": _OF_CAPACITY, "demand": _OF_ORDERS, **_IN_FULL}
+    patterns = {"capacity": _OF_CAPACITY, "pickup": _OF_PICKUPS, "demand": _OF_ORDERS, **_IN_FULL}
     for field, pattern in patterns.items():
         if field in fields and pattern.fullmatch(plain):
             return field, _LAST

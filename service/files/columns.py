@@ -332,8 +332,8 @@ def _name_rows(columns: Columns) -> None:
     if at is not None and plain_name(columns.names[at]) == "city":
         others = [texts[each] for each in range(table.width) if fields[each] is None]
         fields[at] = "id" if is_list_of_cities(texts[at], others) else None
-    for at, taken_for in enumerate(fields):
-        if taken_for == "demand" and any(texts[at]) and not _HAS_DIGITS.search("".join(texts[at])):
+    for at in (at for at, taken_for in enumerate(fields) if taken_for in ("demand", "pickup")):
+        if any(texts[at]) and not _HAS_DIGITS.search("".join(texts[at])):
             fields[at] = None  # such as the names of goods
     for at, name in enumerate(columns.names):
         if "id" not in fields and fields[at] == "place" and all(map(str.strip, texts[at])):

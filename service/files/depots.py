@@ -15,7 +15,7 @@ from service.files.fleets import (
     ENDS,
     Stop,
     Vehicle,
-    all_demand,
+    all_loads,
     distinct,
     in_shifts,
     listed,
@@ -44,7 +44,7 @@ _CUSTOMERS = {
 }
 _TIMES = ("service", "window", "windows", "due", "release")
 _OF_VISITS = ("service", "due", "release", "prize")
-_OF_ORDERS = (*_TIMES, "demand", "prize", "skills", "vehicle")
+_OF_ORDERS = (*_TIMES, "demand", "pickup", "prize", "skills", "vehicle")
 
 
 def depot_of(columns: Columns, stops: Sequence[Stop]) -> str | None:
@@ -72,11 +72,12 @@ def is_order(columns: Columns, stops: Sequence[Stop], row: int) -> bool:
 
 
 def _is_loaded(stop: Stop) -> bool:
-    return _has_demand(stop) or any(stop.get(name) for name in ("skills", "vehicle"))
+    return _has_load(stop) or any(stop.get(name) for name in ("skills", "vehicle"))
 
 
-def _has_demand(stop: Stop) -> bool:
-    return any(cast(Sequence[int], stop.get("demand", ())))
+def _has_load(stop: Stop) -> bool:
+    loads = (stop.get("demand", ()), stop.get("pickup", ()))
+    return any(any(cast(Sequence[int], each)) for each in loads)
 
 
 def _is_called_depot(columns: Columns, row: int) -> bool:
@@ -101,7 +102,7 @@ def _is_called_depot(columns: Columns, row: int) -> bool:
 def _is_horizon(stops: Sequence[Stop], row: int) -> bool:
     """Return whether a row alone has no demand, and no visit: its window is that of the depot."""
     others = [stop for at, stop in enumerate(stops) if at != row]
-    alone = bool(others) and all(map(_has_demand, others))
+    alone = bool(others) and all(map(_has_load, others))
     return alone and not any(stops[row].get(each) for each in _OF_VISITS)
 
 
@@ -219,7 +220,7 @@ def _without_orders(
             kept.append(stop)
             continue
         kept.append(without(stop, _OF_ORDERS))
-        lost = [name for name in _OF_ORDERS if stop.get(name) and name != "demand"]
+        lost = [name for name in _OF_ORDERS if stop.get(name) and name not in ("demand", "pickup")]
         if lost := [name for name in lost if name[:6] != "window" or stop["id"] not in used]:
             text = f"{quoted(stop['id'])} is a depot, so its {' and '.join(lost)} was not used."
             columns.source.note("depot", text)
@@ -243,7 +244,7 @@ def for_stops(
 
     Each vehicle starts at the depot, holds all demand and has all skills.
     """
-    demands = all_demand(stops)
+    demands = all_loads(stops)
     named = distinct(str(stop["vehicle"]) for stop in stops if "vehicle" in stop)
     skills = distinct(skill for stop in stops for skill in stop.get("skills", ()))
     vehicles: list[Vehicle] = [{"id": name} for name in named or ["vehicle"]]

@@ -113,10 +113,12 @@ def without_empty(form: Form) -> Form:
     return without(form, [name for name, value in form.items() if not value and name != "id"])
 
 
-def all_demand(stops: Sequence[Stop]) -> list[int]:
-    """Return the sum of the demands of stops."""
-    demands = np.array([stop["demand"] for stop in stops if "demand" in stop])
-    return [int(each) for each in demands.sum(axis=0)] if demands.size else []
+def all_loads(stops: Sequence[Stop]) -> list[int]:
+    """Return the sum of what stops get and give back."""
+    demands = [stop["demand"] for stop in stops if "demand" in stop]
+    pickups = [stop["pickup"] for stop in stops if "pickup" in stop]
+    loads = np.array([*demands, *pickups])
+    return [int(each) for each in loads.sum(axis=0)] if loads.size else []
 
 
 def fleet_request(
@@ -151,6 +153,8 @@ def fleet_of_tables(
         objectives = measured(source, have_times(stops, vehicles), stops)
         if any("per_distance" in vehicle for vehicle in vehicles):
             objectives[0]["name"] = "cost"
+        if any("profile" in vehicle for vehicle in vehicles):
+            objectives[0]["from"] = "road_distance"
     request = fleet_request(stops, vehicles, objectives)
     _measure(source, request, stops, vehicles)
     return request

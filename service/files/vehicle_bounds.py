@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Literal
 
+from service.errors.faults import show
 from service.files.cells.times import seconds_in
 from service.files.columns import Columns
 from service.files.fleets import Stop, Vehicle, in_shifts
@@ -18,6 +19,26 @@ def add_skills(columns: Columns, vehicles: list[Vehicle]) -> None:
     """Add what vehicles are able to do."""
     for row, skills in columns.values("skills", partial(texts_in, columns)):
         vehicles[row]["skills"] = skills
+
+
+def add_profiles(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
+    """Add the profiles by which vehicles drive by road; leave them out where nothing knows them.
+
+    A field that is no profile of the routing engine is kept as wrong.
+    """
+    known = columns.source.bounds.profiles
+    if not known or not located:
+        columns.leave_out("profile", " without profiles of a routing engine")
+    for row, profile in columns.values("profile", partial(_profile, columns)):
+        vehicles[row]["profile"] = profile
+
+
+def _profile(columns: Columns, row: int, at: int) -> str:
+    profile, known = " ".join(columns.text(row, at).split()), columns.source.bounds.profiles
+    if profile not in known:
+        names = " or ".join(map(show, known))
+        raise columns.refuse(row, at, "not-a-road-profile", names=names, came=profile)
+    return profile
 
 
 def check_servers(

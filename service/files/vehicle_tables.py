@@ -30,7 +30,13 @@ from service.files.groups import groups_of
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
-from service.files.vehicle_bounds import add_bounds, add_skills, add_times, check_servers
+from service.files.vehicle_bounds import (
+    add_bounds,
+    add_profiles,
+    add_skills,
+    add_times,
+    check_servers,
+)
 from service.files.vehicle_loads import add_loads
 from service.files.visits import add_visits, texts_in
 
@@ -77,6 +83,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     add_bounds(columns, vehicles)
     paid = plane is None and columns.find("per_hour") is not None
     clock = have_times(stops, vehicles) or paid
+    add_profiles(columns, vehicles, located=plane is None)
     _add_limits(columns, vehicles, clock)
     add_times(columns, vehicles, clock)
     _add_costs(columns, vehicles, located=plane is None)
