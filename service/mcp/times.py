@@ -9,17 +9,9 @@ from service.amounts.read import number_in
 TIMED = frozenset(
     (
         *("arrivals", "at", "departure", "driving", "due", "earliest", "latest", "leaves"),
-        *(
-            "length",
-            "longest",
-            "max_driving",
-            "max_overtime",
-            "now",
-            "over_the_day",
-            "release",
-            "service",
-        ),
-        *("shift", "shifts", "shortest", "slack", "slots", "tolerance", "window", "windows"),
+        *("length", "longest", "max_driving", "max_overtime", "now", "over_the_day", "release"),
+        *("service", "shift", "shifts", "shortest", "slack", "slots", "tolerance", "window"),
+        "windows",
     )
 )
 # What such members may be in; below other members the same names mean something else.
