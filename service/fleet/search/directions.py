@@ -39,11 +39,11 @@ _ANY_START = 0.25  # share of those under three objectives that start from a ran
 _BELOW = 0.95  # how far below the least longest route limits go
 
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
-# to shorten the first plan, to find one vehicle less, for the fewest, and for any number; and the
-# chance of the fewest after that. Where few vehicles are full, only a hotter search gets from one
-# plan to the next, and one that may leave a stop out for a while.
+# to shorten the first plan (at most a round a stop), to find one vehicle less, for the fewest, and
+# for any number; and the chance of the fewest after that. Where few vehicles are full, only a
+# hotter search gets from one plan to the next, and one that may leave a stop out for a while.
 _SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, 0.5, 0.6
-_ATTEMPTS = 4  # at one vehicle less
+_ATTEMPTS = 6  # at one vehicle less
 _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
 _COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
@@ -143,7 +143,7 @@ class Directions:
 
     def _by_vehicles(self) -> Iterator[Step]:
         """Yield directions to the fewest vehicles, and to the least length with each number."""
-        yield self._at_most(inf, self._share(_SHORTEN))
+        yield self._at_most(inf, min(self._share(_SHORTEN), len(self._rules.clients)))
         now, failed = self._ends()[0], 0
         while self._fewest < now and failed < _ATTEMPTS:
             yield replace(self._at_most(now - 1, self._share(_DESCENT)), ends_whole=True)

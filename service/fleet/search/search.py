@@ -260,9 +260,12 @@ class RuinSearch:
         return False
 
     def _ends_of(self, step: Step) -> tuple[float, float]:
-        """Return when a step begins, and when it has had its share of the time that is left."""
+        """Return when a step begins, and when it has had its share of the time that is left.
+
+        Where the number of iterations ends the search first, only they count.
+        """
         now, left = self._watch.spent, self._left()
-        if self._watch.seconds == math.inf or not left:
+        if not left or left >= self._options.iterations - self._rounds:
             return now, math.inf
         return now, now + self._watch.left * min(1.0, step.rounds / left)
 
