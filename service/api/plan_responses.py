@@ -47,6 +47,14 @@ class RouteItem(BaseModel):
     breaks: list[float] | SkipJsonSchema[None] = Field(
         default=None, description="when each break on the way begins"
     )
+    distance: list[float] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="if its vehicle has a max_distance: how far it has driven at each stop",
+    )
+    driving: list[float] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="if its vehicle has a max_driving: how long it has driven at each stop",
+    )
 
 
 class ReasonItem(BaseModel):

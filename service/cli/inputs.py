@@ -5,7 +5,7 @@ import stat
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,6 @@ from service.files.reading import (
     Bounds,
     Kind,
     NamedFile,
-    Request,
     Source,
     check_cells,
 )
@@ -44,7 +43,7 @@ class FileRequest(NamedTuple):
         picture: The picture of its map, PNG or PGM, if it has one.
     """
 
-    request: Request
+    request: dict[str, Any]
     ids: Ids | None
     kind: Kind
     picture: bytes | None = None
@@ -87,9 +86,9 @@ def read_request(
     if reading.kind not in kinds:
         noun = {"front": "one tour", "fleet": "vehicles", "coverage": "a map"}[reading.kind]
         raise UsageError(f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that")
-    request = reading.request
+    request: dict[str, Any] = {**reading.request}
     if "matrices" in request:
-        request = {**request, "matrices": _as_arrays(request["matrices"])}
+        request["matrices"] = _as_arrays(request["matrices"])
     return FileRequest(request, ids_in(request.get("stops")), reading.kind)
 
 
@@ -107,7 +106,7 @@ def ids_in(stops: object) -> Ids | None:
     return tuple(map(str, ids)) if all(isinstance(each, str) for each in ids) else None
 
 
-def read_object(path: Path) -> Request:
+def read_object(path: Path) -> dict[str, Any]:
     """Return the members of a request in a JSON file, or in standard input for a file named -.
 
     Raises:

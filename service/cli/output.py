@@ -30,6 +30,7 @@ from service.objectives import OBJECTIVES
 
 Rows = list[tuple[object, ...]]
 FrontOfPlans = FleetFront | RobotFront
+_OF_SPREAD = ("on_time", "duration", "duration_p90")  # measures of plans whose times spread
 _TERMINATED: Mapping[str | None, str] = {
     None: "still being planned",
     "converged": "nothing more was found",
@@ -64,11 +65,29 @@ def front_as_rows(front: Front, ids: Ids | None = None) -> Rows:
     before = {"angle": front.angles} if front.lengths.shape[1] == OBJECTIVES else {}
     if front.departures is not None:
         before["departure"] = front.departures
+    after = _spread_columns(front)
     rows = [
-        (*(float(values[k]) for values in before.values()), *lengths.tolist(), _cities(tour, ids))
+        (
+            *(float(values[k]) for values in before.values()),
+            *lengths.tolist(),
+            *(float(values[k]) for values in after.values()),
+            _cities(tour, ids),
+        )
         for k, (lengths, tour) in enumerate(zip(front.lengths, front.tours, strict=True))
     ]
-    return [(*before, *front.labels, "tour"), *rows]
+    return [(*before, *front.labels, *after, "tour"), *rows]
+
+
+def _spread_columns(front: Front) -> dict[str, NDArray[np.float64]]:
+    """Return the means of the lengths that spread and what nine days of ten do not exceed."""
+    if front.means is None or front.p90 is None:
+        return {}
+    columns = zip(front.labels, front.means.T, front.p90.T, strict=True)
+    spreading = [(name, mean, most) for name, mean, most in columns if (most > mean).any()]
+    return {
+        **{f"mean {name}": mean for name, mean, _ in spreading},
+        **{f"p90 {name}": most for name, _, most in spreading},
+    }
 
 
 def _cities(tour: NDArray[np.int64], ids: Ids | None) -> str:
@@ -91,12 +110,15 @@ def plans_as_rows(front: FrontOfPlans, kind: Kind, numbers: Iterable[int] | None
     ]
     flat = len(names) == OBJECTIVES
     standing = ("balance",) if flat else ()
-    rows: Rows = [("plan", *standing, *names, kind.mover, *of_routes, kind.visits)]
     plans: Sequence[Any] = front.plans
+    known = getattr(plans[0], "measures", {}) if plans else {}
+    spreading = [name for name in _OF_SPREAD if name in known]
+    rows: Rows = [("plan", *standing, *names, *spreading, kind.mover, *of_routes, kind.visits)]
     for number in range(len(plans)) if numbers is None else numbers:
         plan = plans[number]
         for route, (mover, visits) in zip(plan.routes, kind.routes(plan), strict=True):
-            lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
+            of_plan = (*plan.lengths.tolist(), *(plan.measures[name] for name in spreading))
+            lengths = (*of_plan, mover, *route.lengths.tolist())
             text = csv_text([visits], delimiter=" ")
             rows.append((number, *((plan.balance,) if flat else ()), *lengths, text))
     return rows

@@ -1,4 +1,6 @@
-"""Make text that came from outside harmless on a terminal and in a line of a log."""
+"""Make text that came from outside harmless on a terminal and in a line of a log, and short."""
+
+from collections.abc import Sequence
 
 
 def printable(text: str) -> str:
@@ -17,3 +19,9 @@ def printable_lines(text: str) -> str:
 
 def _replacement(character: str) -> str:
     return " " if character.isspace() and character not in "\x1c\x1d\x1e\x1f" else "?"
+
+
+def shortened(names: Sequence[str], most: int) -> str:
+    """Return the first of some names for a sentence, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{', '.join(names[:most])}{more}"

@@ -84,7 +84,7 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
             raise source.refusal("not-a-choice", part, choices=choices, came=field)
     chosen = chosen_fields(source.file, heading)
     left_out = {
-        at: ColumnLeftOut(heading[at], each, [row[at] for _, row in table.rows])
+        at: ColumnLeftOut(heading[at], each, table.texts(at))
         for at, each in enumerate(chosen)
         if each in (DETAIL, IGNORED)
     }

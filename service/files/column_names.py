@@ -1,100 +1,27 @@
-"""Recognise the columns of tables by their names."""
+"""Recognise the columns of tables by their names, which are in `fields.toml`."""
 
 import re
+import tomllib
 import unicodedata
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from service.objectives import NTH
 
-# By field, the names that people give it, the best names first; without accents, units and signs.
-# English and German, then French, Italian, Spanish, Portuguese, Dutch and Finnish.
-_NAMES = {
-    "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
-    " customerno custno deliveryid deliveryno deliverynumber dono donumber shipmentid"
-    " jobreferencenumber jobreference orderreference jobno jobnumber taskid taskno tasknumber"
-    " trackingid trackingno trackingnumber consignmentno consignmentnumber waybillno waybillnumber"
-    " bestellnummer auftragsnummer kundennummer auftrag"
-    " stop ref reference code key name stopname ordername alias customer kunde node label site no"
-    " nr number"
-    " commande numerocommande ordine numeroordine pedido numeropedido bestelling tilaus"
-    " tilausnumero arret fermata parada halte client cliente klant asiakas nom nome nombre naam"
-    " nimi city",
-    "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond"
-    " longitudine lengtegraad pituusaste",
-    "latitude": "latitude lat latitud breitengrad breite latd latitudine breedtegraad leveysaste",
-    "place": "wkt wktgeom geom geometry thegeom point location coordinates coords coordinate latlon"
-    " latlng latlong position gps",
-    "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
-    "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
-    "demand": "demand qty quantity load amount pallets parcels packages pieces cartons crates boxes"
-    " items weight volume quantities packagecount parcelcount palletcount piececount boxcount"
-    " itemcount productcount numberofpackages numberofparcels numberofpallets numberofpieces"
-    " numberofboxes numberofitems menge"
-    " bedarf gewicht demanda cantidad kg quantite poids colis quantita peso colli carico"
-    " bultos paquetes carga quantidade volumes hoeveelheid paketten maara paino cube units",
-    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime"
-    " timeslotfrom timeslotstart slotfrom slotstart deliverywindowfrom deliverywindowstart"
-    " deliverystart deliverystarttime deliverytimefrom deliverytimestart allowedstart"
-    " scheduleddeliverydateandallowedstart"
-    " twstart twfrom twopen timewindowopen readytime ready earliest earliesttime earlieststart"
-    " earlieststarttime earliestarrival earliestarrivaltime earliestdelivery earliestdeliverytime"
-    " notbefore noearlierthan arriveafter deliverafter completeafter open opens opening opentime"
-    " opendate openingtime from begin von start"
-    " heuredebut debut ouverture orainizio inizio apertura horainicio inicio desde abertura"
-    " begintijd starttijd alkaa alku",
-    "window_to": "windowto windowend timewindowend timewindowto timewindowstop timeto endtime"
-    " timeslotto timeslotend slotto slotend deliverywindowto deliverywindowend deliveryend"
-    " deliveryendtime deliverytimeto deliverytimeend allowedend twend twto twclose"
-    " timewindowclose duedate duetime latest latesttime latestend latestendtime latestarrival"
-    " latestarrivaltime lateststart latestdelivery latestdeliverytime notafter nolaterthan"
-    " arrivebefore completebefore close closes closing closetime closingtime to until end bis"
-    " heurefin fin fermeture orafine chiusura horafin hasta cierre horafim fim fechamento"
-    " eindtijd paattyy loppu",
-    "window": "window timewindow tw deliverywindow deliverytimewindow"
-    " zeitfenster windows timewindows deliverywindows"
-    " businesshours deliveryhours receivinghours"
-    " creneau creneauhoraire fenetre fasciaoraria finestra finestraoraria ventana ventanahoraria"
-    " franjahoraria janela janelahoraria janeladetempo tijdvenster tijdslot aikaikkuna",
-    "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
-    " timeatstop timeonsite visittime visitduration unloadingtime unloadtime loadingtime"
-    " jobduration taskduration stopduration orderduration deliveryduration"
-    " estimatedtimeatstop esttimeatstop averagetimeatstop"
-    " estimatedservicetime averageservicetime timeatlocation timeatcustomer onsitetime"
-    " dwelltime estimateddeliverytime minutes mins minutesonsite minutesatstop"
-    " minutesperstop"
-    " servicezeit standzeit entladezeit tempsservice tempsdeservice duree temposervizio"
-    " tempodiservizio durata"
-    " tiemposervicio tiempodeservicio duracion temposervico tempodeservico duracao servicetijd"
-    " lostijd duur palveluaika kesto",
-    "due": "due dueby dueto wantedto preferredto preferredend preferredtimeto preferredtimeend"
-    " deadline deliverydeadline deliverby deliverbefore frist",
-    "due_from": "duefrom wanted wantedfrom preferred preferredfrom preferredstart preferredtimefrom"
-    " preferredtimestart notwantedbefore",
-    "urgency": "urgency dringlichkeit urgence",
-    "release": "release releasetime releasedate availablefrom readyatdepot",
-    "skills": "skills skill requires requiredskills requiredskill skillsrequired skillsneeded"
-    " qualifications qualification requiredtags specialtynames"
-    " vehiclefeatures driverskills",
-    "vehicle": "vehicle vehicleid vehiclename van vanid driver driverid drivername truck truckid"
-    " assignto requiredvehicle"
-    " assignedto assignedvehicle assigneddriver assignedvan fahrzeug fahrer vehicule camion"
-    " chauffeur veicolo furgone autista vehiculo conductor veiculo motorista voertuig ajoneuvo"
-    " kuljettaja",
-    "prize": "prize",
-    "together": "together togetherwith ridetogether ridewith rideswith samevehicle samevan"
-    " samedriver sameroute ordergroup linkedorder linkedorders zusammen",
-    "apart": "apart apartfrom keepapart notwith nottogether nottogetherwith separate separatefrom"
-    " incompatible incompatiblewith getrennt",
-    "before": "before visitbefore precedes mustprecede",
-    "after": "after visitafter follows mustfollow predecessor predecessors",
-    "cost": "cost costs risk danger exposure co2 emissions noise kosten risiko laerm",
-}
-_AMOUNT = f"({'|'.join(sorted(_NAMES['demand'].split(), key=len, reverse=True))})"
+_FIELDS = tomllib.loads(Path(__file__).with_name("fields.toml").read_text(encoding="utf-8"))
+NUMBERS = frozenset(_FIELDS["numbers"].split())
+DURATIONS = tuple(_FIELDS["durations"].split())
+GROUPS = tuple(_FIELDS["groups"].split())
+_SEVERAL = _FIELDS["several"].split()
+_NAMES: Mapping[str, str] = _FIELDS["stops"]
+_AMOUNTS = _NAMES["demand"].split()
+_AMOUNT = f"({'|'.join(sorted(_AMOUNTS, key=len, reverse=True))})"
 # Amounts with words around them, as `Order Weight`, `Load #1` or `Max load 1`; not of money.
 _OF_ORDERS = re.compile(
     "(?!total|order)(?:net|gross|delivery|shipment|lineitem|parcel|cargo)?"
     rf"{_AMOUNT}(?:load)?(\d?)|(?:order|total)(?!amount){_AMOUNT}(\d?)"
 )
+_OF_PICKUPS = re.compile(rf"(?:pickup|return|takesback|givesback|backhaul){_AMOUNT}s?(\d?)")
 _OF_CAPACITY = re.compile(rf"(?:max|maximum|capacity|initial|vehicle)?{_AMOUNT}(?:capacity)?(\d?)")
 # Windows and visits that are said in full, as `Delivery time slot start`, `Appointment end` and
 # `Transaction duration`.
@@ -114,56 +41,31 @@ _LAST = 1000  # the rank of names that are not listed
 PLANES = ("x", "y", *(f"{nth} {axis}" for nth in NTH[1:] for axis in "xy"))
 _OF_WINDOWS = ("window_from", "window_to", "window")
 WINDOWS = ("window", "window_2", "window_3")  # the windows that a table may have
-_AMOUNTS = _NAMES["demand"].split()
-_OF_VEHICLES_ONLY = {
-    "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
-    " fahrer",
-    "plate": "plate plates platenumber platenr numberplate licenceplate licenseplate"
-    " licenceplatenumber licenseplatenumber registration registrationnumber regno regnumber"
-    " kennzeichen nummernschild immatriculation plaque targa matricula kenteken"
-    " rekisterinumero rekisteritunnus",
-    "capacity": "capacity capacity1 capacity2 capacity3 vehiclecapacity maxcapacity payload"
-    " kapazitaet kapazitat nutzlast "
-    + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
-    "shift_from": "shiftstart shiftfrom shiftbegin workstart schichtbeginn",
-    "shift_to": "shiftend shiftto workend schichtende",
-    "shift": "shift workinghours workhours schicht arbeitszeit",
-    "longest_time": "maxtime maxtraveltime maxdrivingtime maxduration maxrouteduration",
-    "shortest_time": "mintime mindrivingtime minduration minrouteduration minhours",
-    "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
-    "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
-    "max_stops": "maxstops maxnumberofstops maxtasks maxorders maxjobs maxvisits maxdeliveries",
-    "min_stops": "minstops minnumberofstops mintasks minorders minjobs minvisits mindeliveries",
-    "max_trips": "maxtrips maxnumberoftrips tripsperday maxtours",
-    "reload": "reload reloadat reloadstop reloadstops reloaddepot reloaddepots reloadlocation",
-    "max_overtime": "overtime maxovertime overtimelimit allowedovertime ueberstunden",
-    "initial_load": "initialload startload loadatstart loadonboard onboard "
-    + " ".join(f"initial{each}" for each in _AMOUNTS if each != "load"),
-    "per_km": "costperkm costkm kmcost perkm priceperkm kmkosten",
-    "per_hour": "costperhour costhour hourlycost hourlyrate hourlywage perhour priceperhour"
-    " wageperhour stundenlohn stundensatz",
-    "speed_factor": "speedfactor speedmultiplier",
-    "service_factor": "servicefactor servicemultiplier servicetimefactor",
-}  # fields that only vehicles have
-NAMES_OF_VEHICLES = {
-    "start": "start startid startstop startplace startlocation startdepot",
-    "end": "end endid endstop endplace endlocation enddepot destination",
-    "depot": "depot depotid home base",
-    "start_latitude": "startlatitude startlat",
-    "start_longitude": "startlongitude startlon startlng",
-    "end_latitude": "endlatitude endlat",
-    "end_longitude": "endlongitude endlon endlng",
-    "depot_latitude": "depotlatitude depotlat homelatitude homelat latitude lat",
-    "depot_longitude": "depotlongitude depotlon depotlng homelongitude homelon homelng longitude"
-    " lon lng",
+# The names of fields that only vehicles have, and those of all their fields.
+_OF_VEHICLES_ONLY: Mapping[str, str] = {
+    **_FIELDS["vehicles"],
+    "capacity": " ".join(
+        [
+            _FIELDS["vehicles"]["capacity"],
+            *(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
+        ]
+    ),
+    "initial_load": " ".join(
+        [
+            _FIELDS["vehicles"]["initial_load"],
+            *(f"initial{each}" for each in _AMOUNTS if each != "load"),
+        ]
+    ),
+}
+NAMES_OF_VEHICLES: Mapping[str, str] = {
+    **_FIELDS["ends"],
     **_OF_VEHICLES_ONLY,
-    "id": f"{_OF_VEHICLES_ONLY['id']} id name type",
+    **_FIELDS["also"],
+    "id": f"{_OF_VEHICLES_ONLY['id']} {_FIELDS['also']['id']}",
     "capacity": f"{_OF_VEHICLES_ONLY['capacity']} {_NAMES['demand']}",
     "shift_from": f"{_OF_VEHICLES_ONLY['shift_from']} {_NAMES['window_from']}",
     "shift_to": f"{_OF_VEHICLES_ONLY['shift_to']} {_NAMES['window_to']}",
     "shift": f"{_OF_VEHICLES_ONLY['shift']} {_NAMES['window']}",
-    "count": "count vehicles available anzahl",
-    "skills": "skills skill abilities capabilities qualifications qualification",
 }
 _PLACES = ("longitude", "latitude", "x", "y")
 _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
@@ -187,8 +89,6 @@ SECONDS: Mapping[str, float] = {  # by the names of units
 _DAYS = ("d", "day", "days")  # in brackets; else they are not units, as in `working days`
 # Headings of visits that route planners write. What they hold is in minutes.
 _USUALLY_MINUTES = frozenset(_NAMES["service"].split()) - {"service"}
-# Fields that a table may have several times.
-_SEVERAL = ("demand", "capacity", "initial_load", "cost")
 _NAMED_WINDOW = re.compile(r"^(timewindow|deliverywindow|window|tw)(?!s?$)")
 
 
@@ -211,10 +111,9 @@ def _names_of_stops() -> dict[str, str]:
 
 
 NAMES_OF_STOPS = _names_of_stops()
-GROUPS = ("together", "apart", "before", "after")  # how stops of a fleet ride with each other
 FLEET = (
     *(field for field in NAMES_OF_STOPS if field.startswith("window")),
-    *("demand", "service", "due", "due_from", "release", "skills", "vehicle", "prize", "urgency"),
+    *_FIELDS["of_fleets"].split(),
 )
 
 
@@ -227,9 +126,10 @@ def is_about_vehicles(heading: Sequence[str]) -> bool:
 
 
 def amount_of(name: str) -> str:
-    """Return the amount that a column of demands or capacities is about, as `weight`, or ""."""
+    """Return the amount that a column of loads or capacities is about, as `weight`, or ""."""
     plain = plain_name(name)
-    found = _OF_ORDERS.fullmatch(plain) or _OF_CAPACITY.fullmatch(plain)
+    patterns = (_OF_PICKUPS, _OF_ORDERS, _OF_CAPACITY)
+    found = next(filter(None, (each.fullmatch(plain) for each in patterns)), None)
     return "".join(filter(None, found.groups())) if found else ""
 
 
@@ -326,7 +226,7 @@ def _rank(
         found = of_place
     if found:
         return found[1:]
-    patterns = {"capacity": _OF_CAPACITY, "demand": _OF_ORDERS, **_IN_FULL}
+    patterns = {"capacity": _OF_CAPACITY, "pickup": _OF_PICKUPS, "demand": _OF_ORDERS, **_IN_FULL}
     for field, pattern in patterns.items():
         if field in fields and pattern.fullmatch(plain):
             return field, _LAST

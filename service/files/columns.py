@@ -1,11 +1,11 @@
 """The columns of a table, and the fields of stops or vehicles that they are taken for."""
 
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from service.errors.printable import printable
+from service.errors.printable import printable, shortened
 from service.files.cells.dates import Calendar, are_days
 from service.files.cells.ids import are_names, is_list_of_cities, numbered
 from service.files.cells.signs import decimals_of, is_number, is_numeric, with_plain_numbers
@@ -103,6 +103,19 @@ class Columns:
         """Return the rows in which a column has text."""
         return [row for row in range(len(self.table.rows)) if self.text(row, column)]
 
+    def values(
+        self, field: str, read: Callable[[int, int], Read], instead: Read | None = None
+    ) -> Iterator[tuple[int, Read]]:
+        """Yield the rows in which the column of a field has text, with what is read there.
+
+        Rows whose text is wrong have `instead`, or are left out without it.
+        """
+        if (at := self.find(field)) is not None:
+            for row in self.filled(at):
+                value = self.tried(instead, read, row, at)
+                if value is not None:
+                    yield row, value
+
     def number(self, row: int, column: int) -> float:
         """Return the number in a field.
 
@@ -153,11 +166,11 @@ class Columns:
 
     def are_numbers(self, column: int) -> bool:
         """Return whether all fields of a column are numbers."""
-        return all(number_in(row[column]) is not None for _, row in self.table.rows)
+        return all(number_in(text) is not None for text in self.table.texts(column))
 
     def have_numbers(self, column: int) -> bool:
         """Return whether any field of a column is a number, with any signs."""
-        return any(is_number(row[column]) for _, row in self.table.rows)
+        return any(map(is_number, self.table.texts(column)))
 
     def listed(self) -> list[Column]:
         """Return what each column in the file is taken for."""
@@ -170,7 +183,7 @@ class Columns:
         that were chosen to be, then the first others.
         """
         placed = [
-            ColumnLeftOut(name, field or "", [] if field else self._texts(at))
+            ColumnLeftOut(name, field or "", [] if field else self.table.texts(at))
             for at, (name, field) in enumerate(zip(self.names, self.fields, strict=True))
         ]
         for at, column in sorted(self.table.left_out.items()):
@@ -190,7 +203,7 @@ class Columns:
         """
         if self._ids is None:
             at = self.fields.index("id")
-            names = [" ".join(texts[at].split()) for _, texts in self.table.rows]
+            names = [" ".join(text.split()) for text in self.table.texts(at)]
             if self.of_stops and not self.is_chosen(at) and are_names(self.names[at]):
                 self._ids = numbered(self.source, self.names[at], names)
             else:
@@ -208,9 +221,6 @@ class Columns:
                 self.refuse(row, at, "same-id", came=name, first=seen[name])
             else:
                 seen[name] = self.table.rows[row][0]
-
-    def _texts(self, column: int) -> list[str]:
-        return [row[column] for _, row in self.table.rows]
 
     @property
     def are_any_chosen(self) -> bool:
@@ -240,10 +250,11 @@ class Columns:
         pairs = [(each.name, each.taken_for) for each in self.source.columns]
         used = [f"{quoted(name)} ({field})" for name, field in pairs if field not in _UNUSED]
         unused = [quoted(name) for name, field in pairs if field in _UNUSED]
-        not_used = f" Not used: {_listed(unused)}." if unused else ""
-        self.source.note("columns", f"Columns were taken for: {_listed(used)}.{not_used}")
+        not_used = f" Not used: {shortened(unused, _MOST_NAMED)}." if unused else ""
+        text = f"Columns were taken for: {shortened(used, _MOST_NAMED)}.{not_used}"
+        self.source.note("columns", text)
         for at, taken_for in enumerate(self.fields):
-            if taken_for is None and are_days([row[at] for _, row in self.table.rows]):
+            if taken_for is None and are_days(self.table.texts(at)):
                 name = quoted(self.names[at])
                 text = f"{name} has several dates, which were not used: all is of one day."
                 self.source.note("dates", text)
@@ -257,12 +268,6 @@ class Columns:
                 short = [printable(" ".join(text.split()))[:_LONGEST_DETAIL] for text in texts]
                 by_id = dict(zip(ids, short, strict=True))
                 self.source.details.append((printable(name)[:LONGEST_NAME], by_id))
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return the first names for a sentence, and how many more there are."""
-    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-    return f"{', '.join(names[:_MOST_NAMED])}{more}"
 
 
 def columns_of(source: Source, table: Table) -> Columns:
@@ -302,7 +307,7 @@ def columns_of(source: Source, table: Table) -> Columns:
 
 def _place_column(columns: Columns, at: int) -> str | None:
     """Return `place` for a column of points in WKT, or of pairs under such a heading; else None."""
-    texts = [row[at] for _, row in columns.table.rows]
+    texts = columns.table.texts(at)
     if all(map(_POINT.fullmatch, texts)):
         return "place"
     if columns.fields[at] != "place":
@@ -322,13 +327,13 @@ def _name_rows(columns: Columns) -> None:
     Amounts without a digit, such as the names of goods, are none.
     """
     fields, table = columns.fields, columns.table
-    texts = [[row[at] for _, row in table.rows] for at in range(table.width)]
+    texts = [table.texts(at) for at in range(table.width)]
     at = columns.find("id")
     if at is not None and plain_name(columns.names[at]) == "city":
         others = [texts[each] for each in range(table.width) if fields[each] is None]
         fields[at] = "id" if is_list_of_cities(texts[at], others) else None
-    for at, taken_for in enumerate(fields):
-        if taken_for == "demand" and any(texts[at]) and not _HAS_DIGITS.search("".join(texts[at])):
+    for at in (at for at, taken_for in enumerate(fields) if taken_for in ("demand", "pickup")):
+        if any(texts[at]) and not _HAS_DIGITS.search("".join(texts[at])):
             fields[at] = None  # such as the names of goods
     for at, name in enumerate(columns.names):
         if "id" not in fields and fields[at] == "place" and all(map(str.strip, texts[at])):

@@ -7,11 +7,21 @@ of its own at that place.
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import cast
 
 from service.files.column_names import NAMES_OF_STOPS, plain_name
 from service.files.columns import Columns
-from service.files.fleets import Stop, Vehicle, all_demand, distinct, in_shifts, listed, numbers
+from service.files.fleets import (
+    ENDS,
+    Stop,
+    Vehicle,
+    all_loads,
+    distinct,
+    in_shifts,
+    listed,
+    numbers,
+    without,
+)
 from service.files.reading import quoted
 
 _DEPOT = re.compile(  # anywhere in a name
@@ -34,7 +44,7 @@ _CUSTOMERS = {
 }
 _TIMES = ("service", "window", "windows", "due", "release")
 _OF_VISITS = ("service", "due", "release", "prize")
-_OF_ORDERS = (*_TIMES, "demand", "prize", "skills", "vehicle")
+_OF_ORDERS = (*_TIMES, "demand", "pickup", "prize", "skills", "vehicle")
 
 
 def depot_of(columns: Columns, stops: Sequence[Stop]) -> str | None:
@@ -61,8 +71,13 @@ def is_order(columns: Columns, stops: Sequence[Stop], row: int) -> bool:
     return any(stop.get(name) for name in _OF_ORDERS) and not _is_horizon(stops, row)
 
 
-def _is_loaded(stop: Mapping[str, Any]) -> bool:
-    return any(stop.get("demand", ())) or any(stop.get(name) for name in ("skills", "vehicle"))
+def _is_loaded(stop: Stop) -> bool:
+    return _has_load(stop) or any(stop.get(name) for name in ("skills", "vehicle"))
+
+
+def _has_load(stop: Stop) -> bool:
+    loads = (stop.get("demand", ()), stop.get("pickup", ()))
+    return any(any(cast(Sequence[int], each)) for each in loads)
 
 
 def _is_called_depot(columns: Columns, row: int) -> bool:
@@ -87,7 +102,7 @@ def _is_called_depot(columns: Columns, row: int) -> bool:
 def _is_horizon(stops: Sequence[Stop], row: int) -> bool:
     """Return whether a row alone has no demand, and no visit: its window is that of the depot."""
     others = [stop for at, stop in enumerate(stops) if at != row]
-    alone = bool(others) and all(any(each.get("demand", ())) for each in others)
+    alone = bool(others) and all(map(_has_load, others))
     return alone and not any(stops[row].get(each) for each in _OF_VISITS)
 
 
@@ -104,8 +119,8 @@ def with_depots(
     stops: Sequence[Stop],
     vehicles: Sequence[Vehicle],
     plane: list[list[float]] | None,
-) -> tuple[list[Stop], list[Vehicle]]:
-    """Return stops and vehicles; fill in places and shifts that vehicles do not name.
+) -> list[Stop]:
+    """Return stops; fill in places and shifts that vehicles do not name.
 
     The shift of a vehicle without one is the window of the depot where it starts.
 
@@ -124,25 +139,23 @@ def with_depots(
     if home is not None and not _is_called_depot(columns, rows[home]):
         text = f"{quoted(home)} has nothing to deliver or visit, so vehicles start and end there."
         columns.source.note("depot", text)
-    ends = {} if home is None else dict.fromkeys(("start", "end"), home)
-    placed = [
-        each | ends if is_free else each for each, is_free in zip(vehicles, are_free, strict=True)
-    ]
-    named = {stop for each in placed for stop in _depots_of(each)}
+    for vehicle, is_free in zip(vehicles, are_free, strict=True):
+        if is_free and home is not None:
+            vehicle["start"] = vehicle["end"] = home
+    named = {stop for each in vehicles for stop in _depots_of(each)}
     orders = {each for each in named & rows.keys() if is_order(columns, stops, rows[each])}
     stops, moved = _with_stops_for(columns, stops, sorted(orders), plane)
-    by_id = {stop["id"]: stop for stop in stops}
-    made = []
-    for each in placed:
-        shift = {} if in_shifts([each]) else _shift_of(by_id.get(each.get("start"), {}), orders)
-        made.append({**each, **shift, **_moved(each, moved)})
-    used = {str(each.get("start")) for each, old in zip(made, placed, strict=True) if each != old}
-    return _without_orders(columns, stops, named - orders, used), made
+    depots = {stop["id"]: stop for stop in stops if stop["id"] not in orders}
+    used = {name for each in vehicles for name in _settle(each, depots, moved)}
+    return _without_orders(columns, stops, named - orders, used)
 
 
 def _depots_of(vehicle: Vehicle) -> list[str]:
-    ends = [vehicle[end] for end in ("start", "end") if vehicle.get(end) is not None]
-    return [*ends, *vehicle.get("reload", ())]
+    return [*(str(vehicle[end]) for end in ENDS if end in vehicle), *_reloads(vehicle)]
+
+
+def _reloads(vehicle: Vehicle) -> Sequence[str]:
+    return cast(Sequence[str], vehicle.get("reload", ()))
 
 
 def _with_stops_for(
@@ -155,8 +168,10 @@ def _with_stops_for(
     for order in orders:
         at = next(at for at, stop in enumerate(stops) if stop["id"] == order)
         name = next(each for each in _free_names(order) if each not in ids)
-        place = {"location": stops[at]["location"]} if "location" in stops[at] else {}
-        added.append({"id": name, **place})
+        stop: Stop = {"id": name}
+        if "location" in stops[at]:
+            stop["location"] = stops[at]["location"]
+        added.append(stop)
         if plane is not None:
             plane.append(plane[at])
         moved[order] = name
@@ -171,25 +186,25 @@ def _free_names(name: str) -> list[str]:
     return [f"{name} (depot)", *(f"{name} (depot {number})" for number in range(2, 100))]
 
 
-def _moved(vehicle: Vehicle, moved: Mapping[str, str]) -> Vehicle:
-    """Return the members of a vehicle that name stops, with the stops that were added."""
-    ends: Vehicle = {
-        end: moved.get(vehicle[end], vehicle[end]) for end in ("start", "end") if end in vehicle
-    }
+def _settle(vehicle: Vehicle, depots: Mapping[str, Stop], moved: Mapping[str, str]) -> list[str]:
+    """Give a vehicle the windows of its depot as shifts, and the stops that were added for it.
+
+    Returns:
+        Its start, if anything has changed.
+    """
+    before = vehicle.copy()
+    start = str(vehicle.get("start", ""))
+    depot: Stop = {"id": ""} if in_shifts([vehicle]) else depots.get(start, {"id": ""})
+    if "window" in depot:
+        vehicle["shift"] = depot["window"]
+    if "windows" in depot:
+        vehicle["shifts"] = depot["windows"]
+    for end in ENDS:
+        if end in vehicle:
+            vehicle[end] = moved.get(str(vehicle[end]), vehicle[end])
     if "reload" in vehicle:
-        ends["reload"] = [moved.get(each, each) for each in vehicle["reload"]]
-    return ends
-
-
-def _shift_of(depot: Stop, orders: set[str]) -> Vehicle:
-    """Return the windows of a depot as shifts of a vehicle; those of an order are none."""
-    if depot.get("id") in orders:
-        return {}
-    return {
-        shift: depot[window]
-        for shift, window in (("shift", "window"), ("shifts", "windows"))
-        if window in depot
-    }
+        vehicle["reload"] = [moved.get(each, each) for each in _reloads(vehicle)]
+    return [str(vehicle.get("start"))] if vehicle != before else []
 
 
 def _without_orders(
@@ -204,8 +219,8 @@ def _without_orders(
         if stop["id"] not in depots:
             kept.append(stop)
             continue
-        kept.append({name: value for name, value in stop.items() if name not in _OF_ORDERS})
-        lost = [name for name in _OF_ORDERS if stop.get(name) and name != "demand"]
+        kept.append(without(stop, _OF_ORDERS))
+        lost = [name for name in _OF_ORDERS if stop.get(name) and name not in ("demand", "pickup")]
         if lost := [name for name in lost if name[:6] != "window" or stop["id"] not in used]:
             text = f"{quoted(stop['id'])} is a depot, so its {' and '.join(lost)} was not used."
             columns.source.note("depot", text)
@@ -229,12 +244,16 @@ def for_stops(
 
     Each vehicle starts at the depot, holds all demand and has all skills.
     """
-    demands = all_demand(stops)
-    named = distinct(stop["vehicle"] for stop in stops if "vehicle" in stop)
+    demands = all_loads(stops)
+    named = distinct(str(stop["vehicle"]) for stop in stops if "vehicle" in stop)
     skills = distinct(skill for stop in stops for skill in stop.get("skills", ()))
-    held = ({"capacity": demands} if demands else {}) | ({"skills": skills} if skills else {})
-    free = [{"id": name, **held} for name in named or ["vehicle"]]
-    stops, vehicles = with_depots(columns, stops, free, plane)
+    vehicles: list[Vehicle] = [{"id": name} for name in named or ["vehicle"]]
+    for vehicle in vehicles:
+        if demands:
+            vehicle["capacity"] = demands
+        if skills:
+            vehicle["skills"] = skills
+    stops = with_depots(columns, stops, vehicles, plane)
     home = vehicles[0].get("start")
     where = "from any stop to any"
     if home is not None:

@@ -1,30 +1,45 @@
 """Make requests for fleets: their objectives, their clock, and what they measure."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Literal, TypeVar, cast
 
 import numpy as np
+from paretour.member_parts import (
+    ClockRequest,
+    FleetObjectiveRequest,
+    FleetStopRequest,
+    Measure,
+    ShipmentRequest,
+    VehicleRequest,
+)
+from paretour.members import FleetRequest
 
-from service.files.reading import Request, Source, quoted
+from service.errors.printable import shortened
+from service.files.reading import Source, quoted
 from service.roads.great_circle import great_circle_distances
 
-Stop = dict[str, Any]
-Vehicle = dict[str, Any]
+Stop = FleetStopRequest
+Vehicle = VehicleRequest
+Shipment = ShipmentRequest
+Objective = FleetObjectiveRequest
+End = Literal["start", "end"]
+ENDS: tuple[End, ...] = ("start", "end")
+Form = TypeVar("Form", FleetStopRequest, VehicleRequest)
 _SPEED, _SPEED_BETWEEN_TOWNS = 30, 50  # km/h, along straight lines: a van in a city, and outside
 _CITY = 10_000.0  # metres from the middle of a city, for half of all stops
 _TIMES = ("service", "services", "window", "windows", "due", "release")
 _MOST_NAMED = 3
 
 
-def planar(costs: dict[str, Any]) -> list[dict[str, Any]]:
+def planar(total: Objective) -> list[Objective]:
     """Return both objectives of costs that are also times: the total, and the longest route."""
-    total, longest = ("total length", "sum"), ("longest route", "max")
-    return [{"name": name, **costs, "over": over} for name, over in (total, longest)]
+    longest: Objective = {**total, "name": "longest route", "over": "max"}
+    return [{**total, "over": "sum"}, longest]
 
 
 def measured(
     source: Source, timed: bool, stops: Sequence[Stop] = (), factor: float = 1
-) -> list[dict[str, Any]]:
+) -> list[Objective]:
     """Return both objectives of stops on the earth; if `timed`, the second is time in seconds.
 
     Args:
@@ -33,7 +48,7 @@ def measured(
         stops: The stops, whose distances say how fast vehicles are without a routing engine.
         factor: How much faster than usual the vehicles are.
     """
-    distance = {"name": "distance", "from": "great_circle", "over": "sum"}
+    distance: Objective = {"name": "distance", "from": "great_circle", "over": "sum"}
     if source.bounds.roads:
         return [distance, {"name": "time", "from": "road_time", "over": "max"}]
     if not timed:
@@ -41,8 +56,7 @@ def measured(
     speed = speed_between(stops) if factor == 1 else round(speed_between(stops) * factor, 3)
     where = f"along straight lines at {speed:g} km/h"
     source.note("objectives", f"Times are {where}, as there is no routing engine here.")
-    time = {"name": "time", "from": "great_circle", "speed": speed, "over": "max"}
-    return [distance, time]
+    return [distance, {"name": "time", "from": "great_circle", "speed": speed, "over": "max"}]
 
 
 def speed_between(stops: Sequence[Stop]) -> float:
@@ -73,34 +87,58 @@ def have_times(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> bool:
     return timed(stops) or in_shifts(vehicles) or any(each.keys() & members for each in vehicles)
 
 
-def spans(name: str, found: Sequence[list[float]]) -> dict[str, Any]:
-    """Return windows or shifts as a member: `window`, or `windows` if there are several."""
+def add_windows(stop: Stop, found: Sequence[list[float]]) -> None:
+    """Add windows to a stop: as `window`, or as `windows` if there are several."""
     if len(found) > 1:
-        return {f"{name}s": list(found)}
-    return {name: found[0]} if found else {}
+        stop["windows"] = found
+    elif found:
+        stop["window"] = found[0]
 
 
-def all_demand(stops: Sequence[Stop]) -> list[int]:
-    """Return the sum of the demands of stops."""
-    return [sum(each) for each in zip(*(s["demand"] for s in stops if "demand" in s), strict=True)]
+def add_shifts(vehicle: Vehicle, found: Sequence[list[float]]) -> None:
+    """Add shifts to a vehicle: as `shift`, or as `shifts` if there are several."""
+    if len(found) > 1:
+        vehicle["shifts"] = found
+    elif found:
+        vehicle["shift"] = found[0]
+
+
+def without(form: Form, members: Collection[str]) -> Form:
+    """Return a stop or a vehicle without some of its members."""
+    return cast(Form, {name: value for name, value in form.items() if name not in members})
+
+
+def without_empty(form: Form) -> Form:
+    """Return a stop or a vehicle without members that are empty, apart from its id."""
+    return without(form, [name for name, value in form.items() if not value and name != "id"])
+
+
+def all_loads(stops: Sequence[Stop]) -> list[int]:
+    """Return the sum of what stops get and give back."""
+    demands = [stop["demand"] for stop in stops if "demand" in stop]
+    pickups = [stop["pickup"] for stop in stops if "pickup" in stop]
+    loads = np.array([*demands, *pickups])
+    return [int(each) for each in loads.sum(axis=0)] if loads.size else []
 
 
 def fleet_request(
     stops: list[Stop],
     vehicles: list[Vehicle],
-    objectives: list[dict[str, Any]],
-    shipments: list[dict[str, str]] | None = None,
-) -> Request:
+    objectives: list[Objective],
+    shipments: list[Shipment] | None = None,
+) -> FleetRequest:
     """Return the request of a fleet, with a clock if stops or vehicles have times."""
-    request: Request = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
+    request: FleetRequest = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
     if have_times(stops, vehicles):
         request["clock"] = objectives[1]["name"]
-    return request if shipments is None else {**request, "shipments": shipments}
+    if shipments is not None:
+        request["shipments"] = shipments
+    return request
 
 
 def fleet_of_tables(
     source: Source, stops: list[Stop], vehicles: list[Vehicle], plane: list[list[float]] | None
-) -> Request:
+) -> FleetRequest:
     """Return the request of a fleet with the objectives that its data are for.
 
     Args:
@@ -110,40 +148,46 @@ def fleet_of_tables(
         plane: The points of the stops in the plane, if they are not on the earth.
     """
     if plane:
-        objectives = planar({"coordinates": plane})
+        objectives = planar({"name": "total length", "coordinates": plane})
     else:
         objectives = measured(source, have_times(stops, vehicles), stops)
         if any("per_distance" in vehicle for vehicle in vehicles):
             objectives[0]["name"] = "cost"
-    return with_measure(source, fleet_request(stops, vehicles, objectives))
+        if any("profile" in vehicle for vehicle in vehicles):
+            objectives[0]["from"] = "road_distance"
+    request = fleet_request(stops, vehicles, objectives)
+    _measure(source, request, stops, vehicles)
+    return request
 
 
-def with_measure(source: Source, request: Request) -> Request:
-    """Return a request with the objectives that its prizes, and its times due or extra, are for.
+def _measure(
+    source: Source, request: FleetRequest, stops: Sequence[Stop], vehicles: Sequence[Vehicle]
+) -> None:
+    """Give a request the objectives that its prizes, and its times due or extra, are for.
 
     They take the place of the second objective, whose costs become those of the clock.
     """
-    worthless = [str(stop["id"]) for stop in request["stops"] if stop.get("prize") == 0]
+    worthless = [stop["id"] for stop in stops if stop.get("prize") == 0]
     if worthless:
         source.note(
             "prize",
             f"{listed(worthless)} may be left out for nothing, as the prize is 0. Without a prize a"
             " stop must be visited.",
         )
-    measures = dict(_measures(request["stops"], request["vehicles"]))
+    measures = dict(_measures(stops, vehicles))
     if not measures:
-        return request
+        return
     for number, means in zip(("second", "third"), measures.values(), strict=False):
         source.note("objectives", f"The {number} objective is {means}.")
     first, times = request["objectives"]
-    objectives = [first, *({"name": each, "measure": each} for each in measures)]
-    if "clock" not in request:
-        return {**request, "objectives": objectives}
-    clock = {name: value for name, value in times.items() if name != "over"} | {"name": "time"}
-    return {**request, "objectives": objectives, "clock": clock}
+    measured: list[Objective] = [{"name": each, "measure": each} for each in measures]
+    request["objectives"] = [first, *measured]
+    if "clock" in request:
+        del times["over"]
+        request["clock"] = cast(ClockRequest, {**times, "name": "time"})
 
 
-def _measures(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> Iterator[tuple[str, str]]:
+def _measures(stops: Sequence[Stop], vehicles: Sequence[Vehicle]) -> Iterator[tuple[Measure, str]]:
     """Yield the measures that stops and vehicles have data for, and what they are."""
     if any(stop.get("prize") for stop in stops):
         left = "the prizes of the stops that are left out: those with a prize may be"
@@ -168,5 +212,4 @@ def distinct(texts: Iterable[str]) -> list[str]:
 
 def listed(texts: Sequence[str]) -> str:
     """Return the first texts for a sentence, and how many more there are."""
-    more = f" and {len(texts) - _MOST_NAMED} more" if len(texts) > _MOST_NAMED else ""
-    return ", ".join(quoted(each) for each in texts[:_MOST_NAMED]) + more
+    return shortened([quoted(each) for each in texts], _MOST_NAMED)

@@ -1,7 +1,9 @@
 """Read columns that say which stops ride together, which apart, and which come before others."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import TypedDict
+
+from paretour.member_parts import ApartRequest, BeforeRequest
 
 from service.files.column_names import GROUPS
 from service.files.columns import Columns
@@ -17,6 +19,14 @@ _SAID = {
 Named = list[tuple[str, list[str]]]  # the id of each stop with a text, and the ids or labels in it
 
 
+class Groups(TypedDict, total=False):
+    """The members of a request for a fleet that say how stops ride with each other."""
+
+    together: list[list[str]]
+    apart: list[ApartRequest]
+    before: list[BeforeRequest]
+
+
 def without_groups(columns: Columns) -> None:
     """Take no column for groups: they alone do not make a fleet of stops."""
     for at, field in enumerate(columns.fields):
@@ -24,7 +34,7 @@ def without_groups(columns: Columns) -> None:
             columns.fields[at] = None
 
 
-def groups_of(columns: Columns, stops: Sequence[Stop]) -> dict[str, Any]:
+def groups_of(columns: Columns, stops: Sequence[Stop]) -> Groups:
     """Return the members of a request for a fleet that columns of groups are for.
 
     A field has ids of other stops, or of `together` and `apart` a text that several stops share.
@@ -33,22 +43,19 @@ def groups_of(columns: Columns, stops: Sequence[Stop]) -> dict[str, Any]:
     Raises:
         UnreadableFile: A stop is named that does not exist.
     """
-    ids = [str(stop["id"]) for stop in stops]
-    found: dict[str, list[Any]] = {}
+    ids = [stop["id"] for stop in stops]
+    found: Groups = {}
     for field in GROUPS:
         if (at := columns.find(field)) is None:
             continue
         named = [(ids[row], texts_in(columns, row, at)) for row in columns.filled(at)]
         if any(text in ids for _, texts in named for text in texts):
             _check_ids(columns, at, ids)
-            groups = list(_by_ids(field, named))
+            _add_by_ids(found, field, named)
         elif field in _SAID:
-            groups = list(_by_labels(columns, at, field, named))
+            _add_by_labels(found, columns, at, field, named)
         else:
             columns.leave_out(field, ", as it names no stops")
-            continue
-        if groups:
-            found.setdefault("before" if field == "after" else field, []).extend(groups)
     return found
 
 
@@ -60,21 +67,23 @@ def _check_ids(columns: Columns, at: int, ids: Sequence[str]) -> None:
             columns.refuse(row, at, "no-such-stops", came=others[0])
 
 
-def _by_ids(field: str, named: Named) -> Iterator[Any]:
-    """Yield the group of each stop that names others."""
+def _add_by_ids(found: Groups, field: str, named: Named) -> None:
+    """Add the group of each stop that names others."""
     for stop, texts in named:
         others = [text for text in dict.fromkeys(texts) if text != stop]
-        if others:
-            yield {
-                "together": [stop, *others],
-                "apart": {"stops": [stop], "others": others},
-                "before": {"first": [stop], "then": others},
-                "after": {"first": others, "then": [stop]},
-            }[field]
+        if not others:
+            continue
+        if field == "together":
+            found.setdefault("together", []).append([stop, *others])
+        elif field == "apart":
+            found.setdefault("apart", []).append({"stops": [stop], "others": others})
+        else:
+            first, then = ([stop], others) if field == "before" else (others, [stop])
+            found.setdefault("before", []).append({"first": first, "then": then})
 
 
-def _by_labels(columns: Columns, at: int, field: str, named: Named) -> Iterator[Any]:
-    """Yield the stops that share each text, of two stops or more, and note what that means."""
+def _add_by_labels(found: Groups, columns: Columns, at: int, field: str, named: Named) -> None:
+    """Add the stops that share each text, of two stops or more, and note what that means."""
     shared: dict[str, list[str]] = {}
     for stop, texts in named:
         for text in dict.fromkeys(texts):
@@ -86,5 +95,8 @@ def _by_labels(columns: Columns, at: int, field: str, named: Named) -> Iterator[
         return
     if groups:
         columns.source.note("groups", _SAID[field].format(name=name))
-    for stops in groups.values():
-        yield stops if field == "together" else {"stops": stops}
+    for group in groups.values():
+        if field == "together":
+            found.setdefault("together", []).append(group)
+        else:
+            found.setdefault("apart", []).append({"stops": group})

@@ -1,10 +1,10 @@
 """Check places on the earth: degrees out of range, and places that look mistaken."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.member_parts import FleetStopRequest
 
 from service.files.reading import Source
 from service.requests.notes.places import doubtful_places
@@ -38,7 +38,7 @@ def out_of_range(place: Sequence[float]) -> Iterator[tuple[int, str, dict[str, o
             yield axis, wrong, {"axis": name, "most": most, "came": value}
 
 
-def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
+def note_places(source: Source, stops: Sequence[FleetStopRequest]) -> None:
     """Note stops whose places look mistaken."""
     places = np.array([stop["location"] for stop in stops])
     for doubt in doubtful_places([str(stop["id"]) for stop in stops], places):

@@ -95,7 +95,7 @@ def recognise_pasted(columns: Columns) -> None:
 
 def count_rows(columns: Columns, at: int) -> bool:
     """Return whether a column counts the rows, in whole numbers."""
-    texts = [row[at] for _, row in columns.table.rows]
+    texts = columns.table.texts(at)
     if len(texts) < 2 or not texts[0].isdecimal() or len(texts[0]) > _LONGEST_COUNT:
         return False
     first = int(texts[0])
@@ -122,7 +122,7 @@ def degrees_in(columns: Columns, free: Sequence[int]) -> tuple[int, int] | None:
 
 def _numbers(columns: Columns, at: int) -> list[float | None]:
     """Return the number in each field of a column, or None."""
-    texts = [row[at] for _, row in columns.table.rows]
+    texts = columns.table.texts(at)
     return [*(plain_numbers(texts) or map(number_in, texts))]
 
 

@@ -3,11 +3,15 @@
 from collections.abc import Sequence
 from itertools import chain
 
+from paretour.member_parts import ObjectiveRequest
+from paretour.members import FrontRequest
+
 from service.errors import Fault
 from service.files.benchmarks.customers import is_customers, read_customers
 from service.files.benchmarks.cvrp import read_cvrp
 from service.files.benchmarks.keywords import check_costs, is_fleet
 from service.files.columns import share_signs
+from service.files.fleets import Stop
 from service.files.json_files.reader import looks_like_json, read_json
 from service.files.maps.octile import is_octile
 from service.files.other_files import STOPS, named_binary
@@ -17,7 +21,6 @@ from service.files.reading import (
     Kind,
     NamedFile,
     Reading,
-    Request,
     Source,
     UnreadableFile,
     check_cells,
@@ -199,14 +202,14 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Fi
     if unrounded:
         if file.kind != "EUC_2D":
             raise source.refusal("not-planes", "EDGE_WEIGHT_TYPE", given=file.kind)
-        return FilePart(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
+        return FilePart(source.name, file.dimension, coordinates=places(file).tolist())
     found = costs(file)
     note_rounded(file)
     plane = places(file).tolist() if file.kind == "EUC_2D" else None
-    return FilePart(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
+    return FilePart(source.name, len(found), matrix=plain(found), plane=plane)
 
 
-def _joined(parts: Sequence[FilePart]) -> Request:
+def _joined(parts: Sequence[FilePart]) -> FrontRequest:
     """Return the request of files about the same stops, one for each objective.
 
     Raises:
@@ -223,20 +226,26 @@ def _joined(parts: Sequence[FilePart]) -> Request:
     located = [part.stops for part in parts if part.stops]
     if len(located) > 1:
         raise _of_files("two-with-places")
-    if not ids and all(part.costs.keys() == {"matrix"} for part in parts):
-        return {"matrices": [part.costs["matrix"] for part in parts]}
-    if not ids and all(part.costs.keys() == {"coordinates"} for part in parts):
-        return {"coordinates": _side_by_side([part.costs["coordinates"] for part in parts])}
+    matrices = [part.matrix for part in parts if part.matrix is not None]
+    if not ids and len(matrices) == len(parts):
+        return {"matrices": matrices}
+    coordinates = [part.coordinates for part in parts if part.coordinates is not None]
+    if not ids and len(coordinates) == len(parts):
+        return {"coordinates": _side_by_side(coordinates)}
     names = [part.name.rpartition(".")[0][:80] or part.name[:80] for part in parts]
     if len(set(names)) < len(names):
         names = [f"{nth} length" for nth in NTH[: len(parts)]]
-    objectives = [
-        {"name": name, **(part.costs or {"from": "great_circle"})}
-        for name, part in zip(names, parts, strict=True)
-    ]
-    named = [{"id": each} for each in ids or map(str, range(1, first.count + 1))]
-    stops = located[0] if located else named
-    return {"stops": stops, "objectives": objectives}
+    objectives = [_objective(name, part) for name, part in zip(names, parts, strict=True)]
+    named: list[Stop] = [{"id": each} for each in ids or map(str, range(1, first.count + 1))]
+    return {"stops": located[0] if located else named, "objectives": objectives}
+
+
+def _objective(name: str, part: FilePart) -> ObjectiveRequest:
+    if part.matrix is not None:
+        return {"name": name, "matrix": part.matrix}
+    if part.coordinates is not None:
+        return {"name": name, "coordinates": part.coordinates}
+    return {"name": name, "from": "great_circle"}
 
 
 def _of_files(code: str, **values: object) -> UnreadableFile:

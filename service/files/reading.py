@@ -5,13 +5,15 @@ from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
+from paretour.members import CoverageRequest, FleetRequest, FrontRequest
+
 from service.errors import Fault
 from service.errors import faults as faults_
 from service.errors.printable import printable
 from service.files.work import TooMuchWork, Work
 
 Kind = Literal["front", "fleet", "coverage"]
-Request = dict[str, Any]
+Request = FrontRequest | FleetRequest | CoverageRequest
 _PICTURES = (b"\x89PNG", b"P5", b"P2")
 _PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
 LONGEST_NAME = 200  # characters of the name of a column by which it is known
@@ -311,7 +313,7 @@ def check_cells(sources: Sequence[Source]) -> None:
         raise WrongCell(*cells, least="at least " if most >= MOST_WRONG else "")
 
 
-def _ids_in(request: Request) -> list[str]:
+def _ids_in(request: Mapping[str, Any]) -> list[str]:
     """Return the ids of the stops of a request, or their numbers from 1."""
     if "stops" in request:
         return [str(stop.get("id")) for stop in request["stops"]]

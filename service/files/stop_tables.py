@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.member_parts import ObjectiveRequest
 
 from service.files.cells.times import read_calendar
 from service.files.column_names import FLEET, GROUPS, PLANES
@@ -43,7 +44,8 @@ class FilePart:
     name: str
     count: int
     ids: list[str] | None = None
-    costs: dict[str, Any] = field(default_factory=dict)  # members of an objective
+    matrix: list[list[Any]] | None = None
+    coordinates: list[list[float]] | None = None
     stops: list[Stop] | None = None  # stops with locations
     plane: list[list[float]] | None = None  # points whose rounded distances are the costs
 
@@ -117,11 +119,11 @@ def _in_planes(columns: Columns) -> Reading:
     if ids is None:
         rows = [list(chain.from_iterable(each)) for each in zip(*found, strict=True)]
         return source.reading("front", {"coordinates": rows})
-    objectives = [
+    objectives: list[ObjectiveRequest] = [
         {"name": f"{nth} length", "coordinates": plane}
         for nth, plane in zip(NTH, found, strict=False)
     ]
-    stops = [{"id": each} for each in ids]
+    stops: list[Stop] = [{"id": each} for each in ids]
     return source.reading("front", {"stops": stops, "objectives": objectives})
 
 
@@ -152,8 +154,8 @@ def _located(columns: Columns) -> Reading:
     note_places(source, stops)
     others = _other_objectives(columns, stops)
     columns.report()
-    distance = {"name": "distance", "from": "great_circle"}
-    return source.reading("front", {"stops": stops, "objectives": [distance, *others]})
+    objectives: list[ObjectiveRequest] = [{"name": "distance", "from": "great_circle"}, *others]
+    return source.reading("front", {"stops": stops, "objectives": objectives})
 
 
 def _fleet(columns: Columns) -> Reading:
@@ -203,7 +205,7 @@ def _places(columns: Columns) -> list[list[float]]:
         for name in ("longitude", "latitude"):
             if (other := columns.find(name)) is not None:
                 columns.fields[other] = None
-        places = [place_in(row[at]) or [0.0, 0.0] for _, row in columns.table.rows]
+        places = [place_in(text) or [0.0, 0.0] for text in columns.table.texts(at)]
         longitude = latitude = at
     for row, place in enumerate(places):
         check_degrees(columns, row, (longitude, latitude), place)
@@ -230,7 +232,7 @@ def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
     return [{"id": each, "location": place} for each, place in zip(ids, places, strict=True)]
 
 
-def _other_objectives(columns: Columns, stops: list[Stop]) -> list[dict[str, Any]]:
+def _other_objectives(columns: Columns, stops: list[Stop]) -> list[ObjectiveRequest]:
     """Return the objectives after distance: a plane, costs per metre, or else time by road."""
     x, y = (columns.find(name) for name in ("x", "y"))
     if x is not None and y is not None:
@@ -248,7 +250,7 @@ def _other_objectives(columns: Columns, stops: list[Stop]) -> list[dict[str, Any
     return [_cost_per_metre(columns, at, stops) for at in costs]
 
 
-def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> dict[str, Any]:
+def _cost_per_metre(columns: Columns, cost: int, stops: list[Stop]) -> ObjectiveRequest:
     """Return the objective of a column that says what a metre costs near each stop."""
     source = columns.source
     source.check_count("stops with a cost", source.bounds.matrix_cities, len(stops))
@@ -291,9 +293,9 @@ def part_of(source: Source, table: Table) -> FilePart:
     columns.read_signs(free)
     ids = columns.ids() if "id" in columns.fields else None
     if len(free) == 2 != count:
-        return FilePart(name, count, ids, {"coordinates": columns.numbers(free)})
+        return FilePart(name, count, ids, coordinates=columns.numbers(free))
     source.check_count("cities", source.bounds.matrix_cities, count)
-    return FilePart(name, count, ids, {"matrix": _costs(columns, free)})
+    return FilePart(name, count, ids, _costs(columns, free))
 
 
 def _is_numbered(columns: Columns) -> bool:

@@ -59,6 +59,10 @@ class Table:
         """The number of fields in each row."""
         return len(self.rows[0][1])
 
+    def texts(self, column: int) -> list[str]:
+        """Return the texts of a column."""
+        return [row[column] for _, row in self.rows]
+
     @property
     def numbered(self) -> list[str]:
         """The numbers of columns in the file, from 1, as their names."""

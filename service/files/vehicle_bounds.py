@@ -1,22 +1,44 @@
 """Read the columns of a table of vehicles that bound routes: skills, stops, trips and overtime."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from typing import Any, Literal
 
+from service.errors.faults import show
 from service.files.cells.times import seconds_in
 from service.files.columns import Columns
 from service.files.fleets import Stop, Vehicle, in_shifts
-from service.files.reading import UnreadableFile, quoted
+from service.files.reading import quoted
 from service.files.visits import texts_in
 
+_Bound = Literal["max_stops", "min_stops", "max_trips", "max_overtime", "speed_factor"]
 _PER_UNIT = 8  # vehicles whose skills are compared for one unit of work
 
 
 def add_skills(columns: Columns, vehicles: list[Vehicle]) -> None:
     """Add what vehicles are able to do."""
-    if (at := columns.find("skills")) is not None:
-        for row in columns.filled(at):
-            vehicles[row]["skills"] = texts_in(columns, row, at)
+    for row, skills in columns.values("skills", partial(texts_in, columns)):
+        vehicles[row]["skills"] = skills
+
+
+def add_profiles(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
+    """Add the profiles by which vehicles drive by road; leave them out where nothing knows them.
+
+    A field that is no profile of the routing engine is kept as wrong.
+    """
+    known = columns.source.bounds.profiles
+    if not known or not located:
+        columns.leave_out("profile", " without profiles of a routing engine")
+    for row, profile in columns.values("profile", partial(_profile, columns)):
+        vehicles[row]["profile"] = profile
+
+
+def _profile(columns: Columns, row: int, at: int) -> str:
+    profile, known = " ".join(columns.text(row, at).split()), columns.source.bounds.profiles
+    if profile not in known:
+        names = " or ".join(map(show, known))
+        raise columns.refuse(row, at, "not-a-road-profile", names=names, came=profile)
+    return profile
 
 
 def check_servers(
@@ -62,64 +84,57 @@ def add_bounds(columns: Columns, vehicles: list[Vehicle]) -> None:
 
     Fields that are not numbers, or need a shift or a stop for loading again, are kept as wrong.
     """
-    for name, add in (
-        ("max_stops", _add_max_stops),
-        ("min_stops", _add_min_stops),
-        ("max_trips", _add_max_trips),
-        ("max_overtime", _add_max_overtime),
-        ("speed_factor", _add_speed),
-    ):
-        if (at := columns.find(name)) is not None:
-            for row in columns.filled(at):
-                columns.tried(None, add, columns, row, at, vehicles[row])
+    readers: Mapping[_Bound, Callable[[int, int], Any]] = {
+        "max_stops": partial(_max_stops, columns),
+        "min_stops": columns.whole,
+        "max_trips": partial(_max_trips, columns, vehicles),
+        "max_overtime": partial(_max_overtime, columns, vehicles),
+        "speed_factor": partial(_speed_factor, columns),
+    }
+    for name, read in readers.items():
+        for row, value in columns.values(name, read):
+            vehicles[row][name] = value
 
 
-def _add_max_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+def _max_stops(columns: Columns, row: int, at: int) -> int:
     for name in ("reload", "max_trips"):
         other = columns.find(name)
         if other is not None and columns.text(row, other):
-            raise _beside(columns, row, at, other)
-    vehicle["max_stops"] = columns.whole(row, at)
+            beside, came = columns.names[other], columns.text(row, at)
+            raise columns.refuse(row, at, "empty-beside", beside=beside, came=came)
+    return columns.whole(row, at)
 
 
-def _add_min_stops(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
-    vehicle["min_stops"] = columns.whole(row, at)
-
-
-def _beside(columns: Columns, row: int, at: int, other: int) -> UnreadableFile:
-    beside, came = columns.names[other], columns.text(row, at)
-    return columns.refuse(row, at, "empty-beside", beside=beside, came=came)
-
-
-def _add_max_trips(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
-    """Add the most trips of a route; by default vehicles load again where they start."""
+def _max_trips(columns: Columns, vehicles: Sequence[Vehicle], row: int, at: int) -> int:
+    """Return the most trips of a route; by default its vehicle loads again where it starts."""
+    vehicle = vehicles[row]
     if "reload" not in vehicle:
-        if "start" not in vehicle:
+        if (start := vehicle.get("start")) is None:
             raise columns.refuse(row, at, "no-column-reload")
-        vehicle["reload"] = [vehicle["start"]]
-    vehicle["max_trips"] = columns.whole(row, at)
+        vehicle["reload"] = [start]
+    return columns.whole(row, at)
 
 
-def _add_speed(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
+def _speed_factor(columns: Columns, row: int, at: int) -> float:
     factor = columns.amount(row, at)
     if factor == 0:
         raise columns.refuse(row, at, "no-speed", came=columns.text(row, at))
-    vehicle["speed_factor"] = factor
+    return factor
+
+
+def _max_overtime(columns: Columns, vehicles: Sequence[Vehicle], row: int, at: int) -> float | None:
+    overtime = seconds_in(columns, row, at)
+    if overtime and not in_shifts([vehicles[row]]):
+        raise columns.refuse(row, at, "no-shift", came=columns.text(row, at))
+    return overtime or None
 
 
 def add_times(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
     """Add the least time of routes, and how fast vehicles serve; neither without a clock."""
-    for name, member in (("shortest_time", "shortest"), ("service_factor", "service_factor")):
-        if not clock:
-            columns.leave_out(name, " without times")
-        if (at := columns.find(name)) is not None:
-            read = partial(seconds_in, columns) if member == "shortest" else columns.amount
-            for row in columns.filled(at):
-                vehicles[row][member] = columns.tried(0.0, read, row, at)
-
-
-def _add_max_overtime(columns: Columns, row: int, at: int, vehicle: Vehicle) -> None:
-    if overtime := seconds_in(columns, row, at):
-        if not in_shifts([vehicle]):
-            raise columns.refuse(row, at, "no-shift", came=columns.text(row, at))
-        vehicle["max_overtime"] = overtime
+    if not clock:
+        columns.leave_out("shortest_time", " without times")
+        columns.leave_out("service_factor", " without times")
+    for row, time in columns.values("shortest_time", partial(seconds_in, columns), 0.0):
+        vehicles[row]["shortest"] = time
+    for row, factor in columns.values("service_factor", columns.amount, 0.0):
+        vehicles[row]["service_factor"] = factor

@@ -2,6 +2,9 @@
 
 import re
 from collections.abc import Mapping
+from functools import partial
+
+from paretour.members import FleetRequest
 
 from service.files.cells.durations import read_units
 from service.files.cells.times import (
@@ -14,16 +17,31 @@ from service.files.cells.times import (
 from service.files.column_names import fields_of, is_about_vehicles, plain_name
 from service.files.columns import Columns, columns_of, columns_of_vehicles
 from service.files.depots import with_depots
-from service.files.fleets import Stop, Vehicle, fleet_of_tables, have_times, spans
+from service.files.fleets import (
+    ENDS,
+    End,
+    Stop,
+    Vehicle,
+    add_shifts,
+    fleet_of_tables,
+    have_times,
+)
 from service.files.groups import groups_of
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
-from service.files.vehicle_bounds import add_bounds, add_skills, add_times, check_servers
+from service.files.vehicle_bounds import (
+    add_bounds,
+    add_profiles,
+    add_skills,
+    add_times,
+    check_servers,
+)
 from service.files.vehicle_loads import add_loads
 from service.files.visits import add_visits, texts_in
 
-_ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # members by column
+# Members by column.
+_ENDS: Mapping[str, tuple[End, ...]] = {"depot": ENDS, "start": ENDS[:1], "end": ENDS[1:]}
 _KILOMETRE, _HOUR = 1000.0, 3600.0
 _IN_KILOMETRES = re.compile(r"km\b", re.IGNORECASE)
 
@@ -61,15 +79,16 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     add_skills(columns, vehicles)
     check_servers(visits, stops, columns, vehicles)
     visits.report()
-    stops, vehicles = with_depots(visits, stops, vehicles, plane)
+    stops = with_depots(visits, stops, vehicles, plane)
     add_bounds(columns, vehicles)
     paid = plane is None and columns.find("per_hour") is not None
     clock = have_times(stops, vehicles) or paid
+    add_profiles(columns, vehicles, located=plane is None)
     _add_limits(columns, vehicles, clock)
     add_times(columns, vehicles, clock)
     _add_costs(columns, vehicles, located=plane is None)
     columns.report()
-    request = {**fleet_of_tables(source, stops, vehicles, plane), **groups}
+    request: FleetRequest = {**fleet_of_tables(source, stops, vehicles, plane), **groups}
     return reading_of_several("fleet", request, (source, other))
 
 
@@ -84,7 +103,7 @@ def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Col
         at = columns.find(end)
         if at is None or bound in columns.fields or columns.is_chosen(at):
             continue
-        texts = {text for _, row in columns.table.rows if (text := row[at])}
+        texts = {text for text in columns.table.texts(at) if text}
         if not texts & ids and all(map(is_time, texts)):
             columns.fields[at] = bound
     return columns
@@ -147,10 +166,12 @@ class _Vehicles:
             vehicle["count"] = columns.tried(1, columns.whole, row, at)
         for place, ends in _ENDS.items():
             if name := columns.tried(self._stops[0]["id"], self._place, row, place, id_):
-                vehicle |= dict.fromkeys(ends, name)
+                for end in ends:
+                    vehicle[end] = name
         if (at := columns.find("reload")) is not None and columns.text(row, at):
             vehicle["reload"] = columns.tried(None, self._reload, row, at) or []
-        return vehicle | spans("shift", spans_in(columns, row, ["shift"]))
+        add_shifts(vehicle, spans_in(columns, row, ["shift"]))
+        return vehicle
 
     def _reload(self, row: int, at: int) -> list[str]:
         """Return the ids of the stops at which a vehicle may load again."""
@@ -161,8 +182,11 @@ class _Vehicles:
                 raise self._columns.refuse(row, at, "no-such-stops", came=each)
         return ids
 
-    def _place(self, row: int, place: str, vehicle: str) -> str | None:
-        """Return the id of the stop where a vehicle starts or ends, given as an id or a place."""
+    def _place(self, row: int, place: str, vehicle: str) -> str:
+        """Return the id of the stop where a vehicle starts or ends, given as an id or a place.
+
+        "" if it is not given.
+        """
         columns = self._columns
         at = columns.find(place)
         if at is not None and (text := " ".join(columns.text(row, at).split())):
@@ -171,9 +195,9 @@ class _Vehicles:
             return text
         longitude, latitude = columns.find(f"{place}_longitude"), columns.find(f"{place}_latitude")
         if longitude is None or latitude is None:
-            return None
+            return ""
         if not columns.text(row, longitude) and not columns.text(row, latitude):
-            return None
+            return ""
         if not self._located:
             raise columns.refuse(row, latitude, "empty-in-planes")
         fields = (longitude, latitude)
@@ -190,7 +214,8 @@ def _name_servers(stops: list[Stop], names: Mapping[str, str]) -> None:
     """Name the vehicle of each stop as the table of vehicles does, also if it has its driver."""
     for stop in stops:
         if "vehicle" in stop:
-            stop["vehicle"] = names.get(stop["vehicle"], stop["vehicle"])
+            name = str(stop["vehicle"])
+            stop["vehicle"] = names.get(name, name)
 
 
 def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
@@ -199,16 +224,14 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
     if not clock:
         used, left_out = left_out, used
     columns.leave_out(left_out, " with times" if clock else " without times")
-    if (at := columns.find(used)) is None:
-        return
-    for row, vehicle in enumerate(vehicles):
-        if columns.text(row, at):
-            unit = _KILOMETRE if _IN_KILOMETRES.search(columns.names[at]) else 1.0
-            vehicle["longest"] = (
-                columns.tried(0.0, seconds_in, columns, row, at)
-                if clock
-                else unit * columns.tried(0.0, columns.amount, row, at)
-            )
+    read = partial(seconds_in if clock else _metres, columns)
+    for row, limit in columns.values(used, read, 0.0):
+        vehicles[row]["longest"] = limit
+
+
+def _metres(columns: Columns, row: int, at: int) -> float:
+    unit = _KILOMETRE if _IN_KILOMETRES.search(columns.names[at]) else 1.0
+    return unit * columns.amount(row, at)
 
 
 def _add_costs(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
@@ -242,17 +265,15 @@ def _add_fixed(columns: Columns, vehicles: list[Vehicle], unit: float, means: st
     if (at := columns.find("fixed")) is None:
         return
     columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
-    for row, vehicle in enumerate(vehicles):
-        if columns.text(row, at):
-            vehicle["fixed"] = columns.tried(0.0, columns.amount, row, at) / unit
+    for row, cost in columns.values("fixed", columns.amount, 0.0):
+        vehicles[row]["fixed"] = cost / unit
 
 
 def _hourly(columns: Columns) -> list[float]:
     """Return the cost of an hour of each vehicle; nothing without a column."""
-    if (at := columns.find("per_hour")) is None:
-        return []
-    rows = range(len(columns.table.rows))
-    return [columns.tried(0.0, columns.amount, r, at) if columns.text(r, at) else 0.0 for r in rows]
+    costs = dict(columns.values("per_hour", columns.amount, 0.0))
+    rows = range(len(columns.table.rows) if "per_hour" in columns.fields else 0)
+    return [costs.get(row, 0.0) for row in rows]
 
 
 def _rates(columns: Columns) -> list[float]:

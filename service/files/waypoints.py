@@ -5,10 +5,12 @@ document type is refused, and so are more elements than stops need.
 """
 
 import codecs
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+from service.files.cells.ids import each_once
 from service.files.column_names import fields_of
 from service.files.other_files import STOPS, XML
 from service.files.places import check_range
@@ -286,19 +288,7 @@ def _names(source: Source, points: list[_Point]) -> list[str]:
     given = [point.texts.get("id") or str(at) for at, point in enumerate(points, 1)]
     if any("id" not in point.texts for point in points):
         source.note("ids", "Points without a name are numbered from 1.")
-    taken, names = set(given), []
-    seen: dict[str, int] = {}
-    for name in given:
-        seen[name] = seen.get(name, 0) + 1
-        number = seen[name]
-        shown = name if number == 1 else f"{name} ({number})"
-        while number > 1 and shown in taken:
-            number += 1
-            shown = f"{name} ({number})"
-        seen[name] = number
-        taken.add(shown)
-        names.append(shown)
-    if shared := [name for name, count in seen.items() if count > 1]:
+    if shared := [name for name, count in Counter(given).items() if count > 1]:
         named = ", ".join(quoted(name) for name in shared[:3])
         source.note("ids", f"Points that share a name were numbered, as {named}.")
-    return names
+    return each_once(given)

@@ -1,11 +1,12 @@
 """Check that what each stop and each type of vehicles asks for fits the rest of a fleet's rules."""
 
+from collections.abc import Container, Sequence
 from math import inf
 from typing import NamedTuple
 
 from service.errors import invalid
 from service.fleet.rounding import is_over
-from service.fleet.vehicles import ALWAYS, Span, VehicleType, Visit
+from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 
 
 class Basis(NamedTuple):
@@ -181,3 +182,59 @@ def check_shipped(visit: Visit, stop: int) -> None:
         raise invalid(f"stops/{stop}/release", "release-of-shipment")
     if any(visit.pickup):
         raise invalid(f"stops/{stop}/pickup", "pickup-of-shipment")
+
+
+def check_shipments(
+    shipments: Sequence[Shipment], visits: Sequence[Visit], depots: Container[int]
+) -> None:
+    """Raise a refusal if a stop is in two shipments, or asks for what it cannot in one."""
+    parts: dict[int, str] = {}
+    for index, shipment in enumerate(shipments):
+        for name, stop in (("pickup", shipment.pickup), ("delivery", shipment.delivery)):
+            part = f"shipments/{index}/{name}"
+            if stop in depots:
+                raise invalid(part, "shipped-to-depot")
+            if parts.setdefault(stop, part) != part:
+                raise invalid(part, "in-two-shipments", other=f"/{parts[stop]}")
+            check_shipped(visits[stop], stop)
+        delivery = visits[shipment.delivery]
+        if any(delivery.demand) or delivery.prize is not None:
+            raise invalid(f"shipments/{index}/delivery", "delivery-asks")
+
+
+def check_percents(
+    percents: Sequence[int | None],
+    of_clock: Sequence[bool],
+    vehicles: Sequence[VehicleType],
+    *,
+    spreads: bool,
+) -> None:
+    """Raise a refusal of a percentile of what does not spread, or is not just the time of routes.
+
+    Args:
+        percents: Of each objective; None for no percentile.
+        of_clock: Whether each objective is the time of routes.
+        vehicles: The types of vehicles.
+        spreads: Whether times spread from day to day.
+    """
+    for index, percent in enumerate(percents):
+        part = f"objectives/{index}/percentile"
+        if percent is None:
+            continue
+        if not of_clock[index]:
+            raise invalid(part, "spread-of-clock")
+        if not spreads:
+            raise invalid(part, "no-spread")
+        for number, vehicle in enumerate(vehicles):
+            _check_beside_percentile(vehicle, f"vehicles/{number}", f"/{part}", first=index == 0)
+
+
+def _check_beside_percentile(vehicle: VehicleType, part: str, other: str, *, first: bool) -> None:
+    """Raise a refusal of breaks, and of prices of the first objective if that has a percentile."""
+    for name, given in (
+        ("breaks", bool(vehicle.breaks)),
+        ("per_distance", first and vehicle.per_distance != 1),
+        ("per_time", first and vehicle.per_time > 0),
+    ):
+        if given:
+            raise invalid(f"{part}/{name}", "beside-a-percentile", other=other)

@@ -18,6 +18,7 @@ import numpy as np
 from service.fleet.evaluation import first_broken, route_lengths, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
+from service.fleet.punctuality import duration_of
 from service.fleet.rules import Rules
 from service.pareto import nondominated
 
@@ -29,7 +30,7 @@ _JOINED: Mapping[str, tuple[Callable[[float, float], float], ...]] = {
     "max": (max,),
     "imbalance": (max, max),
 }
-_NOTHING: Mapping[str, tuple[float, ...]] = {"imbalance": (-inf, -inf)}
+_NOTHING: Mapping[str, float] = {"imbalance": -inf}
 
 
 class _Partial(NamedTuple):
@@ -98,7 +99,11 @@ def exact_plans(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> list
     Return None if `ended`, which is called every few milliseconds, returns True before the end.
     """
     rules = fleet.rules
-    nothing = tuple(value for over in rules.over for value in _NOTHING.get(over, (0.0,)))
+    nothing = tuple(
+        0.0 if way is add else _NOTHING.get(over, 0.0)
+        for m, over in enumerate(rules.over)
+        for way in _ways(rules, m)
+    )
     partials: Partials = {frozenset(): [_Partial(nothing, ())]}
     try:
         for index, vehicle in enumerate(rules.vehicles):
@@ -137,11 +142,27 @@ def _in_order(
 
 
 def _values(fleet: Fleet, route: Route) -> Iterator[float]:
-    """Yield the values by which a route is compared: its lengths, for imbalance with both signs."""
-    for over, length in zip(fleet.rules.over, route_lengths(fleet, route), strict=True):
+    """Yield the values by which a route is compared: its lengths, for imbalance with both signs.
+
+    A percentile of all routes together rises with the mean and with the variance of each.
+    """
+    for m, (over, length) in enumerate(
+        zip(fleet.rules.over, route_lengths(fleet, route), strict=True)
+    ):
+        if over == "sum" and fleet.rules.percent(m) is not None:
+            yield from duration_of(fleet, route)
+            continue
         yield length
         if over == "imbalance":
             yield -length
+
+
+def _ways(rules: Rules, objective: int) -> tuple[Callable[[float, float], float], ...]:
+    """Return how the values of two partial plans in an objective are joined."""
+    over = rules.over[objective]
+    if over == "sum" and rules.percent(objective) is not None:
+        return add, add
+    return _JOINED.get(over, (add,))
 
 
 def _trips(rules: Rules, vehicle: int, stops: tuple[int, ...]) -> Iterator[Route]:
@@ -179,7 +200,7 @@ def _with_another(
 
 
 def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
-    ways = [way for over in rules.over for way in _JOINED.get(over, (add,))]
+    ways = [way for m in range(len(rules.over)) for way in _ways(rules, m)]
     values = tuple(way(x, y) for way, x, y in zip(ways, a.values, b.values, strict=True))
     return _Partial(values, a.routes + b.routes)
 

@@ -4,19 +4,19 @@ Every plan is checked with this code, which shares nothing with the engine that 
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from itertools import accumulate
 from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
+from service.fleet.carried import load_distance, loads_on
 from service.fleet.fleet import Array, Fleet
 from service.fleet.of_times import OF_TIMES, changes
 from service.fleet.overlap import overlap
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.punctuality import punctuality
+from service.fleet.punctuality import late_visits, longest_duration, punctuality
 from service.fleet.rounding import is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of
@@ -29,10 +29,16 @@ def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
 
     By the clock's costs that is its duration, by others the sum of its legs; the first one is at
     the prices of its vehicle. The imbalance of a plan is that of the lengths that routes have here.
+    A percentile is that of the route alone.
     """
     times = _times_of(fleet, route)
-    pairs = zip(fleet.rules.over, fleet.rules.layers, strict=True)
-    first, *others = (_length(fleet, route, times, over, layer) for over, layer in pairs)
+    pairs = enumerate(zip(fleet.rules.over, fleet.rules.layers, strict=True))
+    first, *others = (
+        longest_duration(fleet, (route,), percent)
+        if (percent := fleet.rules.percent(m)) is not None
+        else _length(fleet, route, times, over, layer)
+        for m, (over, layer) in pairs
+    )
     vehicle = fleet.rules.vehicles[route.vehicle]
     first *= vehicle.per_distance
     if times is not None and vehicle.per_time:
@@ -57,9 +63,7 @@ def joined_lengths(
     fleet: Fleet, plan: Plan, of_routes: Sequence[tuple[float, ...]]
 ) -> tuple[float, ...]:
     """Return the lengths of a plan, given those of its routes."""
-    rules = fleet.rules
-    columns = list(zip(*of_routes, strict=True)) or [()] * len(rules.over)
-    lengths = [joined(over, column) for over, column in zip(rules.over, columns, strict=True)]
+    rules, lengths = fleet.rules, routes_together(fleet, plan.routes, of_routes)
     lengths[0] += fixed_costs(rules, plan)
     paid = rules.over.index("unassigned") if "unassigned" in rules.over else 0
     lengths[paid] += lost_prizes(rules, plan)
@@ -68,7 +72,21 @@ def joined_lengths(
     return tuple(lengths)
 
 
-def joined(over: Over | Measure, lengths: Sequence[float]) -> float:
+def routes_together(
+    fleet: Fleet, routes: Sequence[Route], of_routes: Sequence[tuple[float, ...]]
+) -> list[float]:
+    """Return the lengths of all routes together, given those of each."""
+    rules = fleet.rules
+    columns = list(zip(*of_routes, strict=True)) or [()] * len(rules.over)
+    return [
+        longest_duration(fleet, routes, percent)
+        if over == "sum" and (percent := rules.percent(m)) is not None
+        else _joined(over, column)
+        for m, (over, column) in enumerate(zip(rules.over, columns, strict=True))
+    ]
+
+
+def _joined(over: Over | Measure, lengths: Sequence[float]) -> float:
     """Return the length of a plan whose routes have these lengths."""
     if over == "max":
         return max(lengths, default=0.0)
@@ -191,10 +209,8 @@ def _length(
             return 0.0
         case "overtime" | "lateness" | "earliness" | "weighted_arrival" if times is not None:
             return OF_TIMES[over](fleet.rules, route, times)
-        case "load_distance":
-            return load_distance(fleet, route)
-        case "overlap":
-            return overlap(fleet, route)
+        case "load_distance" | "overlap" | "on_time":
+            return _OF_ROUTE[over](fleet, route)
         case "changes":
             return changes(fleet.rules, route, times)
         case "imbalance" if fleet.rules.limited is not None:
@@ -209,16 +225,11 @@ def cost_length(fleet: Fleet, route: Route, layer: int) -> float:
     return sum(legs(fleet, route, layer))
 
 
-@lru_cache(REMEMBERED)
-def load_distance(fleet: Fleet, route: Route) -> float:
-    """Return the sum over the legs of the first costs times the load, in its first dimension."""
-    vehicle = fleet.rules.vehicles[route.vehicle]
-    first, *others = trips_of(fleet.rules, route)
-    # The loads before and after each stop. Open routes have no leg at that end.
-    loads = [*_loads(fleet.rules, first, 0, vehicle.initial_load)]
-    loads += [load for trip in others for load in _loads(fleet.rules, trip, 0, ())]
-    loads = loads[vehicle.start is None : len(loads) - (vehicle.end is None)]
-    return sum(cost * load for cost, load in zip(legs(fleet, route, 0), loads, strict=True))
+_OF_ROUTE: Mapping[str, Callable[[Fleet, Route], float]] = {
+    "load_distance": load_distance,
+    "overlap": overlap,
+    "on_time": late_visits,
+}
 
 
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
@@ -345,38 +356,5 @@ def _trips_broken(rules: Rules, route: Route) -> Iterator[Broken]:
     for dimension, capacity in enumerate(vehicle.capacity):
         for number, trip in enumerate(trips):
             first = vehicle.initial_load if number == 0 else ()
-            if (most := max(_loads(rules, trip, dimension, first))) > capacity:
+            if (most := max(loads_on(rules, trip, dimension, first))) > capacity:
                 yield Broken("capacity", f"holds {most} of {capacity}")
-
-
-def most_carried(rules: Rules, route: Route) -> list[int]:
-    """Return the most that a vehicle carries at a time on its route, in each dimension."""
-    first = rules.vehicles[route.vehicle].initial_load
-    trips = list(enumerate(trips_of(rules, route)))
-    return [
-        max(max(_loads(rules, trip, each, () if number else first)) for number, trip in trips)
-        for each in range(rules.dimensions)
-    ]
-
-
-def _loads(
-    rules: Rules, trip: Sequence[int], dimension: int, initial_load: Sequence[int]
-) -> Iterator[int]:
-    """Return the load on a trip in one dimension, at its start and after each visit.
-
-    At the start it is the demand of all stops that are not in shipments, and the initial load,
-    which stays on board, as do the pick-ups of stops.
-    """
-    pickups = {each.delivery: each.pickup for each in rules.shipments}
-
-    def change(stop: int) -> int:
-        demand = rules.visits[pickups.get(stop, stop)].demand
-        load = demand[dimension] if demand else 0
-        taken = rules.visits[stop].pickup
-        on = taken[dimension] if taken else 0
-        return load if stop in rules.shipped and stop not in pickups else on - load
-
-    demands = [rules.visits[stop].demand for stop in trip if stop not in rules.shipped]
-    brought = sum(demand[dimension] for demand in demands if demand)
-    brought += initial_load[dimension] if initial_load else 0
-    return accumulate(map(change, trip), initial=brought)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.day.costs import CostsOfDay
+from service.fleet.costs import Day, allowed, checked
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.straight import Line
 from service.instance import SAMPLED, largest_costs, ordinary_cost
@@ -33,23 +34,25 @@ class Fleet:
         rules: The rules.
         costs: The matrices, shape (2, n, n); without stops, shape (2, 0, 0), if there are lines.
         lines: The two lines instead of them; none if there are matrices.
-        day: Both costs over the day, if some change. `costs` are then their means.
         profiles: The matrices of each profile, if types of vehicles drive by different ones.
             `costs` are then the least of them.
+        days: Both costs over the day by each profile, if some change; none if not. All profiles
+            have the same slices, and the matrices are then the means.
     """
 
     rules: Rules
     costs: Array
     lines: tuple[Line, ...] = ()
-    day: tuple[CostsOfDay, CostsOfDay] | None = None
     profiles: tuple[Array, ...] = ()
+    days: tuple[Day, ...] = ()
 
     @classmethod
-    def of_profiles(cls, rules: Rules, profiles: Sequence[Array]) -> "Fleet":
+    def of_profiles(
+        cls, rules: Rules, profiles: Sequence[Array], days: Sequence[Day] = ()
+    ) -> "Fleet":
         """Return a fleet whose types of vehicles drive by profiles, whose costs these are."""
-        if len(profiles) == 1:
-            return cls(rules=rules, costs=profiles[0])
-        return cls(rules=rules, costs=profiles[0], profiles=tuple(profiles))
+        several = tuple(profiles) if len(profiles) > 1 else ()
+        return cls(rules=rules, costs=profiles[0], profiles=several, days=tuple(days))
 
     @classmethod
     def of_lines(cls, rules: Rules, lines: Sequence[Line]) -> "Fleet":
@@ -57,26 +60,31 @@ class Fleet:
         return cls(rules=rules, costs=np.empty((LAYERS, 0, 0)), lines=tuple(lines))
 
     @classmethod
-    def over_the_day(cls, rules: Rules, first: CostsOfDay, second: CostsOfDay) -> "Fleet":
-        """Return a fleet whose costs change over the day, with the means of its shifts."""
+    def over_the_day(cls, rules: Rules, *costs: CostsOfDay) -> "Fleet":
+        """Return a fleet whose costs change over the day, with the means of its shifts.
+
+        `costs` are both costs by one profile after another.
+        """
         ends = [end for vehicle in rules.vehicles for end in vehicle.way if end < inf]
         begin = rules.begin
-        end = max([begin, *ends, *(each.begins[-1] for each in (first, second))])
-        costs = np.stack([each.mean(begin, end) for each in (first, second)])
-        return cls(rules=rules, costs=costs, day=(first, second))
+        end = max([begin, *ends, *(each.begins[-1] for each in costs)])
+        days = list(zip(costs[::LAYERS], costs[1::LAYERS], strict=True))
+        means = [np.stack([each.mean(begin, end) for each in day]) for day in days]
+        return cls.of_profiles(rules, means, days)
 
     def __post_init__(self) -> None:
         n = 0 if self.lines else self.rules.n
         if self.costs.shape != (LAYERS, n, n):
             raise ValueError(f"costs must have shape {(LAYERS, n, n)}, got {self.costs.shape}")
-        profiles = tuple(map(_checked, self.profiles or (self.costs,)))
+        profiles = tuple(map(checked, self._by_profile))
         costs = np.minimum.reduce(profiles) if self.profiles else profiles[0]
         costs.flags.writeable = False
         object.__setattr__(self, "costs", costs)
         object.__setattr__(self, "profiles", profiles if self.profiles else ())
-        if self.day is not None:
-            first, second = (_allowed(each, np.isinf(costs[0])) for each in self.day)
-            object.__setattr__(self, "day", (first, second))
+        if self.days:
+            pairs = zip(self.days, profiles, strict=True)
+            days = tuple(allowed(day, np.isinf(means[0])) for day, means in pairs)
+            object.__setattr__(self, "days", days)
 
     def under(self, rules: Rules) -> "Fleet":
         """Return the fleet under other rules."""
@@ -86,11 +94,10 @@ class Fleet:
         """Return a fleet of some of the stops, which may repeat."""
         if self.lines:
             return Fleet.of_lines(rules, [line.chosen(stops) for line in self.lines])
-        if self.profiles:
-            rows = stops[:, np.newaxis]
-            return Fleet.of_profiles(rules, [each[:, rows, stops] for each in self.profiles])
-        day = self.day and (self.day[0].among(stops), self.day[1].among(stops))
-        return Fleet(rules=rules, costs=self.among(stops), day=day)
+        rows = stops[:, np.newaxis]
+        costs = [each[:, rows, stops] for each in self._by_profile]
+        days = [(first.among(stops), second.among(stops)) for first, second in self.days]
+        return Fleet.of_profiles(rules, costs, days)
 
     def scaled(self, rules: Rules, shifts: Indices) -> "Fleet":
         """Return a fleet whose costs are multiplied by powers of two, shape (2,)."""
@@ -98,14 +105,26 @@ class Fleet:
             pairs = zip(self.lines, shifts.tolist(), strict=True)
             return Fleet.of_lines(rules, [line.scaled(shift) for line, shift in pairs])
         powers = shifts[:, np.newaxis, np.newaxis]
-        if self.profiles:
-            return Fleet.of_profiles(rules, [np.ldexp(each, powers) for each in self.profiles])
-        costs = np.ldexp(self.costs, powers)
-        if self.day is None:
-            return Fleet(rules=rules, costs=costs)
-        times = int(shifts[rules.clock or 0])
-        first, second = map(CostsOfDay.scaled, self.day, shifts.tolist(), (times, times))
-        return Fleet(rules=rules, costs=costs, day=(first, second))
+        costs = [np.ldexp(each, powers) for each in self._by_profile]
+        by, times = shifts.tolist(), int(shifts[rules.clock or 0])
+        days = [
+            (first.scaled(by[0], times), second.scaled(by[1], times)) for first, second in self.days
+        ]
+        return Fleet.of_profiles(rules, costs, days)
+
+    @property
+    def _by_profile(self) -> tuple[Array, ...]:
+        """The matrices of each profile."""
+        return self.profiles or (self.costs,)
+
+    @property
+    def day(self) -> Day | None:
+        """Both costs over the day by the first profile, if some change."""
+        return self.days[0] if self.days else None
+
+    def day_by(self, vehicle: int) -> Day:
+        """Return both costs over the day to a type of vehicles."""
+        return self.days[self.rules.vehicles[vehicle].profile]
 
     def costs_by(self, profile: int) -> Array:
         """Return both costs of the legs by a profile; of lines and over the day, `costs`."""
@@ -126,7 +145,10 @@ class Fleet:
     @cached_property
     def _least(self) -> Array:
         """The least costs of the day, shape (2, n, n)."""
-        return self.costs if self.day is None else np.stack([each.least() for each in self.day])
+        if not self.days:
+            return self.costs
+        pairs = ([each.least() for each in day] for day in self.days)
+        return np.minimum.reduce([np.stack(pair) for pair in pairs])
 
     def legs_along(self, layer: int, path: Sequence[int], vehicle: int) -> list[float]:
         """Return a cost of each leg of a path to a type of vehicles, at the usual speed."""
@@ -195,7 +217,7 @@ class Fleet:
     @cached_property
     def forbids(self) -> bool:
         """Whether some leg is forbidden to some vehicles."""
-        return any(bool(np.isinf(each[0]).any()) for each in self.profiles or (self.costs,))
+        return any(bool(np.isinf(each[0]).any()) for each in self._by_profile)
 
     def away(self, stop: int) -> Array:
         """Return how far all stops are away, in largest legs of both costs, shape (n,)."""
@@ -279,8 +301,8 @@ class Fleet:
 
         It is the largest leg, of lateness and earliness by the clock and of imbalance in the costs
         by which routes are compared; otherwise one vehicle, one change, the overlap of a mean stop,
-        the largest prize, the most overtime of a vehicle, the largest leg with the largest
-        capacity, or with the sum of all urgencies.
+        one late visit, the largest prize, the most overtime of a vehicle, the largest leg with the
+        largest capacity, or with the sum of all urgencies.
         Times are those of the slowest vehicle, and the first unit is at the highest prices.
         """
         rules = self.rules
@@ -304,7 +326,7 @@ class Fleet:
     def _unit(self, over: Over | Measure, layer: int) -> float:
         legs, rules = self._slowest_legs, self.rules
         match over:
-            case "vehicles" | "changes":
+            case "vehicles" | "changes" | "on_time":
                 return 1.0
             case "overlap":
                 return 1.0 / max(1, len(rules.clients))
@@ -319,25 +341,6 @@ class Fleet:
             case "load_distance":
                 return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
         return float(legs[layer])
-
-
-def _checked(costs: Array) -> Array:
-    """Return costs with a diagonal of 0, and with legs that are forbidden in both."""
-    checked = np.where(np.eye(costs.shape[-1], dtype=np.bool_), 0.0, costs)
-    if not (checked >= 0).all():
-        raise ValueError("costs must be numbers and not negative")
-    checked[:, np.isinf(checked).any(axis=0)] = inf
-    checked.flags.writeable = False
-    return checked
-
-
-def _allowed(costs: CostsOfDay, forbidden: NDArray[np.bool_]) -> CostsOfDay:
-    """Return costs without the cost of a leg from a stop to itself, and some legs forbidden."""
-    still = np.eye(len(forbidden), dtype=np.bool_)
-    matrices = np.where(still, 0.0, np.where(forbidden, inf, costs.matrices))
-    if not (matrices >= 0).all():
-        raise ValueError("costs must be numbers and not negative")
-    return replace(costs, matrices=matrices)
 
 
 def least_paths(legs: Rows, n: int, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:

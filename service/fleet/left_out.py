@@ -9,9 +9,9 @@ import numpy as np
 from service.fleet.evaluation import (
     Broken,
     first_broken,
-    joined,
     plan_lengths,
     route_lengths,
+    routes_together,
     unassigned,
 )
 from service.fleet.fleet import Array, Fleet
@@ -127,8 +127,8 @@ def _cheapest(fleet: Fleet, plan: Plan, routes: Sequence[_Inserted]) -> Plan | N
     def cost(inserted: _Inserted) -> float:
         number, route = inserted
         of_routes = [*known[:number], route_lengths(fleet, route), *known[number + 1 :]]
-        columns = zip(*of_routes, strict=True)
-        lengths = [joined(*each) for each in zip(fleet.rules.over, columns, strict=True)]
+        routes = (*plan.routes[:number], route, *plan.routes[number + 1 :])
+        lengths = routes_together(fleet, routes, of_routes)
         if number == len(known):
             lengths[0] += fleet.rules.vehicles[route.vehicle].fixed
         return sum(map(truediv, lengths, scale))

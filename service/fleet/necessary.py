@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import CityNames, NoTour, Obstacle, Refusal
+from service.fleet.costs import Day
 from service.fleet.evaluation import first_broken
 from service.fleet.fleet import LAYERS, Array, Fleet
 from service.fleet.groups import NO_GROUPS
@@ -67,6 +68,28 @@ def least_lengths(fleet: Fleet) -> Array:
     kinds = range(len(rules.vehicles))
     fastest = [max(rules.speed(kind, layer) for kind in kinds) for layer in rules.layers]
     return least / fastest
+
+
+def least_longest(fleet: Fleet) -> float:
+    """Return a length in the swept costs that the longest route of each plan has at least."""
+    rules = fleet.rules
+    if rules.swept is None:
+        return 0.0
+    there: dict[int | None, Array] = {None: np.zeros(rules.n)}
+    back = there.copy()
+    for vehicle in rules.vehicles:
+        if vehicle.start is not None and vehicle.start not in there:
+            there[vehicle.start] = fleet.least_paths(rules.swept, [vehicle.start])
+        if vehicle.end is not None and vehicle.end not in back:
+            back[vehicle.end] = fleet.least_paths(rules.swept, [vehicle.end], back=True)
+    required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
+    ways = []
+    for kind, vehicle in enumerate(rules.vehicles):
+        way = (there[vehicle.start] + back[vehicle.end]) / rules.speed(kind, rules.swept)
+        served = [rules.service(kind, stop) for stop in required]
+        ways.append(way[required] + (np.array(served) if rules.swept == rules.clock else 0.0))
+    alone = np.min(ways, axis=0)
+    return float(alone.max(initial=0.0, where=np.isfinite(alone)))
 
 
 def _required(rules: Rules) -> list[int]:
@@ -238,15 +261,20 @@ def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     """Return whether no detour over a stop is shorter, in the costs that are bounded.
 
     False if legs are forbidden, since then a detour may be the only way to a stop, if some legs
-    become slower over the day than others, and if it ended before all detours were tried.
+    become slower over the day than others or the legs of a day are bounded by themselves, which
+    then depend on the departure, and if it ended before all detours were tried.
     """
     rules = fleet.rules
-    if fleet.forbids or (fleet.day is not None and fleet.day[rules.limited or 0].varies):
+    if fleet.forbids or (fleet.day is not None and _is_uneven(fleet.day, rules)):
         return False
     if fleet.lines:
         return True
     layers = {*rules.capped, *(() if rules.limited is None else (rules.limited,))}
     return all(_has_no_detours(fleet, layer, ended) for layer in layers)
+
+
+def _is_uneven(day: Day, rules: Rules) -> bool:
+    return bool(rules.capped) or day[rules.limited or 0].varies
 
 
 def _has_no_detours(fleet: Fleet, layer: int, ended: Callable[[], bool]) -> bool:

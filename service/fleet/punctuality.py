@@ -5,7 +5,7 @@ be normal, with the mean and the variance that legs and waiting leave (Clark, 19
 later of two times). Breaks and what a leg takes at its time of day are as planned.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from math import inf, sqrt
 from statistics import NormalDist
@@ -16,7 +16,7 @@ from service.fleet.plans import Plan, Route, path_of
 from service.fleet.schedule import REMEMBERED, legs, schedule
 from service.fleet.times import Schedule
 
-_NINE_IN_TEN = 0.9
+_NINE_IN_TEN = 90
 _STANDARD = NormalDist()
 
 
@@ -65,13 +65,35 @@ def punctuality(fleet: Fleet, plan: Plan) -> dict[str, float]:
     """
     if fleet.rules.spread is None:
         return {}
-    routes = [_driven(fleet, route) for route in plan.routes]
-    shares = [share for route in routes for share in route.on_time]
-    mean = sum(route.duration.mean for route in routes)
-    deviation = sqrt(sum(route.duration.variance for route in routes))
-    most = mean + _STANDARD.inv_cdf(_NINE_IN_TEN) * deviation
+    shares = [share for route in plan.routes for share in _driven(fleet, route).on_time]
     kept = {"on_time": sum(shares) / len(shares)} if shares else {}
-    return {**kept, "duration": mean, "duration_p90": most}
+    return {
+        **kept,
+        "duration": sum(duration_of(fleet, route).mean for route in plan.routes),
+        "duration_p90": longest_duration(fleet, plan.routes, _NINE_IN_TEN),
+    }
+
+
+def late_visits(fleet: Fleet, route: Route) -> float:
+    """Return how many visits of a route are late on an average day."""
+    return sum(1.0 - share for share in _driven(fleet, route).on_time)
+
+
+def duration_of(fleet: Fleet, route: Route) -> Normal:
+    """Return how long a route takes."""
+    return _driven(fleet, route).duration
+
+
+def longest_duration(fleet: Fleet, routes: Sequence[Route], percent: int) -> float:
+    """Return what routes do not exceed, all together, on so many days of a hundred."""
+    durations = [duration_of(fleet, route) for route in routes]
+    variance = sum(each.variance for each in durations)
+    return sum(each.mean for each in durations) + deviations_of(percent) * sqrt(variance)
+
+
+def deviations_of(percent: int) -> float:
+    """Return how many deviations above its mean a time is that so many days do not exceed."""
+    return _STANDARD.inv_cdf(percent / 100)
 
 
 @lru_cache(REMEMBERED)

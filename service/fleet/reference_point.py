@@ -3,6 +3,7 @@
 from math import inf
 
 from service.fleet.fleet import Array, Fleet, urgency_of
+from service.fleet.punctuality import deviations_of
 from service.fleet.rules import Rules
 
 
@@ -13,8 +14,8 @@ def default_reference_point(fleet: Fleet) -> Array:
     objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
     imbalance by the clock they are all services, and the time from the first shift or window to the
     end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of
-    weighted arrivals each may be as late. The first one is at the highest prices, and visits take
-    as long as by the slowest vehicles.
+    weighted arrivals each may be as late. Of percentiles all legs are as long as on such a day. The
+    first one is at the highest prices, and visits take as long as by the slowest vehicles.
     """
     rules = fleet.rules
     point = rules.n * fleet.scale
@@ -24,6 +25,9 @@ def default_reference_point(fleet: Fleet) -> Array:
     vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
     slowest = max(vehicle.service_factor for vehicle in rules.vehicles)
     services = slowest * sum(visit.longest_service for visit in rules.visits)
+    for objective, percent in enumerate(rules.percents):
+        if percent is not None:
+            point[objective] *= 1 + deviations_of(percent) * (rules.spread or 0.0)
     for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
         timed = {"lateness": True, "earliness": True, "imbalance": rules.clock is not None}
         costs = over in ("sum", "max") and layer == rules.clock

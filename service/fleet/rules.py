@@ -3,15 +3,22 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
-from service.fleet.checks import Basis, check_depot, check_shipped, check_vehicle, check_visit
+from service.fleet.checks import (
+    Basis,
+    check_depot,
+    check_percents,
+    check_shipments,
+    check_vehicle,
+    check_visit,
+)
 from service.fleet.groups import NO_GROUPS, Groups, check_groups
-from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
+from service.fleet.vehicles import ALWAYS, Pace, Shipment, Span, VehicleType, Visit
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
@@ -26,6 +33,7 @@ Measure = Literal[
     "weighted_arrival",
     "overlap",
     "changes",
+    "on_time",
 ]
 _OF_BEGINS = ("earliness", "weighted_arrival")  # measures of when each visit begins
 Leave = Literal["late", "early"]
@@ -51,20 +59,6 @@ Rule = Literal[
 ]
 
 
-class Pace(NamedTuple):
-    """How a type of vehicles drives and serves.
-
-    Attributes:
-        speed: What the times of legs are divided by.
-        services: How long each visit takes.
-        profile: The number of the costs of legs.
-    """
-
-    speed: float
-    services: tuple[float, ...]
-    profile: int
-
-
 @dataclass(frozen=True, kw_only=True)
 class Rules:
     """A fleet without the costs between its stops.
@@ -86,6 +80,8 @@ class Rules:
         groups: The groups of stops that share a vehicle, or must not, or have an order.
         spread: The standard deviation of the time of each leg, as a share of it; None if times are
             the same every day. No rule reads it: plans are kept on an average day.
+        percents: The length in an objective is what so many days of a hundred do not exceed; None
+            for that of a day as planned, and without any for all.
 
     Raises:
         Refusal: The rules contradict each other, or are not supported.
@@ -102,6 +98,7 @@ class Rules:
     leave: Leave = "late"
     groups: Groups = NO_GROUPS
     spread: float | None = None
+    percents: tuple[int | None, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.layers) != len(self.over):
@@ -117,7 +114,10 @@ class Rules:
             if index in self.depots:
                 check_depot(visit, f"stops/{index}")
             check_visit(visit, f"stops/{index}", basis)
-        _check_shipments(self)
+        check_shipments(self.shipments, self.visits, self.depots)
+        check_percents(
+            self.percents, self._of_clock, self.vehicles, spreads=self.spread is not None
+        )
         check_groups(self.groups, self.depots, self.shipped)
 
     @property
@@ -125,6 +125,12 @@ class Rules:
         """The numbers of the costs that objectives are of."""
         pairs = zip(self.over, self.layers, strict=True)
         return {layer for over, layer in pairs if over in ("sum", "max")}
+
+    @property
+    def _of_clock(self) -> list[bool]:
+        """Whether each objective is the time of routes."""
+        pairs = zip(self.over, self.layers, strict=True)
+        return [over in ("sum", "max") and layer == self.clock for over, layer in pairs]
 
     def _basis(self) -> Basis:
         return Basis(
@@ -219,6 +225,15 @@ class Rules:
         """The objectives that depend on when each visit begins, not only on late ones."""
         measures = _OF_BEGINS if self.tolerance is None else (*_OF_BEGINS, "changes")
         return tuple(over for over in self.over if over in measures)
+
+    def percent(self, objective: int) -> int | None:
+        """Return on how many days of a hundred a length is not exceeded; None for one day."""
+        return self.percents[objective] if objective < len(self.percents) else None
+
+    @cached_property
+    def of_days(self) -> bool:
+        """Whether an objective depends on how times spread from day to day."""
+        return "on_time" in self.over or any(self.percents)
 
     @cached_property
     def promises(self) -> frozenset[int]:
@@ -359,28 +374,16 @@ def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
         "earliness": ("no-due-from", any(visit.wanted for visit in rules.visits)),
         "load_distance": ("no-loads", rules.dimensions > 0),
         "changes": ("no-promises", bool(rules.promises)),
+        "on_time": ("no-window-or-due", any(visit.is_timed for visit in rules.visits)),
     }
     code, is_given = needed.get(measure, ("", True))
     if not is_given:
         raise invalid(part, code, measure=measure)
     if measure == "weighted_arrival" and rules.clock is None:
         raise invalid(part, "untimed")
+    if measure == "on_time" and rules.spread is None:
+        raise invalid(part, "measure-without-spread")
     for index, vehicle in enumerate(rules.vehicles):
-        if vehicle.breaks and measure in rules.of_begins:
+        if vehicle.breaks and measure in (*rules.of_begins, "on_time"):
             where = f"vehicles/{index}/breaks"
             raise invalid(where, "breaks-of-measure", measure=measure, other=f"/{part}")
-
-
-def _check_shipments(rules: Rules) -> None:
-    parts: dict[int, str] = {}
-    for index, shipment in enumerate(rules.shipments):
-        for name, stop in (("pickup", shipment.pickup), ("delivery", shipment.delivery)):
-            part = f"shipments/{index}/{name}"
-            if stop in rules.depots:
-                raise invalid(part, "shipped-to-depot")
-            if parts.setdefault(stop, part) != part:
-                raise invalid(part, "in-two-shipments", other=f"/{parts[stop]}")
-            check_shipped(rules.visits[stop], stop)
-        delivery = rules.visits[shipment.delivery]
-        if any(delivery.demand) or delivery.prize is not None:
-            raise invalid(f"shipments/{index}/delivery", "delivery-asks")

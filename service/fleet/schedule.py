@@ -229,18 +229,19 @@ def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
     if objective == fleet.rules.clock:
         driven = zip(times.leaves, times.arrivals[1:], strict=False)
         return [after - leaves for leaves, after in driven]
-    costs, between = fleet.day[objective], zip(times.leaves, pairwise(path), strict=False)
+    costs = fleet.day_by(route.vehicle)[objective]
+    between = zip(times.leaves, pairwise(path), strict=False)
     return [costs.at(leaves, *leg) for leaves, leg in between]
 
 
 def _legs_of_day(fleet: Fleet, route: Route) -> list[DayLeg]:
-    assert fleet.rules.clock is not None
-    speed = fleet.rules.speed(route.vehicle, fleet.rules.clock)
-    return [_leg_of_day(fleet, speed, a, b) for a, b in pairwise(path_of(fleet.rules, route))]
+    path, vehicle = path_of(fleet.rules, route), fleet.rules.vehicles[route.vehicle]
+    pace = vehicle.speed_factor, vehicle.profile
+    return [_leg_of_day(fleet, pace, a, b) for a, b in pairwise(path)]
 
 
 @lru_cache(4 * REMEMBERED)
-def _leg_of_day(fleet: Fleet, speed: float, a: int, b: int) -> DayLeg:
-    assert fleet.day is not None
+def _leg_of_day(fleet: Fleet, pace: tuple[float, int], a: int, b: int) -> DayLeg:
+    speed, profile = pace
     assert fleet.rules.clock is not None
-    return DayLeg.of(fleet.day[fleet.rules.clock], a, b, speed)
+    return DayLeg.of(fleet.days[profile][fleet.rules.clock], a, b, speed)

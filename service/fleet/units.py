@@ -80,7 +80,7 @@ class Units:
     def points(self, points: Array) -> Array:
         """Return points, shape (..., m), in these units; infinite where these are too small."""
         rules = self.fleet.rules
-        numbers = dict.fromkeys(("vehicles", "overlap", "changes"))
+        numbers = dict.fromkeys(("vehicles", "overlap", "changes", "on_time"))
         numbers |= {"unassigned": 0, "load_distance": 0}
         timed = dict.fromkeys(
             ("overtime", "lateness", "imbalance", "earliness", "weighted_arrival"), rules.limited

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf
+from typing import NamedTuple
 
 Span = tuple[float, float]
 Break = tuple[float, float, float]  # the earliest and the latest begin, and how long it takes
@@ -52,6 +53,11 @@ class Visit:
     def service_by(self, vehicle: int) -> float:
         """Return how long the visit takes by a type of vehicles, before its factor."""
         return self.services[vehicle] if self.services else self.service
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether its visit may begin too late."""
+        return self.due < inf or any(closes < inf for _, closes in self.windows)
 
     @property
     def longest_service(self) -> float:
@@ -133,11 +139,6 @@ class VehicleType:
         return self.min_stops > 1 or self.shortest > 0
 
     @property
-    def is_capped(self) -> bool:
-        """Whether the legs of a route are bounded by themselves."""
-        return min(self.max_distance, self.max_driving) < inf
-
-    @property
     def way(self) -> Span:
         """The earliest departure, and the latest end with overtime."""
         return self.shift[0], self.shift[1] + self.max_overtime
@@ -149,3 +150,17 @@ class VehicleType:
         total = sum(length for _, _, length in self.breaks)
         needed = (each for each in self.breaks if begin < each[0] and each[1] <= end - total)
         return sum(length for _, _, length in needed)
+
+
+class Pace(NamedTuple):
+    """How a type of vehicles drives and serves.
+
+    Attributes:
+        speed: What the times of legs are divided by.
+        services: How long each visit takes.
+        profile: The number of the costs of legs.
+    """
+
+    speed: float
+    services: tuple[float, ...]
+    profile: int

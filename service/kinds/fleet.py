@@ -3,16 +3,18 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import accumulate
+from math import inf
 from typing import Any, NamedTuple
 
 from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import Fault, NoTour, Refusal
+from service.fleet.carried import most_carried
 from service.fleet.evaluation import (
     first_broken,
     measures,
-    most_carried,
     plan_lengths,
     route_lengths,
     unassigned,
@@ -21,7 +23,7 @@ from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
-from service.fleet.schedule import schedule
+from service.fleet.schedule import legs, schedule
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
@@ -282,4 +284,16 @@ def _route(fleet: Fleet, route: Route, names: Names) -> dict[str, Any]:
         ]
         if times.breaks:
             members["breaks"] = list(times.breaks)
-    return members
+    return {**members, **_limited(fleet, route)}
+
+
+def _limited(fleet: Fleet, route: Route) -> dict[str, list[float]]:
+    """Return what is driven until each stop of a route, where its vehicle has a limit on it."""
+    limits = enumerate(fleet.rules.most_legs(route.vehicle))
+    layers = [layer for layer, most in limits if most < inf]
+    return {
+        "driving" if layer == fleet.rules.clock else "distance": list(
+            accumulate(legs(fleet, route, layer), initial=0.0)
+        )
+        for layer in layers
+    }

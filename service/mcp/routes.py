@@ -57,6 +57,8 @@ def _measure(name: str, value: float, clock: Objective | None) -> str | float:
         return amount(value, clock.unit)
     if name == "overlap":
         return f"{100 * value:.3g} % of neighbours ride with somebody else"
+    if name == "on_time":
+        return f"{100 * value:.3g} % of visits"
     if name == "changes":
         return "1 stop" if value == 1 else f"{value:.7g} stops"
     return float(f"{value:.7g}")

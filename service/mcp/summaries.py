@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from paretour import Front, FrontOfAnyKind, Refused
+from paretour import FleetFront, Front, FrontOfAnyKind, Refused
 from paretour.choice import knee
 from paretour.display import shown
 from paretour.kinds import kind_of
@@ -313,11 +313,22 @@ def _known(front: FrontOfAnyKind, number: int) -> Named:
 
 def _on_most_days(front: FrontOfAnyKind, number: int) -> dict[str, str]:
     """Return a sentence for each length of a tour that spreads, by the name of its objective."""
+    if isinstance(front, FleetFront):
+        return _duration_on_most_days(front, number)
     if not isinstance(front, Front) or front.means is None or front.p90 is None:
         return {}
     pairs = zip(front.means[number], front.p90[number], strict=True)
     said = zip(names_of(front), _units(front), pairs, strict=True)
     return {name: on_most_days(*pair, unit) for name, unit, pair in said if pair[0] < pair[1]}
+
+
+def _duration_on_most_days(front: FleetFront, number: int) -> dict[str, str]:
+    """Return a sentence about the time of all routes of a plan, if times spread."""
+    measures = front[number].measures
+    if front.clock is None or "duration_p90" not in measures:
+        return {}
+    pair = measures["duration"], measures["duration_p90"]
+    return {"all routes together": on_most_days(*pair, front.clock.unit)}
 
 
 def _lengths(front: FrontOfAnyKind, number: int) -> dict[str, float]:

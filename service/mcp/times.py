@@ -8,9 +8,10 @@ from service.amounts.read import number_in
 # The members of requests that are times or durations, in the unit of the clock.
 TIMED = frozenset(
     (
-        *("arrivals", "at", "departure", "due", "earliest", "latest", "leaves", "length"),
-        *("longest", "max_driving", "max_overtime", "now", "over_the_day", "release", "service"),
-        *("shift", "shifts", "shortest", "slack", "slots", "tolerance", "window", "windows"),
+        *("arrivals", "at", "departure", "driving", "due", "earliest", "latest", "leaves"),
+        *("length", "longest", "max_driving", "max_overtime", "now", "over_the_day", "release"),
+        *("service", "shift", "shifts", "shortest", "slack", "slots", "tolerance", "window"),
+        "windows",
     )
 )
 # What such members may be in; below other members the same names mean something else.

@@ -12,11 +12,11 @@ from typing import get_args
 
 import numpy as np
 
+from service.fleet.carried import load_distance
 from service.fleet.evaluation import (
     Broken,
     first_broken,
     joined_lengths,
-    load_distance,
     plan_lengths,
     route_lengths,
 )
@@ -290,6 +290,8 @@ class _Search:
                 own = own + vehicle.per_time * known.duration if vehicle.per_time else own
             lengths = [each[m] for each in others]
             match over:
+                case "sum" if rules.percent(m) is not None:
+                    total = np.zeros(known.end.shape)
                 case "max":
                     total = np.maximum(own, max(lengths, default=0.0))
                 case "imbalance":
@@ -313,7 +315,9 @@ class _Search:
         match over:
             case "vehicles":
                 return np.ones(known.end.shape)
-            case "unassigned" | "earliness" | "weighted_arrival" | "overlap" | "changes":
+            case (
+                "unassigned" | "earliness" | "weighted_arrival" | "overlap" | "changes" | "on_time"
+            ):
                 return np.zeros(known.end.shape)
             case "lateness":
                 return known.lateness

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from operator import le
 from typing import Any, TypeVar
 
 from service.errors import Remedy
@@ -58,6 +59,25 @@ class AskedFleet:
             for stop in self.rules.clients
             if stop not in deliveries and self.rules.visits[stop].prize is None
         ]
+
+    @property
+    def likely(self) -> list[str]:
+        """The ids of vehicles, first those of which one can serve the most stops."""
+        pairs = enumerate(zip(self.vehicles, self.rules.vehicles, strict=True))
+        served = {number: (item, self.serves(number, each)) for number, (item, each) in pairs}
+        most = {item: max(n for of, n in served.values() if of == item) for item in self.items}
+        return sorted(self.items, key=lambda item: -most[item])
+
+    def serves(self, number: int, vehicle: VehicleType) -> int:
+        """Return how many stops a type of vehicles may visit, has the skills for, and can load.
+
+        Of the stops that its refusal names, or else of all. `number` is that of the type.
+        """
+        visits = [self.rules.visits[stop] for stop in self.at_fault or self.required]
+        named = [each for each in visits if not each.vehicles or number in each.vehicles]
+        able = [each for each in named if {*each.skills} <= {*vehicle.skills}]
+        loads = [(each.demand, each.pickup) for each in able]
+        return sum(all(map(le, load, vehicle.capacity)) for both in loads for load in both)
 
     def first_of(self, item: str) -> VehicleType:
         """Return the first type of vehicles of an id."""

@@ -49,6 +49,13 @@ class AskedRest(AskedFleet):
             if self.parts[stop]:
                 yield from (put(f"/{self.parts[stop]}/{each}", members[each]) for each in members)
 
+    @property
+    def likely(self) -> list[str]:
+        """The ids of which there may be more, first those of which one can serve the most stops."""
+        types = (*self.rules.vehicles, *self.spares)
+        served = {item: self.serves(at, types[at]) for item, at in self.more.items()}
+        return sorted(self.more, key=lambda item: -served[item])
+
     def with_more(self, item: str, more: int) -> tuple[Rules, Patch]:
         """Return the rules with more vehicles of an id, and the operation that adds them."""
         known = [each.get("more", 0) for each in self.changed_vehicles if each["vehicle"] == item]

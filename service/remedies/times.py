@@ -119,14 +119,15 @@ def no_slack(asked: AskedFleet, tried: Try) -> Remedy | None:
 
 
 def longer_routes(asked: AskedFleet, tried: Try) -> Remedy | None:
-    """Let all routes be longer that have a limit of their own."""
-    found = asked.least_change(_LONGER if asked.rules.has_longest else (), _with_longer, tried)
+    """Let all routes be longer that have limits of their own, on them or on what they drive."""
+    limited = asked.rules.has_longest or asked.rules.capped
+    found = asked.least_change(_LONGER if limited else (), _with_longer, tried)
     return None if found is None else Remedy("longer-routes", found[1], {"share": found[0]})
 
 
 def _with_longer(share: int, _: str, vehicle: VehicleType) -> Members:
-    limit = vehicle.longest
-    return {} if limit == inf else {"longest": limit * (100 + share) / 100}
+    limits = {name: getattr(vehicle, name) for name in ("longest", "max_distance", "max_driving")}
+    return {name: most * (100 + share) / 100 for name, most in limits.items() if most < inf}
 
 
 def _longest_shift(asked: AskedFleet) -> float:

@@ -8,7 +8,7 @@ from service.fleet.vehicles import VehicleType
 from service.remedies.asked import AskedFleet, Members, Try, least_that_works
 from service.remedies.rest import AskedRest
 
-_MOST_ITEMS = 3  # ids of vehicles that are tried, the first in the request
+_MOST_ITEMS = 3  # ids of vehicles that are tried, the likely ones
 _MORE = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 _LARGER = (25, 50, 100, 200, 400)  # per cent
 
@@ -31,7 +31,7 @@ def _with_trips(_: str, vehicle: VehicleType) -> Members:
 def more_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Have more vehicles of one id: as few as are needed, of the first id that helps."""
     amounts = [more for more in _MORE if more <= len(asked.rules.clients)]
-    for item in asked.items[:_MOST_ITEMS]:
+    for item in asked.likely[:_MOST_ITEMS]:
         if found := asked.least_change(amounts, partial(_with_more, item), tried):
             more, patch = found
             before = asked.first_of(item).count
@@ -44,7 +44,7 @@ def send_more(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Have more vehicles of one id leave from now on: as few as are needed."""
     assert isinstance(asked, AskedRest)
     amounts = [more for more in _MORE if more <= len(asked.rules.clients)]
-    for item in [*asked.more][:_MOST_ITEMS]:
+    for item in asked.likely[:_MOST_ITEMS]:
         with_more = partial(asked.with_more, item)
         if found := least_that_works(amounts, lambda more: with_more(more)[0], tried):  # noqa: B023
             more, _ = found
@@ -59,7 +59,7 @@ def _with_more(item: str, more: int, name: str, vehicle: VehicleType) -> Members
 
 def larger_vehicles(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Have larger vehicles of one id: as little larger as is needed."""
-    for item in asked.items[:_MOST_ITEMS] if asked.rules.dimensions else ():
+    for item in asked.likely[:_MOST_ITEMS] if asked.rules.dimensions else ():
         if found := asked.least_change(_LARGER, partial(_with_larger, item), tried):
             share, patch = found
             before = asked.first_of(item)

@@ -78,10 +78,7 @@ class TrafficItem(StrictModel):
         for k, seconds in enumerate(self.begins):
             if seconds % 60:
                 raise invalid(f"{part}/at/{k}", "not-a-minute", came=seconds)
-        most = max(1, _MOST_TIMES // n**2)
-        if len(self.begins) > most:
-            came = len(self.begins)
-            raise invalid(f"{part}/at", "too-many-times", limit=most, stops=n, came=came)
+        check_traffic(part, len(self.begins), n)
         return Traffic(self._date(f"{part}/date"), tuple(self.begins))
 
     def _date(self, part: str) -> str:
@@ -93,6 +90,13 @@ class TrafficItem(StrictModel):
         if not first <= found.year <= last:
             raise invalid(part, "not-these-years", first=first, last=last, given=str(found))
         return found.isoformat()
+
+
+def check_traffic(part: str, times: int, n: int, profiles: int = 1) -> None:
+    """Raise a refusal of too many times of travel between n stops, by some profiles."""
+    most = max(1, _MOST_TIMES // (profiles * n**2))
+    if times > most:
+        raise invalid(f"{part}/at", "too-many-times", limit=most, stops=n, came=times)
 
 
 class DepartureRange(StrictModel):

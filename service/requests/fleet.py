@@ -156,6 +156,7 @@ class FleetRequest(SearchFields):
             leave=self.leave,
             groups=self._groups(ids),
             spread=self._spread,
+            percents=self._percents,
         )
         kinds = tuple(dict.fromkeys(profiles))
         stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops, kinds))
@@ -191,6 +192,12 @@ class FleetRequest(SearchFields):
         return next((item.spread for item in self.objectives if item.name == self.clock), None)
 
     @property
+    def _percents(self) -> tuple[int | None, ...]:
+        """The percentile that each objective is of; nothing if none is."""
+        percents = tuple(item.percentile for item in self.objectives)
+        return percents if any(percents) else ()
+
+    @property
     def _tolerance(self) -> float | None:
         """How much later than promised a visit may begin; None for any time."""
         tolerance = None if self.promised is None else self.promised.tolerance
@@ -209,9 +216,6 @@ class FleetRequest(SearchFields):
         if named is not None:
             names = [item.name for item in self.objectives]
             check_in_seconds(named, "clock" if own else f"objectives/{names.index(named.name)}")
-        for index, item in enumerate(self.vehicles):
-            for name in item.limits_on_driving:
-                raise invalid(f"vehicles/{index}/{name}", "limit-over-the-day")
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
         """Return the groups of stops.
@@ -271,8 +275,10 @@ class FleetRequest(SearchFields):
         Raises:
             Refusal: An objective has both costs and a measure, or there are too many costs.
         """
-        # Objectives that share costs also share the clock, so only those that must do.
-        shared = sum(item.of_plan is None for item in self.objectives) > LAYERS
+        # Objectives that share costs also share the clock, so only those that must do, or that ask
+        # for percentiles of its times.
+        costly = sum(item.of_plan is None for item in self.objectives)
+        shared = costly > LAYERS or bool(self._percents)
         costs: list[int] = []
         layers: list[int] = []
         for index, item in enumerate(self.objectives):

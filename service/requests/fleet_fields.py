@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.fleet.rules import Measure, Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
-from service.requests.day_fields import SOURCES
+from service.requests.day_fields import OF_SOURCES, SOURCES
 from service.requests.fields import (
     ABSENT,
     AsInteger,
@@ -23,8 +23,8 @@ from service.requests.fields import (
     optional,
     without_default,
 )
-from service.requests.profile_fields import OF_PROFILES, ProfileCostsItem
-from service.requests.spread_fields import SpreadOfTimes
+from service.requests.profile_fields import ProfileCostsItem
+from service.requests.spread_fields import Percentile, SpreadOfTimes
 from service.requests.stop_fields import NamedStop, StopReference, find_index
 from service.requests.validation import nearest
 
@@ -281,12 +281,6 @@ class VehicleItem(StrictModel):
         " truck or bicycle; null where all drive alike, by road as the operator has set"
     )
 
-    @property
-    def limits_on_driving(self) -> list[str]:
-        """The names of the limits on driving that it has."""
-        limits = {"max_distance": self.max_distance, "max_driving": self.max_driving}
-        return [name for name, limit in limits.items() if limit is not None]
-
     def vehicle_types(self, part: str, ids: Mapping[str, int], profile: int) -> list[VehicleType]:
         """Return the type of vehicles, whose part of the request is `part`: once for each shift.
 
@@ -353,7 +347,7 @@ class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
 
     model_config = one_of(
         *(*SOURCES, "matrices", "measure"),
-        **OF_PROFILES,
+        **OF_SOURCES,
         measure={"properties": {"over": ABSENT, "over_the_day": ABSENT}},
     )
 
@@ -368,13 +362,18 @@ class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
         " distance, the first costs of each leg times the load; the overlap, from 0 to 1, which is"
         " the share of neighbours that do not ride with each other, weighted by nearness; or the"
         " changes: how many stops of the plan in `promised` are left out, or visited by another"
-        " vehicle or later than with its tolerance",
+        " vehicle or later than with its tolerance; or, where times have a `spread`, on_time: how"
+        " many visits are late on an average day",
     )
     over: Over = Field(
         default="sum",
         json_schema_extra=without_default,
         description="of costs: whether the length of a plan is the sum over its routes, as by"
         " default, or the longest route; max for one objective at most",
+    )
+    percentile: Percentile | None = optional(
+        "of the clock's times, if they have a `spread`: the length of a plan is what so many days"
+        " of a hundred do not exceed, such as 90; by default it is that of a day as planned"
     )
 
 

@@ -2,25 +2,31 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, ClassVar
 
-from pydantic import Field, JsonValue
+from pydantic import Field
 
 from service.errors import invalid
 from service.errors.faults import show
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.day_fields import OF_SOURCES, SOURCES, TimedObjectiveItem
-from service.requests.fields import ABSENT, NO_WAY, CostRows, StrictModel, Text, one_of
+from service.requests.day_fields import OF_SOURCES, SOURCES, TimedObjectiveItem, check_traffic
+from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, one_of
 from service.requests.stop_fields import check_rows, check_unique
-from service.requests.stops import ROAD_MEASURES, Matrix, Measured, Source, Stop
+from service.requests.stops import (
+    ROAD_MEASURES,
+    FixedSource,
+    Matrix,
+    Measured,
+    Source,
+    Stop,
+    Traffic,
+    with_base,
+)
 from service.requests.validation import nearest
 
 MOST_PROFILES = 10
 Profile = str | None  # of a vehicle; without one it drives as the costs say for all
-OF_PROFILES: Mapping[str, JsonValue] = {
-    **OF_SOURCES,
-    "matrices": {"properties": {"over_the_day": ABSENT}},
-}
 
 
 class ProfileMatrixItem(StrictModel):
@@ -38,7 +44,7 @@ class ProfileCostsItem(TimedObjectiveItem):
     It has exactly one of matrix, matrices, coordinates, from and slices.
     """
 
-    model_config = one_of(*SOURCES, "matrices", **OF_PROFILES)
+    model_config = one_of(*SOURCES, "matrices", **OF_SOURCES)
 
     matrices: Annotated[
         list[ProfileMatrixItem], Field(max_length=MOST_PROFILES, fail_fast=True)
@@ -69,18 +75,23 @@ class ProfileCostsItem(TimedObjectiveItem):
             Refusal: As of `source`; or matrices do not fit the stops.
         """
         if self.sources == ["matrices"]:
-            for name in ("over_the_day", "traffic"):
-                if getattr(self, name):
-                    raise invalid(f"{part}/{name}", "not-beside", member="matrices")
             own: dict[Profile, Source] = {
-                each.profile: _matrix(each, f"{part}/matrices/{k}", len(stops))
+                each.profile: self.factored(part, _matrix(each, f"{part}/matrices/{k}", len(stops)))
                 for k, each in enumerate(self.matrices)
             }
             return [own[profile] for profile in profiles]
         source = self.source(part, stops)
-        if isinstance(source, Measured) and self.by_road:
+        if isinstance(source, Traffic):
+            check_traffic(f"{part}/traffic", len(source.begins), len(stops), len(profiles))
             return [replace(source, profile=profile) for profile in profiles]
-        return [source] * len(profiles)
+        return [with_base(source, partial(_by_profile, profile=profile)) for profile in profiles]
+
+
+def _by_profile(base: FixedSource, profile: Profile) -> FixedSource:
+    """Return a source for vehicles of a profile, which differs by road."""
+    if isinstance(base, Measured) and base.measure in ROAD_MEASURES:
+        return replace(base, profile=profile)
+    return base
 
 
 def _matrix(item: ProfileMatrixItem, part: str, n: int) -> Matrix:
@@ -101,15 +112,12 @@ def check_profiles(profiles: Sequence[Profile], items: Mapping[str, ProfileCosts
         check_unique((each.profile for each in item.matrices), f"{part}/matrices", "profile")
     by_matrices = [item for item in items.values() if item.matrices]
     by_profile = by_matrices or any(item.by_road for item in items.values())
-    changes = any(item.changes for item in items.values())
     for index, profile in enumerate(profiles):
         part = f"vehicles/{index}/profile"
         for item in by_matrices:
             _check_known(part, profile, item)
         if profile is not None and not by_profile:
             raise invalid(part, "profile-of-nothing")
-        if profile is not None and changes:
-            raise invalid(part, "profile-over-the-day")
     if len(set(profiles)) > MOST_PROFILES:
         came = len(set(profiles))
         raise invalid("vehicles", "too-many-profiles", limit=MOST_PROFILES, came=came)

@@ -43,7 +43,7 @@ async def _measured(task: Task, client: RoadClient) -> Task:
         found[Measured("road_time", profile=profile)] = costs.seconds
         found[Measured("road_distance", profile=profile)] = costs.metres
     for each in stops.traffic:
-        found[each] = await client.seconds_at(each.departures, stops.locations, ids)
+        found[each] = await client.seconds_at(each.departures, stops.locations, ids, each.profile)
     if subject is stops:  # a fleet may leave stops out
         n = len(ids)
         none = [np.isinf(costs.reshape(-1, n, n)).any(axis=0) for costs in found.values()]

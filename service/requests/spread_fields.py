@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 _LEAST_DAYS, _MOST_DAYS = 2, 50
 _MOST_FACTOR = 10.0
 _Factor = Annotated[float, Field(ge=0, le=_MOST_FACTOR, allow_inf_nan=False)]
+Percentile = Annotated[int, Field(ge=50, le=99), AsInteger]
 _SpreadOf = Annotated[
     Annotated[_Factor, Tag("[factor]")] | Annotated[CostRows, Tag("[matrix]")],
     Discriminator(lambda value: "[matrix]" if isinstance(value, list) else "[factor]"),
@@ -50,7 +51,7 @@ class SpreadFields(StrictModel):
         description="in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of"
         " each leg, and a tour is measured on each day",
     )
-    percentile: Annotated[int, Field(ge=50, le=99), AsInteger] | None = optional(
+    percentile: Percentile | None = optional(
         "the length of a tour is what so many days of a hundred do not exceed, such as 90; by"
         " default it is the mean"
     )

@@ -151,10 +151,12 @@ class Traffic:
     Args:
         day: The date.
         begins: When each slice begins, ascending seconds of the day that are whole minutes.
+        profile: As in `Measured`.
     """
 
     day: str
     begins: tuple[float, ...]
+    profile: str | None = None
 
     @property
     def departures(self) -> list[str]:

@@ -77,7 +77,11 @@ class RoadClient:
         return RoadCosts(*await self._in_time(asking, self._settings.seconds))
 
     async def seconds_at(
-        self, departures: Sequence[str], locations: Array, ids: Sequence[str]
+        self,
+        departures: Sequence[str],
+        locations: Array,
+        ids: Sequence[str],
+        profile: str | None = None,
     ) -> Array:
         """Return the seconds by road between all stops at s times, shape (s, n, n).
 
@@ -85,6 +89,7 @@ class RoadClient:
             departures: The times, as 2026-11-27T07:30.
             locations: The locations of the stops, as for `costs`.
             ids: The names of the stops, as for `costs`.
+            profile: As for `costs`.
 
         Raises:
             Refusal: As of `costs`.
@@ -92,7 +97,8 @@ class RoadClient:
         places = np.round(locations, _DECIMALS)
 
         async def each() -> Array:
-            return np.stack([(await self._remembered(places, ids, None, d))[0] for d in departures])
+            asked = (places, ids, profile)
+            return np.stack([(await self._remembered(*asked, d))[0] for d in departures])
 
         return await self._in_time(each(), self._settings.seconds)
 

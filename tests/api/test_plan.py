@@ -167,10 +167,10 @@ def test_before_the_search_is_compiled_the_network_answers_and_the_rest_waits(
     with serving(app, warm=False) as address, httpx.Client(base_url=address) as client:
         request = {"coordinates": CITIES, "time_limit": 0}
         while client.post("/front", json=request, timeout=30).status_code == 504:
-            pass  # until the worker has started
+            pass  # until the worker has started: each waits for it
         assert client.post("/front", json=request).status_code == 200
         while "%" not in client.get("/health/ready").json()["detail"]:
-            pass  # until it has said how far it is
+            time.sleep(0.02)  # until it has said how far it is
         for refused in (
             client.get("/health/ready"),
             client.post("/front", json={**request, "time_limit": 0.1}),
@@ -201,7 +201,7 @@ def test_a_client_that_goes_away_frees_its_worker() -> None:
             httpx.post(f"{address}/front", json=request, timeout=1)
         request = {"coordinates": CITIES, "time_limit": 0}
         while httpx.post(f"{address}/front", json=request).status_code == 503:
-            pass
+            time.sleep(0.02)
         assert httpx.get(f"{address}/tour?angle=45").json()["tour"]
 
 

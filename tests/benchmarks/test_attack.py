@@ -2,7 +2,7 @@
 
 import multiprocessing
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -15,7 +15,7 @@ import pytest
 from service.api.app import Edge
 from service.api.transport.connections import ConnectionLimits
 from tests.benchmarks import attack, crowds
-from tests.benchmarks.crowds import REPEATS, Crowds
+from tests.benchmarks.crowds import Crowds
 from tests.helpers.serving import app_of, serving
 
 
@@ -52,10 +52,16 @@ def answering(status: int, content: bytes) -> Iterator[tuple[str, int]]:
         server.server_close()
 
 
-def seen_by(kinds: Crowds, address: tuple[str, int], seconds: float) -> dict[str, Any]:
-    """Attack in a process of its own, as the benchmark does."""
+Attack = Callable[[Crowds, tuple[str, int], float], dict[str, Any]]
+
+
+@pytest.fixture(scope="module")
+def seen_by() -> Iterator[Attack]:
+    """Attack in a process of its own, as the benchmark does, and return what was seen."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(crowds.attack, address, seconds, kinds).result()
+        yield lambda kinds, address, seconds: pool.submit(
+            crowds.attack, address, seconds, kinds
+        ).result()
 
 
 @pytest.mark.parametrize(
@@ -67,21 +73,23 @@ def seen_by(kinds: Crowds, address: tuple[str, int], seconds: float) -> dict[str
         (202, b'{"id": "x"}', "job x is lost: 404"),
     ],
 )
-def test_a_crowd_notes_what_must_not_be(status: int, content: bytes, fault: str) -> None:
+def test_a_crowd_notes_what_must_not_be(
+    seen_by: Attack, status: int, content: bytes, fault: str
+) -> None:
     name = "repeats of a key"
     with answering(status, content) as address:
-        seen = seen_by({name: crowds.CROWDS[name]}, address, 4)
-    assert seen[name]["answers"][str(status)] >= REPEATS // 10
+        seen = seen_by({name: crowds.CROWDS[name]}, address, 3)
+    assert seen[name]["answers"][str(status)]
     assert seen[name]["faults"][0].startswith(fault)
 
 
-def test_every_crowd_reaches_a_service_and_sees_no_fault_of_it() -> None:
+def test_every_crowd_reaches_a_service_and_sees_no_fault_of_it(seen_by: Attack) -> None:
     two_of_each = {name: kind._replace(count=2) for name, kind in crowds.CROWDS.items()}
     limits = ConnectionLimits(head_seconds=0.5)
     app = app_of(edge=Edge(body_seconds=0.5))
     with serving(app, connections=limits) as url:
         address = ("127.0.0.1", int(url.rpartition(":")[2]))
-        seen = seen_by(two_of_each, address, 8)
+        seen = seen_by(two_of_each, address, 6)
     assert [name for name, each in seen.items() if not each["answers"]] == []
     assert [each["faults"] for each in seen.values()] == [[]] * 5
 

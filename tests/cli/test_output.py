@@ -95,6 +95,23 @@ def test_a_tour_says_its_mean_and_nine_days_of_ten() -> None:
     assert tour_summary(front, tour).endswith(f"risk [red]$ 2; time {said}")
     assert json.loads(tour_as_json(tour)) == items[0]
     assert json.loads(tour_text(front, 0, 0, None))["on_most_days"] == {"time": said}
+    head, first, *_ = front_as_rows(front)
+    assert head == ("angle", "time (s)", "risk [red]$", "mean time (s)", "p90 time (s)", "tour")
+    assert first[3:5] == (1680, 2040)
+
+
+def test_a_plan_says_how_surely_it_is_on_time() -> None:
+    spread = {"on_time": 0.94, "duration": 1680.0, "duration_p90": 2040.0}
+    plans = [{**each, "measures": spread} for each in ANSWERS["fleet"]["front"]]
+    clock = {"name": "time", "unit": "s"}
+    front = parse_any(ANSWERS["fleet"] | {"front": plans, "clock": clock})
+    assert isinstance(front, FleetFront)
+    head, first, *_ = plans_as_rows(front, KINDS["fleet"])
+    assert dict(zip(head, first, strict=True)).items() >= spread.items()
+    told = json.loads(tour_text(front, 0, 0, None))
+    said = "28 min on average; nine days of ten within 34 min"
+    assert told["on_most_days"] == {"all routes together": said}
+    assert told["measures"]["on_time"] == "94 % of visits"
 
 
 def test_a_chart_and_tables_have_names_as_they_are() -> None:

@@ -40,8 +40,7 @@ def prized_fleet(over: tuple[Over, Over], huge: float, fixed: float) -> Fleet:
     return Fleet(rules=Rules(visits=visits, vehicles=vehicles, over=over), costs=costs)
 
 
-@pytest.mark.parametrize("huge", HUGE)
-@pytest.mark.parametrize("over", OVERS)
+@pytest.mark.parametrize(("over", "huge"), list(zip(OVERS, HUGE, strict=True)))
 def test_a_huge_prize_means_as_good_a_front_as_a_moderate_one(
     over: tuple[Over, Over], huge: float
 ) -> None:
@@ -49,8 +48,7 @@ def test_a_huge_prize_means_as_good_a_front_as_a_moderate_one(
     assert share_of_front(twin, found) == pytest.approx(1.0, abs=0.03)
 
 
-@pytest.mark.parametrize("huge", HUGE)
-@pytest.mark.parametrize("over", OVERS)
+@pytest.mark.parametrize(("over", "huge"), list(zip(OVERS, HUGE, strict=True)))
 def test_a_vehicle_of_huge_fixed_cost_is_used_where_it_is_needed_alone(
     over: tuple[Over, Over], huge: float
 ) -> None:
@@ -109,8 +107,7 @@ def clusters(seed: int, bridge: float, over: tuple[Over, Over]) -> Fleet:
     return Fleet(rules=rules, costs=costs)
 
 
-@pytest.mark.parametrize("bridge", [1e4, 1e6, 1e9])
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize(("seed", "bridge"), [(0, 1e4), (1, 1e6), (0, 1e9)])
 def test_clusters_far_apart_are_planned_at_true_lengths(seed: int, bridge: float) -> None:
     fleet = clusters(seed, bridge, ("sum", "sum"))
     front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=2_500))
@@ -175,8 +172,7 @@ def test_the_search_finds_both_ends_of_fronts_whose_numbers_are_far_apart(first:
     assert len(missed) <= 4, missed
 
 
-@pytest.mark.parametrize("kind", ["null", "huge"])
-@pytest.mark.parametrize("over", OVERS)
+@pytest.mark.parametrize(("over", "kind"), list(zip(OVERS, ("null", "huge"), strict=True)))
 def test_five_hundred_stops_with_a_tenth_of_all_legs_closed_are_planned(
     over: tuple[Over, Over], kind: str
 ) -> None:

@@ -1,12 +1,12 @@
 """Fleets over the day: routes at their best departures, and the search for plans of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
 
 import numpy as np
 import pytest
 
-from service.fleet.evaluation import first_broken, points_of, violations
+from service.fleet.evaluation import first_broken, points_of, route_violations, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.of_times import overtime
@@ -14,7 +14,14 @@ from service.fleet.plans import FleetFront, Route
 from service.fleet.schedule import legs, schedule
 from service.fleet.search.search import RuinSearch
 from service.watch import Watch
-from tests.helpers.fleet_days import Driven, day_fleet, departures, driven, other_length
+from tests.helpers.fleet_days import (
+    Driven,
+    day_fleet,
+    departures,
+    driven,
+    limited_day_fleet,
+    other_length,
+)
 from tests.helpers.fleets import exact_front
 from tests.helpers.sampled import third
 
@@ -72,19 +79,44 @@ def test_a_route_leaves_when_it_takes_the_least_time_and_nothing_is_later_for_it
     assert tried > 20
 
 
-def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better() -> None:
+def test_what_is_driven_is_bounded_at_the_times_of_the_route() -> None:
+    broken = tried = 0
+    for seed in range(third(120)):
+        fleet = limited_day_fleet(seed)
+        for route in routes_of(fleet, seed):
+            clock = fleet.rules.clock
+            assert clock is not None
+            again = driven(fleet, route, schedule(fleet, route).arrivals[0])
+            rules = {each.rule for each in route_violations(fleet, route)}
+            if again is None or "way" in rules:
+                continue
+            vehicle, leaves = fleet.rules.vehicles[route.vehicle], schedule(fleet, route).leaves
+            far = other_length(fleet, route, list(leaves), 1 - clock)
+            assert ("max_driving" in rules) == (again.driving > vehicle.max_driving + 1e-7)
+            assert ("max_distance" in rules) == (far > vehicle.max_distance + 1e-7)
+            broken += bool({"max_driving", "max_distance"} & rules)
+            tried += 1
+    assert 10 < broken < tried - 10
+
+
+@pytest.mark.parametrize("drawn", [day_fleet, limited_day_fleet])
+def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
+    drawn: Callable[[int], Fleet],
+) -> None:
     tried = same = 0
     for seed in range(third(24)):
-        fleet = day_fleet(seed)
+        fleet = drawn(seed)
         expected = exact_front(fleet)
         options = FleetOptions(time_limit=inf, iterations=60)
         search = RuinSearch(fleet, options, Watch[FleetFront]())
         search.run()
         plans = [search.plan_at(index) for index in range(len(search))]
-        assert [violations(fleet, plan) for plan in plans] == [[]] * len(plans)
-        points = points_of(fleet, plans)
         rests = any(vehicle.breaks for vehicle in fleet.rules.vehicles)
-        if not rests:  # with breaks the search knows of two departures
+        kept = [plan for plan in plans if not violations(fleet, plan)]
+        # With breaks the search knows of two departures, and bounds what is driven without them.
+        assert len(kept) == len(plans) or (rests and fleet.rules.capped)
+        points = points_of(fleet, kept)
+        if not rests:
             np.testing.assert_allclose(search.points, points, rtol=1e-9, atol=1e-9)
         assert all(any(reaches(each, point) for each in expected) for point in points)
         tried += 1

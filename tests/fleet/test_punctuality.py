@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 from itertools import permutations
-from math import inf
+from math import inf, sqrt
 from statistics import NormalDist
 
 import numpy as np
 import pytest
 
-from service.fleet.evaluation import measures, route_violations
+from service.fleet.evaluation import measures, plan_lengths, route_violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
@@ -66,6 +66,16 @@ def test_simulated_days_are_as_the_measures_say() -> None:
         assert said["duration"] == pytest.approx(durations.mean(), abs=0.4)
         most = np.quantile(durations, 0.9)
         assert said["duration_p90"] == pytest.approx(most, rel=0.05)
+        if fleet.rules.clock == 0 and on_time is not None:
+            free = tuple(replace(each, fixed=0.0) for each in fleet.rules.vehicles)
+            objectives = {"over": ("sum", "on_time"), "percents": (90, None)}
+            asked = replace(fleet.rules, vehicles=free, **objectives)
+            lengths = plan_lengths(fleet.under(asked), Plan((route,)))
+            late = sum(fleet.rules.visits[s].windows[0][1] < inf for s in route.stops)
+            assert lengths == pytest.approx(
+                (said["duration_p90"], late * (1 - said["on_time"])), abs=1e-9
+            )
+    assert len(misses) > 50
     assert len(misses) > 50
     assert np.sqrt(np.mean(np.square(misses))) < 0.01
 
@@ -102,6 +112,16 @@ def test_all_routes_together_take_what_their_variances_say() -> None:
     assert "on_time" not in found
     assert found["duration"] == pytest.approx(4 * 8 + 3)
     assert found["duration_p90"] == pytest.approx(35 + NormalDist().inv_cdf(0.9) * 4 * 2)
+
+
+def test_percentiles_are_of_all_routes_together_or_of_the_longest() -> None:
+    fleet, z = fleet_of(Visit(service=3), Visit()), NormalDist().inv_cdf(0.9)
+    plan = Plan((Route(0, (1,)), Route(0, (2,))))
+    rules = replace(fleet.rules, over=("sum", "max"), layers=(0, 0), percents=(90, 90))
+    lengths = plan_lengths(fleet.under(rules), plan)
+    assert lengths == pytest.approx((35 + z * 4 * 2, 19 + z * 4 * sqrt(2)))
+    means = replace(rules, percents=(50, None))
+    assert plan_lengths(fleet.under(means), plan) == pytest.approx((35, 19))
 
 
 def test_who_waits_long_is_on_time_afterwards_whatever_the_leg_took() -> None:

@@ -22,6 +22,7 @@ from tests.helpers.fleets import (
     mixed_fleet,
     random_fleet,
     shipping_fleet,
+    spreading_fleet,
     taking_fleet,
     tidy_fleet,
     varied_fleet,
@@ -39,7 +40,7 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
     "fleet_of",
     [
         *(random_fleet, bounded_fleet, mixed_fleet, shipping_fleet),
-        *(tidy_fleet, varied_fleet, taking_fleet),
+        *(tidy_fleet, varied_fleet, taking_fleet, spreading_fleet),
     ],
 )
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(

@@ -1,5 +1,6 @@
 """Random fleets over the day, and routes of theirs driven step by step, as the guide has it."""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import inf
 from typing import NamedTuple
@@ -23,6 +24,7 @@ class Driven(NamedTuple):
     arrivals: list[float]
     end: float
     lateness: float
+    driving: float
 
 
 def day_fleet(seed: int) -> Fleet:
@@ -35,6 +37,35 @@ def day_fleet(seed: int) -> Fleet:
     random = np.random.default_rng(seed)
     first, second = (_costs(random, costs) for costs in fleet.costs)
     return Fleet.over_the_day(fleet.rules, first, second)
+
+
+def limited_day_fleet(seed: int) -> Fleet:
+    """Return such a fleet that bounds how far and how long vehicles drive, half with profiles."""
+    fleet, random = day_fleet(seed), np.random.default_rng([seed, 1])
+    profiles = 1 + seed // 2 % 2
+    assert fleet.day is not None
+
+    def bound() -> float:
+        return float(random.integers(10, 60)) if random.random() < 0.7 else inf
+
+    vehicles = tuple(
+        replace(
+            each,
+            max_distance=bound() if fleet.rules.clock != 0 else inf,
+            max_driving=bound(),
+            profile=int(random.integers(profiles)),
+        )
+        for each in fleet.rules.vehicles
+    )
+    days = [*fleet.day, *(_truck(random, each) for each in fleet.day)][: 2 * profiles]
+    return Fleet.over_the_day(replace(fleet.rules, vehicles=vehicles), *days)
+
+
+def _truck(random: np.random.Generator, costs: CostsOfDay) -> CostsOfDay:
+    """Return costs of the same slices by another profile, which lacks a leg."""
+    matrices = random.integers(1, 25, costs.matrices.shape).astype(np.float64)
+    matrices[:, -1, 0] = inf
+    return replace(costs, matrices=matrices)
 
 
 def _costs(random: np.random.Generator, matrix: NDArray[np.float64]) -> CostsOfDay:
@@ -54,13 +85,14 @@ def driven(fleet: Fleet, route: Route, departure: float) -> Driven | None:
     The vehicle loads once, and has no breaks.
     """
     rules, vehicle = fleet.rules, fleet.rules.vehicles[route.vehicle]
-    assert fleet.day is not None
     assert rules.clock is not None
-    costs, path = fleet.day[rules.clock], path_of(rules, route)
-    time, lateness, arrivals = departure, 0.0, []
+    costs, path = fleet.day_by(route.vehicle)[rules.clock], path_of(rules, route)
+    time, lateness, driving, arrivals = departure, 0.0, 0.0, []
     for place, stop in enumerate(path):
         if place:
+            leaves = time
             time = _arrival(costs, path[place - 1], stop, time, vehicle.speed_factor)
+            driving += time - leaves
         ((opens, closes),) = rules.windows[stop]
         if time > closes + 1e-7:
             return None
@@ -68,7 +100,9 @@ def driven(fleet: Fleet, route: Route, departure: float) -> Driven | None:
         begin = max(time, opens)
         lateness += max(0.0, begin - rules.visits[stop].due)
         time = begin + rules.service(route.vehicle, stop)
-    return None if time > vehicle.way[1] + 1e-7 else Driven(arrivals, time, lateness)
+    if time > vehicle.way[1] + 1e-7:
+        return None
+    return Driven(arrivals, time, lateness, driving)
 
 
 def _arrival(costs: CostsOfDay, a: int, b: int, time: float, speed: float) -> float:
@@ -86,9 +120,9 @@ def _arrival(costs: CostsOfDay, a: int, b: int, time: float, speed: float) -> fl
 
 def other_length(fleet: Fleet, route: Route, leaves: list[float], layer: int) -> float:
     """Return the costs of the legs of a route that are not the time, each when it begins."""
-    assert fleet.day is not None
+    costs = fleet.day_by(route.vehicle)[layer]
     legs = zip(leaves, pairwise(path_of(fleet.rules, route)), strict=False)
-    return sum(cost_at(fleet.day[layer], time, a, b) for time, (a, b) in legs)
+    return sum(cost_at(costs, time, a, b) for time, (a, b) in legs)
 
 
 def departures(fleet: Fleet, route: Route) -> list[float]:

@@ -4,6 +4,7 @@ import dataclasses
 from collections.abc import Iterator, Sequence
 from itertools import permutations, product
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -256,6 +257,47 @@ def tidy_fleet(seed: int) -> Fleet:
         tolerance=tolerance,
     )
     return fleet.under(changed)
+
+
+# Objectives of times that spread, the first of which are the clock's, and their percentiles.
+SPREADING: Sequence[tuple[Objectives, tuple[int, ...], tuple[int | None, ...]]] = (
+    (("sum", "on_time"), (0, 0), ()),
+    (("sum", "sum"), (0, 1), (90, None)),
+    (("sum", "max"), (0, 0), (None, 80)),
+    (("sum", "vehicles", "on_time"), (0, 0, 0), (95, None, None)),
+    (("sum", "max"), (0, 0), (90, 90)),
+)
+
+
+def spreading_fleet(seed: int) -> Fleet:
+    """Return one of the others with times that spread, and objectives of how they do."""
+    over, layers, percents = SPREADING[seed % len(SPREADING)]
+    makers = (random_fleet, bounded_fleet, mixed_fleet)
+    fleet, random = makers[seed % len(makers)](seed), np.random.default_rng([seed, 3])
+    rules = fleet.rules
+    plain: dict[str, Any] = {"per_distance": 1.0, "per_time": 0.0, "breaks": ()}
+    vehicles = tuple(dataclasses.replace(each, **plain) for each in rules.vehicles)
+
+    def visited(visit: Visit) -> Visit:
+        due = float(random.integers(5, 40)) if random.random() < 0.6 else visit.due
+        return dataclasses.replace(visit, due=due, wanted=min(visit.wanted, due))
+
+    visits = [
+        visited(visit) if stop in rules.clients else visit
+        for stop, visit in enumerate(rules.visits)
+    ]
+    visits[rules.clients[0]] = dataclasses.replace(visits[rules.clients[0]], due=20.0, wanted=0.0)
+    changed = dataclasses.replace(
+        rules,
+        visits=tuple(visits),
+        vehicles=vehicles,
+        over=over,
+        layers=layers,
+        clock=0,
+        spread=float(random.choice([0.0, 0.1, 0.3, 0.6])),
+        percents=percents,
+    )
+    return Fleet(rules=changed, costs=fleet.costs if rules.clock == 0 else fleet.costs[::-1])
 
 
 def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 2) -> Fleet:

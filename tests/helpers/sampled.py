@@ -1,8 +1,13 @@
 """How many of many cases a run tries: the suite a sample of them, `python -m tests.nightly` all."""
 
 import os
+from collections.abc import Collection
+from itertools import islice
+from typing import TypeVar
 
 import pytest
+
+Case = TypeVar("Case")
 
 WHOLE = "WHOLE_TESTS"  # the environment variable by which `python -m tests.nightly` asks for all
 IS_WHOLE = WHOLE in os.environ
@@ -18,3 +23,8 @@ def tenth(count: int) -> int:
 def third(count: int) -> int:
     """Return a third of a number of seeds, or by night all of them."""
     return count if IS_WHOLE else max(1, count // 3)
+
+
+def few(count: int, cases: Collection[Case]) -> list[Case]:
+    """Return the first of some cases, or by night all of them."""
+    return list(cases if IS_WHOLE else islice(cases, count))

@@ -46,7 +46,7 @@ class ColdRunner(TaskRunner):
         """Wait until the file exists."""
         while not self.warm.exists():
             tell(Compiling(0.4, 20.0))
-            time.sleep(0.005)
+            time.sleep(0.02)
         for part in parts:
             tell(part)
 

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from tests.helpers.kernel_processes import printed
 
 KERNELS = """
@@ -57,17 +55,16 @@ def state(flag=True):
 """
 
 
-@pytest.mark.parametrize("process", ["compiles", "loads"])
-def test_members_are_read_and_arrays_among_them_are_changed(tmp_path: Path, process: str) -> None:
+def test_members_are_read_and_arrays_among_them_are_changed(tmp_path: Path) -> None:
+    """By the process that compiles the kernels, and by the next, which loads them."""
     (tmp_path / "kernels.py").write_text(KERNELS)
     code = (
         "given = state()\n"
         "print(total(given), doubled(given), given.table.inner.numbers.tolist(),"
         " total(state(False)), copied(given).sum())"
     )
-    for _ in range(1 + (process == "loads")):
-        found = printed(tmp_path, code)
-    assert found == "43.5 50.5 [14.0, 2.0] 37.0 15.0\n"
+    found = [printed(tmp_path, code) for _ in range(2)]
+    assert found == ["43.5 50.5 [14.0, 2.0] 37.0 15.0\n"] * 2
 
 
 def test_a_member_that_there_is_not_is_an_error(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.kernel_processes import printed
+from tests.helpers.sampled import IS_WHOLE
 
 KERNELS = """
 import numba
@@ -67,7 +68,7 @@ print(description(3.0))
 """
 
 
-@pytest.mark.parametrize("order", list(permutations(PAIRS))[::50])
+@pytest.mark.parametrize("order", list(permutations(PAIRS))[:: 50 if IS_WHOLE else 100])
 def test_each_function_does_as_in_python_whatever_was_compiled_before(
     order: tuple[str, ...], tmp_path: Path
 ) -> None:

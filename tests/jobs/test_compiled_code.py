@@ -46,20 +46,20 @@ for path in sorted((Path(service.__file__).parent / "examples").glob("*.json")):
     if "time_limit" not in request:  # the index, and streets
         continue
     kind = "coverage" if "grid" in request else "fleet" if "vehicles" in request else "front"
-    tasks += [read(kind, {**request, "time_limit": seconds}) for seconds in (0, 0.2)]
+    tasks += [read(kind, {**request, "time_limit": seconds}) for seconds in (0, 0.1)]
 for n in (240, 700, 1_500):
     cities = [[x % 97, x % 89, x % 83, x % 79] for x in range(n)]
     for closed in (True, False):
-        tasks.append(read("front", {"coordinates": cities, "closed": closed, "time_limit": 0.2}))
+        tasks.append(read("front", {"coordinates": cities, "closed": closed, "time_limit": 0.1}))
 for n, planes in ((9, 2), (60, 2), (9, 3), (60, 4), (700, 3)):
     primes = (97, 89, 83, 79, 73, 71, 67, 61)[:2 * planes]
     cities = [[x % prime for prime in primes] for x in range(n)]
-    for bound in (False, n < 100):
-        request = {"coordinates": cities, "time_limit": 0.2, "size": 9, "bound": bound}
+    for bound in {False, n < 100}:
+        request = {"coordinates": cities, "time_limit": 0.1, "size": 9, "bound": bound}
         tasks.append(read("front", request))
 for planes in (2, 3):
     matrices = [[[x * y % m for x in range(20)] for y in range(20)] for m in (5, 7, 9)[:planes]]
-    tasks.append(read("front", {"matrices": matrices, "time_limit": 0.2, "bound": True}))
+    tasks.append(read("front", {"matrices": matrices, "time_limit": 0.1, "bound": True}))
 loaded, lacking = set(), {}
 for task in sorted(tasks, key=lambda task: len(parts_of(task))):
     for part in parts_of(task) - loaded:

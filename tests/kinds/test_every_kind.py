@@ -2,11 +2,11 @@
 
 import json
 import signal
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 from uuid import uuid4
 
 import httpx
@@ -24,6 +24,7 @@ from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
+from tests.helpers.sampled import IS_WHOLE
 from tests.helpers.serving import LIMITS, app_of, events_of, problem, serving
 from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
 
@@ -41,6 +42,7 @@ ON_MAP = {"coverage", "robots", "detours", "replanned coverage"}
 OF_PLANS = {"robots", "fleet", "replanned fleet"}
 # The command plans these as others of their kinds do: over HTTP they are searched, too.
 ALIKE = ("three", "day", "detours", "replanned fleet")
+UNLIKE = [kind for kind in KINDS if kind not in ALIKE]
 # What requests are about. All other members are options, and have a row in the table.
 SUBJECT = {
     *("coordinates", "matrices", "stops", "objectives", "closed", "start", "end"),
@@ -300,7 +302,21 @@ def planned(asked: Asked, url: str | None, *formats: str, limit: float = 0) -> R
     return CliRunner().invoke(command_line, arguments, input=as_input(asked))
 
 
-@pytest.fixture(params=["local", "url"])
+def here_or_by_url(kinds: Sequence[str], first: Literal["here", "url"]) -> pytest.MarkDecorator:
+    """Plan kinds in this process and by a service: by day in turn, and by night each by both.
+
+    Tests that begin with another place have another one for each kind.
+    """
+    cases = [
+        (kind, place)
+        for kind in kinds
+        for place in ("here", "url")
+        if IS_WHOLE or (KINDS.index(kind) % 2 == 0) == (place == first)
+    ]
+    return pytest.mark.parametrize(("kind", "place"), cases, indirect=["place"])
+
+
+@pytest.fixture
 def place(
     request: pytest.FixtureRequest,
     url: str,
@@ -324,7 +340,7 @@ def refused_here(kind: str, place: str | None, result: Result) -> bool:
     return True
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ALIKE])
+@here_or_by_url(UNLIKE, first="here")
 def test_the_command_prints_json(kind: str, place: str | None, asked: dict[str, Asked]) -> None:
     result = planned(asked[kind], place, "--json", limit=LIMIT)
     if refused_here(kind, place, result):
@@ -338,7 +354,7 @@ def test_the_command_prints_json(kind: str, place: str | None, asked: dict[str, 
     assert "stopped at the time limit" in " ".join(result.stderr.split())
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@here_or_by_url(KINDS, first="url")
 def test_the_command_prints_csv(kind: str, place: str | None, asked: dict[str, Asked]) -> None:
     result = planned(asked[kind], place, "--csv")
     if refused_here(kind, place, result):
@@ -352,7 +368,7 @@ def test_the_command_prints_csv(kind: str, place: str | None, asked: dict[str, A
         assert all(len(row.split(",")[-1].split()) >= visited for row in rows)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in HERE_NOT])
+@here_or_by_url([kind for kind in KINDS if kind not in HERE_NOT], first="here")
 def test_the_command_chooses_a_tour_or_names_the_command_that_plans(
     kind: str, place: str | None, asked: dict[str, Asked]
 ) -> None:
@@ -367,7 +383,7 @@ def test_the_command_chooses_a_tour_or_names_the_command_that_plans(
         assert result.stderr.strip().endswith(f"`paretour {command}` plans that")
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ALIKE])
+@here_or_by_url(UNLIKE, first="url")
 def test_the_command_prints_tables_and_draws(
     kind: str, place: str | None, asked: dict[str, Asked], tmp_path: Any
 ) -> None:
@@ -379,7 +395,7 @@ def test_the_command_prints_tables_and_draws(
     assert "<svg" in (tmp_path / "front.svg").read_text()
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ALIKE])
+@here_or_by_url(UNLIKE, first="here")
 def test_ctrl_c_gives_the_best_so_far(
     kind: str, place: str | None, asked: dict[str, Asked], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -154,6 +154,15 @@ def test_the_vehicle_drives_that_was_asked_for(thread: str) -> None:
     assert [route["vehicle"] for route in planned(request)["routes"]] == [expected]
 
 
+def test_a_speed_is_of_times_alone() -> None:
+    """vroom#1248: it changes neither distances, nor limits on these, nor costs of their own."""
+    van = {"speed_factor": 0.5, "max_distance": 40, "max_driving": 80}
+    plan = planned(fleet({"job": {"at": FAR}}, van=van))
+    [route] = plan["routes"]
+    assert plan["lengths"] == route["lengths"] == [80, 40]
+    assert (route["distance"], route["driving"]) == ([0, 20, 40], [0, 40, 80])
+
+
 EMPTIES = {
     # Two stops are full of what comes back: the one that gives most is served last.
     "vroom#565": ({"demand": [1], "pickup": [4]}, {"demand": [3], "pickup": [2]}, ["east", "west"]),
@@ -258,7 +267,6 @@ WRONG_PROFILES = [
     ("vehicles/1/profile", "trick", "not-a-profile"),
     ("objectives/0/matrices/1/profile", "car", "not-unique"),
     ("objectives/0/matrices/1/matrix", [[0]], "row-each"),
-    ("objectives/0/over_the_day", [[0, 1]], "profile-over-the-day"),
     ("objectives/0/matrix", [[0] * 3] * 3, "not-one-source"),
 ]
 
@@ -275,8 +283,7 @@ def test_a_profile_without_costs_is_refused(path: str, value: Any, code: str) ->
         planned(request)
     [fault] = refused.value.errors
     assert fault.code == code
-    pointer = {"profile-over-the-day": "/vehicles/0/profile", "not-one-source": "/objectives/0"}
-    assert fault.pointer == pointer.get(code, f"/{path}")
+    assert fault.pointer == {"not-one-source": "/objectives/0"}.get(code, f"/{path}")
 
 
 @pytest.mark.parametrize(
@@ -338,28 +345,75 @@ def test_the_urgent_are_visited_early() -> None:
     assert plan["measures"]["weighted_arrival"] == 50 * 10 + 30
 
 
-def begun_with(stop: str, request: Json) -> tuple[int, ReplanSource]:
-    """Return the number of a route that has visited a stop, and a request to replan the rest."""
+def test_who_must_be_early_is_first_where_times_spread_also_while_it_is_replanned() -> None:
+    """OpenTripPlanner#6874: what half of all days take, and nine of ten; here with windows too."""
+    stops = {"west": {"at": WEST, "window": [0, 100]}, "east": {"at": EAST, "window": [0, 32]}}
+    request = fleet(stops, leave="early", against={"measure": "on_time"})
+    request["objectives"][0] |= {"spread": 0.2, "percentile": 90}
+    [plan] = front_of(request)
+    assert plan["routes"][0]["stops"][1:3] == ["east", "west"]
+    most, late = plan["lengths"]
+    assert most == plan["measures"]["duration_p90"] > plan["measures"]["duration"] == 40
+    assert 1e-3 > late == pytest.approx(2 * (1 - plan["measures"]["on_time"]))
+    _, source = begun_with("east", request)
+    rest = parse_replan(source, LIMITS, {})
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    [plan, *_] = json.loads(document.json(id="", status="done"))["front"]
+    assert plan["lengths"][0] == plan["measures"]["duration_p90"]
+
+
+def begun_with(stop: str, request: Json, **way: Any) -> tuple[int, ReplanSource]:
+    """Return the number of a route that has visited a stop, and a request to replan the rest.
+
+    `way` are more members of the route on its way.
+    """
     task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
     front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
     plan = json.loads(front.json(id="", status="done"))["front"][0]
     begun = next(i for i, route in enumerate(plan["routes"]) if stop in route["stops"])
-    changes = {"plan": 0, "now": 30, "routes": [{"route": begun, "done": [stop]}]}
+    changes = {"plan": 0, "now": 30, "routes": [{"route": begun, "done": [stop], **way}]}
     stored = StoredFront("", encode_task(task), front)
     return begun, ReplanSource(json.dumps(changes).encode(), stored)
 
 
-def test_a_vehicle_under_way_whose_driving_is_limited_is_not_replanned() -> None:
-    _, source = begun_with("west", fleet(SIDES, van={"max_driving": 100}))
-    with pytest.raises(Refusal, match="routes/0 must not be under way"):
-        parse_replan(source, LIMITS, {})
+# Driven west by 10 of the 40 there and back, there are 30 more. The plan does not say how far it is
+# to a place between two stops.
+HERE: Json = {"id": "here", "costs": [{"to": [5, 5, 15, 0]}] * 2}
+UNDER_WAY = [
+    ({"max_driving": 40}, {}, True),
+    ({"max_driving": 45}, {"driving": 15}, True),
+    ({"max_driving": 40}, {"driving": 11}, False),
+    ({"max_distance": 40}, {}, True),
+    ({"max_distance": 40}, {"distance": 10.5}, False),
+    ({"max_driving": 40}, {"position": HERE, "driving": 15}, True),
+    ({"max_driving": 40}, {"position": HERE, "driving": 16}, False),
+    ({"max_driving": 40, "max_distance": 40}, {"position": HERE, "driving": 15}, None),
+]
 
 
-def test_limits_on_driving_are_refused_where_costs_change_over_the_day() -> None:
-    request = fleet(SIDES, van={"max_driving": 100})
-    request["objectives"][0] |= {"unit": "s", "over_the_day": [[0, 1], [36_000, 1.5]]}
-    with pytest.raises(Refusal, match="vehicles/0/max_driving cannot be given where costs change"):
-        planned(request)
+@pytest.mark.parametrize(("limits", "way", "has_plan"), UNDER_WAY)
+def test_what_was_driven_counts_while_the_fleet_is_replanned(
+    limits: Json, way: Json, has_plan: bool | None
+) -> None:
+    """vroom#918: what a driver may drive is of the whole day."""
+    _, source = begun_with("west", fleet(SIDES, van=limits), **way)
+    if has_plan is None:
+        with pytest.raises(Refusal) as refused:
+            parse_replan(source, LIMITS, {})
+        [fault] = refused.value.errors
+        assert (fault.pointer, fault.code) == ("/routes/0/distance", "not-driven")
+        return
+    rest = parse_replan(source, LIMITS, {})
+    if not has_plan:
+        with pytest.raises(Refusal):
+            run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+        return
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    [plan, *_] = json.loads(document.json(id="", status="done"))["front"]
+    [route] = plan["routes"]
+    from_there = [0, 15, 25] if "position" in way else [0, 20, 30]
+    for name in limits:
+        assert route[name.removeprefix("max_")] == from_there
 
 
 STREETS = {  # stops a, b, ... from west to east on both sides of the depot
@@ -540,6 +594,31 @@ def test_vehicles_arrive_as_the_traffic_of_the_hour_lets_them(thread: str) -> No
     (route,) = planned(request)["routes"]
     assert route["arrivals"] == expected
     assert route["lengths"][0] == expected[-1] - expected[0]
+
+
+# In the rush the van drives 40, and the bike half of it by times of its own.
+DRIVERS = [
+    ({}, {"fixed": 5}, 1, "van"),
+    ({"max_driving": 39}, {"fixed": 5}, 1, "bike"),
+    ({"max_driving": 40}, {"fixed": 5}, 1, "van"),
+    ({"max_distance": 19}, {"fixed": 5}, 1, "bike"),
+    ({}, {"fixed": 5}, 0.5, "bike"),
+]
+
+
+@pytest.mark.parametrize(("van", "bike", "factor", "driver"), DRIVERS)
+def test_vehicles_that_differ_drive_through_the_rush(
+    van: Json, bike: Json, factor: float, driver: str
+) -> None:
+    """vroom#918 and vroom#654 where it is vroom#1280 as well."""
+    request = fleet({"job": {"at": EAST, "window": [130, 130]}}, van={**MORNING, **van})
+    request["vehicles"].append({**BIKE, **MORNING, **bike})
+    request = over_the_day(by_profile(request, car=1, truck=factor), **RUSH)
+    [route] = planned(request)["routes"]
+    assert route["vehicle"] == driver
+    assert route["arrivals"][1] == 130
+    if "max_driving" in van and driver == "van":
+        assert route["driving"] == [0, 20, 40]
 
 
 def test_a_break_is_taken_in_the_rush() -> None:

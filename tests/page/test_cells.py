@@ -71,6 +71,8 @@ def read(node: Node, table: str, title: str, text: str, second: int = 1) -> list
         ("vehicles", "Price per hour", "36", {"per_time": 0.01}, "36"),
         ("vehicles", "Most distance, km", "90", {"max_distance": 90_000}, "90"),
         ("vehicles", "Most driving", "4:30", {"max_driving": 4.5 * HOUR}, "270 min"),
+        ("vehicles", "Profile", "truck", {"profile": "truck"}, "truck"),
+        ("stops", "Takes back", "2; 5", {"pickup": [2, 5]}, "2, 5"),
         (
             "stops",
             "Service by vehicle",

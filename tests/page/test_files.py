@@ -26,6 +26,7 @@ from tests.helpers.browsing import (
     wait_until_planned,
 )
 from tests.helpers.command import paretour
+from tests.helpers.sampled import few
 
 pytestmark = needs_chromium
 
@@ -130,31 +131,38 @@ def test_rows_that_are_pasted_go_into_their_box(opened: Page) -> None:
 
 @pytest.mark.parametrize(
     ("name", "text", "said"),
-    [
-        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv: row 3, column 'v' must be a number"),
-        ("stops.json", '{"coordinates": [', "stops.json: must be JSON"),
-        ("stops.json", '{"coordinates": [1, 2]}', "coordinates must be a list of rows"),
-        ("stops.json", '{"stops": 7}', "stops must be a list of objects"),
-        (
-            "stops.csv",
-            "id,lon,lat\na,24.9,60.1\nb,east,60.2\n",
-            "row 3, column 'lon' must be a number, got 'east'",
-        ),
-        (
-            "list.csv",
-            "Customer\nAnna\nBob\n",
-            "must say where each stop is: in columns named lat and lon, or in 4, 6 or 8 columns",
-        ),
-        ("stops.csv", "id;lon;lat\na;24,9;60\na;25;60\n", "row 3, column 'id' must be an id"),
-        (
-            "points.geojson",
-            collection(objectives=OBJECTIVES, features=[{"geometry": None}]),
-            "features/0 must be a Point",
-        ),
-        ("points.geojson", collection(objectives=5), "objectives must be a list of objects"),
-        ("map.json", '{"grid": []}', "grid must have a cell or more"),
-        ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "name another for the other one"),
-    ],
+    few(
+        4,
+        [
+            (
+                "stops.csv",
+                "x,y,u,v\n1,2,3,4\n5,6,7\n",
+                "stops.csv: row 3, column 'v' must be a number",
+            ),
+            ("stops.json", '{"coordinates": [', "stops.json: must be JSON"),
+            ("stops.json", '{"coordinates": [1, 2]}', "coordinates must be a list of rows"),
+            ("stops.json", '{"stops": 7}', "stops must be a list of objects"),
+            (
+                "stops.csv",
+                "id,lon,lat\na,24.9,60.1\nb,east,60.2\n",
+                "row 3, column 'lon' must be a number, got 'east'",
+            ),
+            (
+                "list.csv",
+                "Customer\nAnna\nBob\n",
+                "must say where each stop is: in columns named lat and lon, or in 4, 6 or 8",
+            ),
+            ("stops.csv", "id;lon;lat\na;24,9;60\na;25;60\n", "row 3, column 'id' must be an id"),
+            (
+                "points.geojson",
+                collection(objectives=OBJECTIVES, features=[{"geometry": None}]),
+                "features/0 must be a Point",
+            ),
+            ("points.geojson", collection(objectives=5), "objectives must be a list of objects"),
+            ("map.json", '{"grid": []}', "grid must have a cell or more"),
+            ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "name another for the other one"),
+        ],
+    ),
 )
 def test_a_bad_file_is_refused_in_a_sentence(opened: Page, name: str, text: str, said: str) -> None:
     open_files(opened, {name: text})

@@ -18,7 +18,7 @@ from tests.helpers.browsing import (
     wait_until_planned,
 )
 from tests.helpers.layout_shifts import shifts_after_the_first_front, watch_layout_shifts
-from tests.helpers.sampled import IS_WHOLE
+from tests.helpers.sampled import IS_WHOLE, few
 
 EXAMPLES = ["Helsinki deliveries", "City deliveries", "Warehouse cleaning"]
 LEGIBLE, SEEN = 4.5, 3.0  # contrasts that WCAG 2.2 demands of text, and of lines
@@ -85,7 +85,7 @@ def assert_that_nothing_sticks_out(page: Page, width: int, example: str) -> None
     assert page.evaluate("document.documentElement.scrollWidth") == width, example
 
 
-@pytest.mark.parametrize("width", [DESK, PHONE])
+@pytest.mark.parametrize("width", few(1, [PHONE, DESK]))
 def test_nothing_moves_by_itself_once_a_front_is_drawn(
     browser: Browser, released: str, width: int
 ) -> None:

@@ -73,7 +73,6 @@ def test_a_front_that_is_done_before_its_stream_says_so_is_shown(page: Page) -> 
     expect(page.locator("#figures")).to_contain_text("found")
 
 
-@at_both_widths
 def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> None:
     slider = page.get_by_role("slider", name="Balance")
     slider.press("Home")

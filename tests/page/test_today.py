@@ -63,6 +63,26 @@ def test_what_is_done_comes_from_the_times_of_the_plan(
     assert node.evaluate(PROGRESS, [DRIVEN, now, turned])[0] == first
 
 
+LOADS = """async ([driven, now]) => {
+  const { progressOf } = await import("./page/today/progress.js");
+  const { onBoard } = await import("./page/today/said.js");
+  const { loadOf } = await import("./page/fleet/routes_of_plan.js");
+  const { knownFleet } = await import("./page/fleet/known_fleet.js");
+  const [van] = progressOf(driven, { now, turned: new Set() }).vans;
+  const known = knownFleet(driven.asked);
+  return [onBoard(van, known, "van"), loadOf(driven.routes[0], known)];
+}"""
+
+
+@pytest.mark.parametrize(("now", "on_board"), [(525, "4"), (575, "7"), (635, "6")])
+def test_what_stops_give_back_is_on_board_to_the_end(node: Node, now: int, on_board: str) -> None:
+    """A gets 2 and gives 5 back, and B gets 2 and gives 1 back."""
+    back = {"A": [5], "B": [1]}
+    stops = [{**stop, "pickup": back.get(str(stop["id"]), [0])} for stop in STOPS]
+    driven = {**DRIVEN, "asked": {**ASKED, "stops": [{"id": "depot"}, *stops]}}
+    assert node.evaluate(LOADS, [driven, now]) == [on_board, "7 of 9"]
+
+
 LOADING = """async ([driven, now, out]) => {
   const { progressOf } = await import("./page/today/progress.js");
   const { loadingSaid } = await import("./page/today/said.js");
@@ -135,6 +155,12 @@ def test_a_replanning_says_how_far_the_vehicles_are_and_what_has_changed(node: N
         {"route": 0, "done": ["A", "B"], "broken_down": True},
         {"route": 1, "done": ["C"], "leaves": 640},
     ]
+    limited = {**DRIVEN["routes"][0], "driving": [0, 20, 50, 80], "distance": [0, 2, 5, 9]}
+    known = {**driven, "routes": [limited, *DRIVEN["routes"][1:]]}
+    way, *_ = node.evaluate(BODY, [known, 575, [[3, 4], None], [], [], []])
+    [first] = way["routes"]
+    assert 20 < first["driving"] < 50
+    assert first["distance"] == 2 + (first["driving"] - 20) / 10
     by_costs, *_ = node.evaluate(BODY, [DRIVEN, 575, [[3, 4], None], [], [], []])
     assert by_costs["routes"] == [{"route": 0, "done": ["A"]}]
 

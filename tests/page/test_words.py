@@ -282,3 +282,60 @@ def test_a_sentence_says_what_a_choice_gives_up_and_gains(
 ) -> None:
     tours = front(*lengths)
     assert node.call("result/choice.js", "choiceOf", tours, tours[at], objectives, noun) == said
+
+
+SPREAD = {"means": [1680, 2], "p90": [2040, 2]}
+ON_TIME = {"on_time": 0.94, "duration": 1680, "duration_p90": 2040}
+SECONDS = [{"name": "time", "unit": "s"}, {"name": "risk", "unit": "people"}]
+
+
+def test_lengths_that_spread_say_what_most_days_do_not_exceed(node: Node) -> None:
+    said = node.evaluate(
+        """async ([objectives, item, plan, percentile]) => {
+          const { noteOn } = await import("./page/result/notes.js");
+          const { measuresOf } = await import("./page/fleet/measures.js");
+          const { compared } = await import("./page/common/amounts.js");
+          const asked = { objectives: [{ ...objectives[0], percentile }], clock: "time" };
+          const known = { movers: null, asked };
+          const rows = measuresOf(plan, objectives, asked);
+          return [
+            ...[0, 1].map((axis) => noteOn(objectives, axis, item, known)),
+            noteOn(objectives, 0, plan, known),
+            ...rows.map(({ name, objective: o, value: v }) => `${name}: ${compared(v(plan), o)}`),
+          ];
+        }""",
+        [
+            SECONDS,
+            {"lengths": [2040, 2], **SPREAD},
+            {"lengths": [2040, 2], "measures": ON_TIME},
+            90,
+        ],
+    )
+    assert said == [
+        "28 min on average; nine days of ten within 34 min",
+        "",
+        "at most, on 90 days of a hundred",
+        "Visits on time, %: 94",
+        "Time in all, on average: 28 min",
+        "Nine days of ten within: 34 min",
+    ]
+
+
+def test_csv_of_the_page_has_means_and_nine_days_of_ten(node: Node) -> None:
+    tour = {"angle": 45, "lengths": [2040, 2], "tour": [0, 1], **SPREAD}
+    plan = {"balance": 0, "lengths": [2040, 2], "measures": ON_TIME, "routes": [ROUTE]}
+    tours, plans = node.evaluate(
+        """async ([objectives, tour, plan]) => {
+          const { csv } = await import("./page/result/exports.js");
+          const of = (kind, front) => csv({ kind, front: [front] }, { objectives, asked: {} }, 0);
+          return [of("front", tour), of("fleet", plan)];
+        }""",
+        [SECONDS, tour, plan],
+    )
+    assert tours.splitlines()[0].endswith("mean time (s),p90 time (s),tour,selected")
+    assert tours.splitlines()[1] == "45,2040,2,1680,2040,0 1,yes"
+    assert ",share of visits on time,mean time in all,p90 time in all,vehicle," in plans
+    assert ",2040,2,0.94,1680,2040,van," in plans
+
+
+ROUTE = {"vehicle": "van", "stops": ["a"], "lengths": [2040, 2]}

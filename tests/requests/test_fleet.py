@@ -92,6 +92,24 @@ def test_the_times_of_a_clock_spread(clock: Any) -> None:
     assert fleet_of(request).rules.spread == 0.3
 
 
+def test_objectives_are_of_most_days() -> None:
+    request = fleet_request()
+    time = request["objectives"][1] | {"over": "sum", "spread": 0.3}
+    longest = time | {"name": "longest", "over": "max", "spread": None, "percentile": 90}
+    request["objectives"] = [time | {"percentile": 95}, longest]
+    rules = fleet_of(request).rules
+    assert (rules.layers, rules.percents) == ((0, 0), (95, 90))
+    for vehicle in request["vehicles"]:
+        vehicle["per_time"] = 2
+    with pytest.raises(Refusal, match="cannot be given beside a percentile, in /objectives/0"):
+        fleet_of(request)
+    for vehicle in request["vehicles"]:
+        del vehicle["per_time"]
+        vehicle["breaks"] = [{"window": [100, 200], "length": 5}]
+    with pytest.raises(Refusal, match="cannot be given beside a percentile, in /objectives/0"):
+        fleet_of(request)
+
+
 def promised(vehicle: str, *stops: str, tolerance: Any = None, **members: Any) -> dict[str, Any]:
     """Return a promised plan of one route."""
     route = {"vehicle": vehicle, "stops": list(stops), **members}
@@ -158,6 +176,9 @@ REFUSED = [
     ("objectives/0/from", "road_time", "/objectives/0/from"),
     ("objectives/0/spread", 0.2, "/objectives/0/spread"),
     ("objectives/1/spread", -1, "/objectives/1/spread"),
+    ("objectives/0/percentile", 90, "/objectives/0/percentile"),
+    ("objectives/1/percentile", 90, "/objectives/1/percentile"),
+    ("objectives/2", {"name": "late", "measure": "on_time"}, "/objectives/2/measure"),
     ("clock", "minutes", "/clock"),
     ("clock", None, "/vehicles/0/shift"),
     ("time_limit", 0, None),

@@ -22,6 +22,7 @@ from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from tests.helpers.actors import info_of
 from tests.helpers.fake_router import fake_osrm, replying, road_costs, waiting
+from tests.helpers.fake_traffic import SLOWER, fake_traffic
 from tests.helpers.serving import LIMITS
 
 PLACES = np.array([[24.1, 60.2], [24.3, 60.9], [24.8, 60.5], [24.4, 60.1]])
@@ -98,6 +99,30 @@ def test_vehicles_of_each_profile_are_measured_by_themselves() -> None:
             pytest.approx(times * seconds[leg]) for leg in ((0, 1), (1, 3))
         ]
         assert fleet.legs_along(1, (0, 1), vehicle) == [road_costs(PLACES, PLACES)[1][0, 1]]
+
+
+def test_vehicles_of_each_profile_have_the_traffic_of_each_time() -> None:
+    stops = [{"id": str(i), "location": place} for i, place in enumerate(PLACES.tolist())]
+    vehicles = [{"id": "van"}, {"id": "lorry", "profile": "truck"}]
+    traffic = {"date": "2026-11-30", "at": [6 * 3600, 7 * 3600]}
+    time = {"name": "time", "from": "road_time", "traffic": traffic}
+    metres = {"name": "metres", "from": "road_distance", "over_the_day": [[0, 1], [3600, 2]]}
+    body = {"stops": stops, "vehicles": vehicles, "objectives": [time, metres], "clock": "time"}
+    limits = replace(LIMITS, roads=True, traffic=True, profiles=("truck",))
+    task = parse_task(TaskSource("fleet", json.dumps(body).encode()), limits, ACTORS)
+    task = decode_task(encode_task(task))
+    with fake_traffic() as fake:
+        settings = replace(_settings(fake.url), router="valhalla", profile="auto")
+        with _blocking(replace(settings, profiles={"truck": "truck"})) as measurer:
+            measured = measurer.measured(task, lambda: False)
+    asked = {(each["costing"], each.get("date_time", {}).get("value")) for each in fake.asked}
+    times = (None, "2026-11-30T06:00", "2026-11-30T07:00")
+    assert asked == {(costing, time) for costing in ("auto", "truck") for time in times}
+    assert isinstance(measured.subject, UnmeasuredFleet)
+    seconds, metres_of = road_costs(PLACES, PLACES)
+    for seconds_by, metres_by in measured.subject.fleet().days:
+        assert seconds_by.at(7 * 3600, 0, 1) == pytest.approx(SLOWER * seconds[0, 1])
+        assert metres_by.at(7 * 3600, 0, 1) == pytest.approx(2 * metres_of[0, 1])
 
 
 def test_a_task_without_roads_needs_no_engine() -> None:

@@ -151,6 +151,7 @@ Measure = Literal[
     "weighted_arrival",
     "overlap",
     "changes",
+    "on_time",
 ]
 
 
@@ -171,6 +172,7 @@ FleetObjectiveRequest = TypedDict(
         "spread": float | None,
         "measure": Measure | None,
         "over": Literal["sum", "max"],
+        "percentile": int | None,
     },
     total=False,
 )
@@ -292,6 +294,8 @@ class RouteOnTheWayRequest(TypedDict, total=False):
     done: Sequence[int | str] | ArrayLike
     position: int | str | NewStopRequest | None
     leaves: float | None
+    distance: float | None
+    driving: float | None
     broken_down: bool
 
 

@@ -31,6 +31,8 @@ class FleetRoute:
         route: The number of its route in the plan that is driven, if it is on its way.
         load: The most that it carries at a time, in each dimension.
         profile: The profile of its vehicle, if it has one.
+        distance: How far it has driven at each of these stops, if its vehicle has a max_distance.
+        driving: How long it has driven at each of them, if its vehicle has a max_driving.
     """
 
     vehicle: str
@@ -45,6 +47,8 @@ class FleetRoute:
     route: int | None = None
     load: tuple[int, ...] = ()
     profile: str | None = None
+    distance: tuple[float, ...] = ()
+    driving: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,9 +1,8 @@
 """Read customers with windows, as Solomon, Gehring and Homberger, and Li and Lim write them."""
 
 import re
-from typing import Any
 
-from service.files.fleets import fleet_request, planar
+from service.files.fleets import Shipment, Stop, Vehicle, fleet_request, planar
 from service.files.reading import Reading, Source
 from service.files.tables import number_in
 
@@ -43,14 +42,15 @@ def read_customers(source: Source, text: str) -> Reading:
     source.check_count("stops", source.bounds.cities, len(customers))
     depot, *others = [row for _, row in customers]
     names = [f"{row[0]:g}" for _, row in customers]
-    stops = [{"id": names[0]}, *(_customer(source, row) for row in others)]
-    vehicle: dict[str, Any] = {
+    stops: list[Stop] = [{"id": names[0]}, *(_customer(source, row) for row in others)]
+    vehicle: Vehicle = {
         **{"id": "vehicle", "count": int(count), "start": names[0], "end": names[0]},
         "capacity": [_whole(source, capacity, "capacity")],
         "shift": depot[4:6],
     }
-    objectives = planar({"coordinates": [row[1:3] for _, row in customers]})
-    shipments = None
+    plane = [row[1:3] for _, row in customers]
+    objectives = planar({"name": "total length", "coordinates": plane})
+    shipments: list[Shipment] | None = None
     if width == _WITH_PAIRS:
         pairs = [(f"{row[0]:g}", f"{row[8]:g}") for row in others if row[8]]
         shipments = [{"pickup": one, "delivery": other} for one, other in pairs]
@@ -58,9 +58,9 @@ def read_customers(source: Source, text: str) -> Reading:
     return source.reading("fleet", fleet_request(stops, [vehicle], objectives, shipments))
 
 
-def _customer(source: Source, row: list[float]) -> dict[str, Any]:
+def _customer(source: Source, row: list[float]) -> Stop:
     name = f"{row[0]:g}"
-    stop: dict[str, Any] = {"id": name, "window": row[4:6], "service": row[6]}
+    stop: Stop = {"id": name, "window": row[4:6], "service": row[6]}
     if row[3] >= 0:  # a delivery has the negative demand of its pick-up
         stop["demand"] = [_whole(source, row[3], f"the demand of {name}")]
     return stop

@@ -1,18 +1,20 @@
 """Read fleets in the keywords and sections of TSPLIB, CVRPLIB, VRPLIB and LKH."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.files.benchmarks.keywords import check_fleet
-from service.files.benchmarks.vehicles import Depots, Vehicles, vehicles_of
-from service.files.fleets import Stop, fleet_request, planar
+from service.files.benchmarks.vehicles import Depots, vehicles_of
+from service.files.fleets import Shipment, Stop, Vehicle, fleet_request, planar
 from service.files.reading import Reading
 from service.files.tables import number_in
 from service.files.tsplib import TsplibFile, costs, note_rounded, plain
 
 Array = NDArray[np.float64]
+_Member = Literal["service", "release", "prize"]
 _PAIRS = "PICKUP_AND_DELIVERY_SECTION"
 _OPEN = ("OVRP", "COVRP", "OVRPTW")
 _BESIDE_PAIRS = ("DEMAND_SECTION", "LINEHAUL_SECTION", "SERVICE_TIME", "SERVICE_TIME_SECTION")
@@ -28,18 +30,20 @@ def read_cvrp(file: TsplibFile) -> Reading:
     check_fleet(file)
     depots = Depots.of(file, open_routes=file.word("TYPE").upper() in _OPEN)
     clients = [at for at in range(file.dimension) if at not in depots.stops]
-    stops = [{"id": depots.name(at)} for at in range(file.dimension)]
+    stops: list[Stop] = [{"id": depots.name(at)} for at in range(file.dimension)]
     windows, shipments = _add_visits(file, stops, clients)
     fleet = vehicles_of(file, depots, clients, windows)
     _add_prizes(file, stops, clients, fleet.unit_cost)
-    for at, members in fleet.allowed.items():
-        stops[at] |= members
+    for at, vehicle in fleet.pinned.items():
+        stops[at]["vehicle"] = vehicle
+    for at, skill in fleet.skills.items():
+        stops[at]["skills"] = [skill]
     if not any("demand" in stop for stop in stops):
-        fleet = _without_capacity(file, fleet)
+        _remove_capacities(file, fleet.types)
     kept = [at for at in range(file.dimension) if at not in depots.stops or at in fleet.used]
     matrix = plain(costs(file)[np.ix_(kept, kept)])
     note_rounded(file)
-    objectives = planar({"matrix": matrix})
+    objectives = planar({"name": "total length", "matrix": matrix})
     request = fleet_request([stops[at] for at in kept], fleet.types, objectives, shipments or None)
     fleet.check_distances(file, timed="clock" in request)
     if "clock" in request and "DISTANCE" in file.header:
@@ -50,7 +54,7 @@ def read_cvrp(file: TsplibFile) -> Reading:
 
 def _add_visits(
     file: TsplibFile, stops: list[Stop], clients: list[int]
-) -> tuple[Array | None, list[dict[str, str]]]:
+) -> tuple[Array | None, list[Shipment]]:
     """Add demands, windows, services and releases to stops; return all windows, and shipments."""
     _check_backhauls(file)
     if _PAIRS in file.sections:
@@ -100,21 +104,17 @@ def _check_backhauls(file: TsplibFile) -> None:
 
 def _add_pairs(
     file: TsplibFile, stops: list[Stop], clients: list[int]
-) -> tuple[Array | None, list[dict[str, str]]]:
+) -> tuple[Array | None, list[Shipment]]:
     """Add demands and services of pick-ups and deliveries; return all windows, and shipments."""
     if both := [each for each in _BESIDE_PAIRS if {each} & {*file.header, *file.sections}]:
         raise file.source.refusal("stands-beside", both[0], keyword=_PAIRS)
     rows = file.of_nodes(_PAIRS, 6)
-    windows = rows[:, 1:3] if rows[:, 1:3].any() else None
-    if "TIME_WINDOW_SECTION" in file.sections:
-        again = file.of_nodes("TIME_WINDOW_SECTION", 2)
-        if windows is not None and not np.array_equal(windows, again):
-            raise file.source.refusal("windows-differ", "TIME_WINDOW_SECTION", section=_PAIRS)
-        windows = again
-    shipments = []
+    windows = _windows_beside(file, rows[:, 1:3])
+    shipments: list[Shipment] = []
     for at in clients:
         demand, _, _, service, pickup, delivery = rows[at].tolist()
-        stops[at] |= {"service": service} if service else {}
+        if service:
+            stops[at]["service"] = service
         if delivery:
             _check_pair(file, rows, at, int(delivery) - file.first_node)
             stops[at]["demand"] = [_load(file, demand, _PAIRS, stops[at])]
@@ -125,6 +125,17 @@ def _add_pairs(
         elif demand:
             stops[at]["demand"] = [_load(file, demand, _PAIRS, stops[at])]
     return windows, shipments
+
+
+def _windows_beside(file: TsplibFile, of_pairs: Array) -> Array | None:
+    """Return the windows of pick-ups and deliveries, or of a section that says the same."""
+    windows = of_pairs if of_pairs.any() else None
+    if "TIME_WINDOW_SECTION" not in file.sections:
+        return windows
+    again = file.of_nodes("TIME_WINDOW_SECTION", 2)
+    if windows is not None and not np.array_equal(windows, again):
+        raise file.source.refusal("windows-differ", "TIME_WINDOW_SECTION", section=_PAIRS)
+    return again
 
 
 def _check_pair(file: TsplibFile, rows: Array, pickup: int, delivery: int) -> None:
@@ -151,7 +162,7 @@ def _each_or_one(file: TsplibFile, name: str) -> Callable[[int], float]:
 
 
 def _add(
-    stops: list[Stop], clients: list[int], member: str, number: Callable[[int], float]
+    stops: list[Stop], clients: list[int], member: _Member, number: Callable[[int], float]
 ) -> None:
     for at in clients:
         if value := number(at):
@@ -166,7 +177,8 @@ def _add_prizes(file: TsplibFile, stops: list[Stop], clients: list[int], unit: f
     _add(stops, clients, "prize", lambda at: float(prizes[at]))
 
 
-def _without_capacity(file: TsplibFile, fleet: Vehicles) -> Vehicles:
-    if any("capacity" in each for each in fleet.types):
+def _remove_capacities(file: TsplibFile, types: Sequence[Vehicle]) -> None:
+    if any("capacity" in each for each in types):
         file.source.note("demand", "Capacities were not used, as no stop has a demand.")
-    return fleet.without("capacity")
+    for each in types:
+        each.pop("capacity", None)

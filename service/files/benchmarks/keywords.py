@@ -7,6 +7,7 @@ PyVRP. A keyword that says something about tours or routes is never left out wit
 import re
 from typing import Any
 
+from service.errors.printable import shortened
 from service.files.tables import number_in
 from service.files.tsplib import TsplibFile
 
@@ -194,10 +195,8 @@ def _check(file: TsplibFile, known: set[str]) -> None:
         if number_in(word) is not None or _SWITCH.fullmatch(word):
             raise file.source.refusal("unsupported-value", _shown(name), came=word)
     if unknown:
-        shown = ", ".join(map(_shown, unknown[:_MOST_NAMED]))
-        more = f" and {len(unknown) - _MOST_NAMED} more" if len(unknown) > _MOST_NAMED else ""
-        text = f"{shown}{more} was not used: it is not a known keyword."
-        file.source.note("left-out", text)
+        shown = shortened([*map(_shown, unknown)], _MOST_NAMED)
+        file.source.note("left-out", f"{shown} was not used: it is not a known keyword.")
 
 
 def _shown(name: str) -> str:

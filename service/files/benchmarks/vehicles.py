@@ -1,9 +1,8 @@
 """Read the depots and vehicles of VRPLIB: keywords and sections with a row for each vehicle."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,18 +42,18 @@ class Depots:
 
 @dataclass(frozen=True)
 class Vehicles:
-    """The types of vehicles, what stops are told of them, and the depots that they use."""
+    """The types of vehicles, and the depots that they use.
+
+    `pinned` are the stops that one type alone may visit, with its id; `skills` are those that some
+    may, with the skill of these.
+    """
 
     types: list[Vehicle]
-    unit_cost: float = 1.0
-    used: frozenset[int] = frozenset()
-    allowed: Mapping[int, dict[str, Any]] = field(default_factory=dict)
-    limits_distances: bool = False
-
-    def without(self, member: str) -> "Vehicles":
-        """Return these vehicles without one of their members."""
-        types = [{k: v for k, v in each.items() if k != member} for each in self.types]
-        return replace(self, types=types)
+    unit_cost: float
+    used: frozenset[int]
+    limits_distances: bool
+    pinned: dict[int, str] = field(default_factory=dict)
+    skills: dict[int, str] = field(default_factory=dict)
 
     def check_distances(self, file: TsplibFile, *, timed: bool) -> None:
         """Raise UnreadableFile if distances are limited where a limit is on times."""
@@ -85,16 +84,17 @@ def vehicles_of(
         text = "The file does not say how many vehicles: as many as needed."
         file.source.note("vehicle", text)
         alike = [max(1, len(clients))]
-    types: list[Vehicle] = [
-        {"id": f"vehicle {at + 1}" if len(kinds) > 1 else "vehicle", "count": number, **vehicle}
-        for (at, vehicle, _), number in zip(kinds, alike, strict=True)
-    ]
-    used = {stop for each in types for stop in (each["start"], *each.get("reload", ()))}
-    allowed = {}
+    used = {each for at, *_ in kinds for each in rows.lists("VEHICLES_RELOAD_DEPOT")[at]}
+    for (at, vehicle, _), number in zip(kinds, alike, strict=True):
+        vehicle["count"] = number
+        if len(kinds) > 1:
+            vehicle["id"] = f"vehicle {at + 1}"
+        used |= {each for each in depots.stops if depots.name(each) == vehicle["start"]}
+    types = [vehicle for _, vehicle, _ in kinds]
+    fleet = Vehicles(types, unit, frozenset(used), rows.has(_DISTANCE))
     if rows.has("VEHICLES_ALLOWED_CLIENTS"):
-        allowed = _allowed(file, types, [each for *_, each in kinds], clients, depots)
-    at_depots = frozenset(at for at in depots.stops if depots.name(at) in used)
-    return Vehicles(types, unit, at_depots, allowed, rows.has(_DISTANCE))
+        _allow(file, fleet, [each for *_, each in kinds], clients, depots)
+    return fleet
 
 
 def _alike(
@@ -220,11 +220,13 @@ class _Rows:
 
 
 def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at: int) -> Vehicle:
-    """Return the members of a vehicle, without its id and count."""
+    """Return one vehicle."""
     file = rows.file
     start = _start(rows, depots, at)
     home = depots.name(start)
-    made: Vehicle = {"start": home} if depots.open_routes else {"start": home, "end": home}
+    made: Vehicle = {"id": "vehicle", "count": 1, "start": home}
+    if not depots.open_routes:
+        made["end"] = home
     if capacity := rows.numbers("CAPACITY", at):
         made["capacity"] = [_load(file, each) for each in capacity]
     elif "DEMAND_SECTION" in file.sections:
@@ -237,7 +239,8 @@ def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at
         made["fixed"] = _plain(fixed / unit)
     if len(rows.unit_costs) > 1:
         made["per_distance"] = _plain(rows.number(_UNIT_COST, at) or 0.0)
-    return made | _reload(rows, depots, at)
+    _add_reloads(rows, depots, at, made)
+    return made
 
 
 def _longest(rows: _Rows, at: int) -> float | None:
@@ -248,19 +251,20 @@ def _longest(rows: _Rows, at: int) -> float | None:
     return _plain(min(limits)) if limits else None
 
 
-def _reload(rows: _Rows, depots: Depots, at: int) -> Vehicle:
-    """Return where a vehicle may load again, and how often."""
+def _add_reloads(rows: _Rows, depots: Depots, at: int, vehicle: Vehicle) -> None:
+    """Add where a vehicle may load again, and how often."""
     file, section, most = rows.file, "VEHICLES_RELOAD_DEPOT_SECTION", "VEHICLES_MAX_RELOADS"
     found = sorted(rows.lists("VEHICLES_RELOAD_DEPOT")[at])
     reloads = rows.number(most, at)
     if not found:
         if reloads and section not in file.sections:
             raise file.source.refusal("needs-section", most, section=section)
-        return {}
+        return
     if wrong := [depots.name(each) for each in found if each not in depots.stops]:
         raise file.source.refusal("no-such-depots", section, came=wrong[0])
-    reload = {"reload": [depots.name(each) for each in found]}
-    return reload if reloads is None else reload | {"max_trips": _load(file, reloads) + 1}
+    vehicle["reload"] = [depots.name(each) for each in found]
+    if reloads is not None:
+        vehicle["max_trips"] = _load(file, reloads) + 1
 
 
 def _start(rows: _Rows, depots: Depots, at: int) -> int:
@@ -302,36 +306,34 @@ def _unit_cost(rows: _Rows) -> float:
     return unit
 
 
-def _allowed(
+def _allow(
     file: TsplibFile,
-    types: list[Vehicle],
+    fleet: Vehicles,
     clients_of: list[frozenset[int]],
     clients: Sequence[int],
     depots: Depots,
-) -> dict[int, dict[str, Any]]:
-    """Return what stops are told of the vehicles that may visit them.
+) -> None:
+    """Tell stops which vehicles may visit them, by the clients of each type.
 
     A stop of one type names it, and a stop of some of them has a skill that these alone have.
     """
     section = "VEHICLES_ALLOWED_CLIENTS_SECTION"
-    told: dict[int, dict[str, Any]] = {}
     skills: dict[tuple[int, ...], str] = {}
     for stop in clients:
         able = tuple(at for at, allowed in enumerate(clients_of) if stop in allowed)
         if not able:
             raise file.source.refusal("client-of-none", section, came=depots.name(stop))
-        if len(able) == len(types):
+        if len(able) == len(fleet.types):
             continue
         if len(able) == 1:
-            told[stop] = {"vehicle": types[able[0]]["id"]}
+            fleet.pinned[stop] = fleet.types[able[0]]["id"]
         else:
-            told[stop] = {"skills": [skills.setdefault(able, f"allowed {len(skills) + 1}")]}
-    for able, skill in skills.items():
-        for at in able:
-            types[at].setdefault("skills", []).append(skill)
-    if any(len(each.get("skills", ())) > _MOST_SKILLS for each in types):
-        raise file.source.refusal("too-many-sets", section, most=_MOST_SKILLS)
-    return told
+            fleet.skills[stop] = skills.setdefault(able, f"allowed {len(skills) + 1}")
+    for at, vehicle in enumerate(fleet.types):
+        if having := [skill for able, skill in skills.items() if at in able]:
+            vehicle["skills"] = having
+        if len(having) > _MOST_SKILLS:
+            raise file.source.refusal("too-many-sets", section, most=_MOST_SKILLS)
 
 
 def _index(file: TsplibFile, section: str, number: float | None, word: str = "") -> int:

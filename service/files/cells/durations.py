@@ -2,8 +2,7 @@
 
 import re
 
-from service.files.cells.times import DURATIONS
-from service.files.column_names import are_usually_minutes, seconds_of
+from service.files.column_names import DURATIONS, are_usually_minutes, seconds_of
 from service.files.columns import Columns
 from service.files.reading import quoted
 from service.files.tables import number_in

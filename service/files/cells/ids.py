@@ -30,17 +30,7 @@ def is_list_of_cities(cities: Sequence[str], others: Sequence[Sequence[str]]) ->
 
 def numbered(source: Source, heading: str, names: Sequence[str]) -> list[str]:
     """Return names, each of them once and none missing, with a note on those that are new."""
-    taken = {name for name in names if name}
-    seen: set[str] = set()
-    ids: list[str] = []
-    again: dict[str, int] = {}
-    for row, name in enumerate(names, 1):
-        found = name or _free(f"{row}", taken, {})
-        if found in seen:
-            found = _free(found, taken, again)
-        seen.add(found)
-        taken.add(found)
-        ids.append(found)
+    ids = each_once(names, "{} {}")
     new = [each for each, name in zip(ids, names, strict=True) if each != name]
     if new:
         what = f"{quoted(heading)} has names that come twice, or none"
@@ -48,12 +38,22 @@ def numbered(source: Source, heading: str, names: Sequence[str]) -> list[str]:
     return ids
 
 
-def _free(name: str, taken: set[str], again: dict[str, int]) -> str:
-    """Return a name that is not taken: this one, or with the next number behind it."""
-    if name not in taken:
-        return name
-    number = again.get(name, 1) + 1
-    while f"{name} {number}" in taken:
-        number += 1
-    again[name] = number
-    return f"{name} {number}"
+def each_once(names: Sequence[str], form: str = "{} ({})") -> list[str]:
+    """Return names, each of them once: those that come again have a number, those missing theirs.
+
+    `form` is how a name is written with its number.
+    """
+    taken = {name for name in names if name}
+    seen: dict[str, None] = {}  # in their order
+    latest: dict[str, int] = {}
+    for row, name in enumerate(names, 1):
+        found = name or f"{row}"
+        if found in seen or (not name and found in taken):
+            number = latest.get(found, 1) + 1
+            while form.format(found, number) in taken:
+                number += 1
+            latest[found] = number
+            found = form.format(found, number)
+        seen[found] = None
+        taken.add(found)
+    return [*seen]

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from service.files.column_names import NUMBERS
 from service.files.reading import LONGEST_NAME, Source, UnreadableFile, quoted
 from service.files.tables import Table
 
@@ -17,13 +18,6 @@ _SIGNS = (".", ",")
 _MOST_DEGREES = 180
 _DEGREES = ("longitude", "latitude")
 _OF_PROGRAMS = (",", "|", None)  # separators beside which a decimal sign is a point
-# Fields whose cells are numbers. Numbers of windows may be hours, as 8,30.
-_FIELDS = {
-    *("longitude", "latitude", "x", "y", "demand", "service", "prize", "cost", "capacity", "count"),
-    *("longest_time", "longest_distance", "fixed", "max_stops", "min_stops", "max_trips"),
-    *("max_overtime", "initial_load", "per_km", "per_hour", "speed_factor", "service_factor"),
-    "shortest_time",
-}
 
 
 def _pattern(decimal: str) -> re.Pattern[str]:
@@ -56,7 +50,7 @@ def is_number(text: str) -> bool:
 
 def is_numeric(field: str | None) -> bool:
     """Return whether the cells of a field are numbers, apart from times of day."""
-    return field is not None and (field in _FIELDS or field.endswith(("_latitude", "_longitude")))
+    return field is not None and (field in NUMBERS or field.endswith(("_latitude", "_longitude")))
 
 
 def decimals_of(table: Table, fields: Sequence[str | None]) -> set[str]:
@@ -64,9 +58,9 @@ def decimals_of(table: Table, fields: Sequence[str | None]) -> set[str]:
     found: set[str] = set()
     for at, field in enumerate(fields):
         if field == "place":
-            found |= {"."} if any(_PAIRED.search(row[at]) for _, row in table.rows) else set()
+            found |= {"."} if any(map(_PAIRED.search, table.texts(at))) else set()
         elif table.heading is None or is_numeric(field):
-            texts = [row[at] for _, row in table.rows]
+            texts = table.texts(at)
             signs = _surely(texts) or _common(_readings(texts, field))
             found |= signs if len(signs) == 1 else set()
     return found
@@ -98,7 +92,7 @@ def with_plain_numbers(
 
 def _plain(source: Source, table: Table, field: str | None, at: int) -> list[str] | None:
     """Return the plain texts of a column; None if they are plain already."""
-    texts = [row[at] for _, row in table.rows]
+    texts = table.texts(at)
     if _surely(texts):
         return None
     readings = _readings(texts, field)

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 from service.files.cells.dates import Parts, TimeColumn, calendar_of, parts_of
 from service.files.column_names import (
+    DURATIONS,
     SECONDS,
     WINDOWS,
     seconds_of,
@@ -33,7 +34,6 @@ _OF_TWELVE = re.compile(r"(?:0?\d|1[0-2])(?:[.:h][0-5]\d)?", re.ASCII | re.IGNOR
 _DECIMALS = re.compile(r"\d[.,]\d")
 _MINUTE, _HOUR, _DAY = 60, 3600, 86400  # seconds
 _LONGEST = 31 * _DAY  # in a time of day, as seconds from midnight
-DURATIONS = ("service", "longest_time", "shortest_time", "max_overtime")
 _OR = re.compile(r"\s*(?:[;|,&]|\band\b|\bund\b)\s*", re.IGNORECASE)  # between two windows
 _AROUND_SPAN = " []()"
 _ENDS = 2  # of a window

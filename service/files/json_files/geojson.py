@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from service.files.chosen import IGNORED
 from service.files.column_names import FLEET, field_of_each
@@ -52,11 +52,16 @@ def read_geojson(source: Source, value: dict[str, Any]) -> Reading:
     check_lists(source, rest)
     columns = columns_of(source, _table(source, records))
     if rest.keys() & {"vehicles", "shipments"} or any(each in FLEET for each in columns.fields):
-        return source.reading("fleet", {**_fleet(columns, rest), **rest})
+        return source.reading("fleet", _with_given(_fleet(columns, rest), rest))
     if "objectives" in rest:
-        return source.reading("front", {**rest, "stops": _stops(columns)})
+        return source.reading("front", _with_given(rest, {"stops": _stops(columns)}))
     reading = reading_of_columns(columns)
-    return source.reading(reading.kind, {**reading.request, **rest})
+    return source.reading(reading.kind, _with_given(reading.request, rest))
+
+
+def _with_given(made: Mapping[str, Any], given: Mapping[str, Any]) -> Request:
+    """Return a request with members that the file gives, which are checked when it is parsed."""
+    return cast(Request, {**made, **given})
 
 
 def _stops(columns: Columns) -> list[Stop]:
@@ -68,7 +73,7 @@ def _stops(columns: Columns) -> list[Stop]:
     return stops
 
 
-def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Request:
+def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the request of a fleet, with the vehicles and objectives that are given."""
     stops, _ = visits_of(columns)
     add_visits(columns, stops)
@@ -79,7 +84,7 @@ def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Request:
     columns.report()
     if "objectives" not in rest:
         return {**fleet_of_tables(columns.source, stops, vehicles, None), **groups}
-    request: Request = {"stops": stops, "vehicles": vehicles, **groups}
+    request: dict[str, Any] = {"stops": stops, "vehicles": vehicles, **groups}
     if have_times(stops, vehicles) and "clock" not in rest:
         request["clock"] = _clock(columns, rest["objectives"])
     return request

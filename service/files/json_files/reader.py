@@ -2,7 +2,7 @@
 
 import re
 from math import isfinite
-from typing import Any
+from typing import Any, cast
 
 from pydantic_core import from_json
 
@@ -10,7 +10,7 @@ from service.files.json_files.geojson import read_geojson
 from service.files.json_files.records import check_lists, rows_of
 from service.files.planners.others import refuse_others
 from service.files.planners.vroom import is_vroom, read_vroom
-from service.files.reading import Kind, Reading, Source, quoted
+from service.files.reading import Kind, Reading, Request, Source, quoted
 from service.files.stop_tables import reading_of
 from service.files.tables import table_of
 from service.files.texts import text_of
@@ -57,7 +57,7 @@ def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
     if kind is None:
         names = ", ".join(map(quoted, list(value)[:5])) or "none"
         raise source.refusal("unknown-json", given=names)
-    return source.reading(kind, value)
+    return source.reading(kind, cast(Request, value))  # which is checked when it is parsed
 
 
 def read_object(source: Source) -> dict[str, Any]:

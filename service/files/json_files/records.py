@@ -42,11 +42,12 @@ def members_of(record: dict[str, Any], depth: int = 0) -> Iterator[tuple[str, st
 
 def is_place(value: Any) -> bool:
     """Return whether a value is a list of two numbers or more."""
-    return (
-        isinstance(value, list)
-        and len(value) >= 2
-        and all(isinstance(each, int | float) and not isinstance(each, bool) for each in value[:2])
-    )
+    return isinstance(value, list) and len(value) >= 2 and all(map(is_number, value[:2]))
+
+
+def is_number(value: Any) -> bool:
+    """Return whether a value is a number, and not true or false."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def text_of(value: Any) -> str:

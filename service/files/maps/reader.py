@@ -1,11 +1,13 @@
 """Read maps as requests: a picture, maybe with its map.yaml of ROS, or MovingAI; cost layers."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
+from paretour.member_parts import LayerRequest
+from paretour.members import CoverageRequest
 from pydantic_core import to_json
 
 from service.errors import Fault, Refusal
@@ -14,7 +16,6 @@ from service.files.maps.octile import is_octile, read_octile
 from service.files.reading import (
     FileTooLarge,
     Reading,
-    Request,
     Source,
     UnreadableFile,
     quoted,
@@ -35,9 +36,10 @@ _DIGITS, _DEEP_DIGITS = 3, 5  # of a cost that is the shade of a pixel of 8 or 1
 
 
 class _Map(NamedTuple):
-    """The members of a request that a map makes, and its unknown cells, if there are any."""
+    """The grid of a map, the members of a request, and unknown cells, if there are any."""
 
-    request: Request
+    grid: Rows
+    request: CoverageRequest
     unknown: list[list[int]] | None
 
 
@@ -63,13 +65,15 @@ def read_map(sources: Sequence[Source], tables: Sequence[tuple[Source, Table]] =
     else:
         main, picture, found = _pictured_map(pictures, sources)
         pictures = [each for each in pictures if each is not picture]
-    grid = found.request["grid"]
+    grid = found.grid
     layers = [(source, costs_of_cells(source, table, grid)) for source, table in tables]
     layers += [(each, _shades(each)) for each in pictures]
     everything = [*sources, *(source for source, _ in tables)]
+    if named := _layers(layers, grid):
+        found.request["cost_layers"] = named
     return Reading(
         "coverage",
-        {**found.request, **_layers(layers, grid)},
+        found.request,
         main.name,
         tuple(note for source in everything for note in source.notes),
         unknown_cells=found.unknown,
@@ -84,7 +88,8 @@ def _octile_map(grids: Sequence[Source], sources: Sequence[Source]) -> tuple[Sou
         raise sources[0].refusal("grid-twice", "a map", given=names)
     [source] = grids
     source.note("cell-size", f"A cell is taken to be {_OCTILE_CELL:g} m wide; water is blocked.")
-    return source, _Map({"grid": read_octile(source), "cell_size": _OCTILE_CELL}, None)
+    grid = read_octile(source)
+    return source, _Map(grid, {"grid": grid, "cell_size": _OCTILE_CELL}, None)
 
 
 def _pictured_map(
@@ -129,13 +134,14 @@ def with_grid(reading: Reading, cells: int) -> Reading:
     Raises:
         UnreadableFile: The message is wrong or too large; the error names the file.
     """
-    request = reading.request
+    request: Mapping[str, Any] = reading.request
     if "occupancy_grid" not in request:
         return reading
     said = {member: request[member] for member in _OF_MESSAGE if member in request}
     rest = {member: value for member, value in request.items() if member not in said}
     found = _map(reading.name, said, None, cells)
-    return replace(reading, request={**rest, **found.request}, unknown_cells=found.unknown)
+    whole = cast(CoverageRequest, {**rest, **found.request})
+    return replace(reading, request=whole, unknown_cells=found.unknown)
 
 
 def _map(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> _Map:
@@ -144,11 +150,12 @@ def _map(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> _
         read, occupancy = parse_json(MapRequest, to_json(how)).with_occupancy(picture, cells)
     except Refusal as refusal:
         raise _unreadable(name, refusal) from None
-    request: Request = {"grid": (read.grid > 0).astype(int).tolist(), "cell_size": read.cell_size}
+    grid: Rows = (read.grid > 0).astype(int).tolist()
+    request: CoverageRequest = {"grid": grid, "cell_size": read.cell_size}
     if read.origin:
         request["origin"] = read.origin
     unknown = None if occupancy is None else occupancy == UNKNOWN
-    return _Map(request, None if unknown is None or not unknown.any() else _rows(unknown))
+    return _Map(grid, request, None if unknown is None or not unknown.any() else _rows(unknown))
 
 
 def _rows(mask: np.ndarray[Any, np.dtype[np.bool_]]) -> list[list[int]]:
@@ -189,16 +196,16 @@ def _shades(source: Source) -> Rows:
     return costs
 
 
-def _layers(layers: Sequence[tuple[Source, Rows]], grid: Rows) -> Request:
-    """Return the member of a request that has these cost layers; none without layers."""
+def _layers(layers: Sequence[tuple[Source, Rows]], grid: Rows) -> list[LayerRequest]:
+    """Return these cost layers, each with its name."""
     if len(layers) > _MOST_LAYERS:
         counts = {"limit": _MOST_LAYERS, "actual": len(layers)}
         raise layers[-1][0].refusal("too-many", "a map", noun="cost layers", **counts)
     for source, layer in layers:
         check_size_of_layer(source, layer, grid)
     names = names_of_layers([PurePath(source.name).stem for source, _ in layers])
-    items = [{"name": name, "layer": layer} for name, (_, layer) in zip(names, layers, strict=True)]
-    return {"cost_layers": items} if items else {}
+    named = zip(names, layers, strict=True)
+    return [{"name": name, "layer": layer} for name, (_, layer) in named]
 
 
 def _interpretation(source: Source) -> tuple[dict[str, Any], str]:

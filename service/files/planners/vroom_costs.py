@@ -8,9 +8,9 @@ speeds of their own.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
-from service.files.fleets import Stop, Vehicle, have_times, measured, speed_between
+from service.files.fleets import Objective, Stop, Vehicle, have_times, measured, speed_between
 from service.files.places import note_places
 from service.files.planners.vroom_matrices import (
     Cut,
@@ -28,6 +28,7 @@ from service.files.planners.vroom_mixed import (
     Layers,
     is_cost,
     mixed_objectives,
+    nameless,
     rides_of,
 )
 from service.files.reading import Source, quoted
@@ -35,7 +36,8 @@ from service.files.reading import Source, quoted
 _OF = "costs of vehicles"
 _SAME = "all vehicles have the same one, and the objectives are metres and seconds"
 _LIMITS = ("max_travel_time", "max_distance")
-Objectives = list[dict[str, Any]]
+Objectives = list[Objective]
+_Limit = Literal["max_distance", "max_driving", "longest"]
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ def _add_road_profiles(
 def _measured(source: Source, stops: Sequence[Stop]) -> Layers:
     """Return the costs of legs between places on the earth."""
     distance, time = measured(source, True, stops)
-    return Layers(time, {"from": "road_distance"} if source.bounds.roads else distance)
+    return Layers(time, nameless(**{"from": "road_distance"}) if source.bounds.roads else distance)
 
 
 def _by_places(
@@ -141,7 +143,7 @@ def _by_places(
     per_second, per_metre = rates.per_hour / 3600, rates.per_km / 1000
     if not per_second and per_metre:
         return [distance, time], _noted(source, "distance", per_metre)
-    total = {**time, "name": "total time", "over": "sum"}
+    total: Objective = {**time, "name": "total time", "over": "sum"}
     if source.bounds.roads:
         if per_metre:
             note_unused(source, "per_km", _OF, "times by road are not distances")
@@ -165,8 +167,8 @@ def _by_matrices(
 ) -> tuple[Objectives, float]:
     """Return the objectives of matrices, and VROOM's cost of a unit of the first."""
     durations = cut.matrix("durations", 1 / factor)
-    longest = {"name": "longest route", "unit": "s", "matrix": durations, "over": "max"}
-    total = {"name": "total time", "unit": "s", "matrix": durations, "over": "sum"}
+    longest: Objective = {"name": "longest route", "unit": "s", "matrix": durations, "over": "max"}
+    total: Objective = {"name": "total time", "unit": "s", "matrix": durations, "over": "sum"}
     if cut.given.get("costs"):
         _note_beside_costs(source, cut, rates)
         return [{"name": "cost", "matrix": cut.matrix("costs"), "over": "sum"}, longest], 1
@@ -175,7 +177,7 @@ def _by_matrices(
             note_unused(source, "per_km", _OF, "there are no matrices of distances")
         return [total, longest], _unit(source, "total time", replace(rates, per_km=0))
     distances = cut.matrix("distances")
-    distance = {"name": "distance", "matrix": distances, "over": "sum"}
+    distance: Objective = {"name": "distance", "matrix": distances, "over": "sum"}
     if rates.per_hour and rates.per_km:
         source.note("objectives", "The first objective is VROOM's cost: per_hour and per_km.")
         costs = _costs(durations, distances, rates)
@@ -230,7 +232,7 @@ def _add_limits(
     items: Sequence[Mapping[str, Any]],
     vehicles: Sequence[Vehicle],
     objectives: Objectives,
-    limiting: Mapping[str, str],
+    limiting: Mapping[str, _Limit],
 ) -> None:
     """Add the limits on routes; note those of which there is no objective.
 
@@ -253,7 +255,9 @@ def _add_limits(
                 vehicle[limiting[name]] = limit
 
 
-def _limiting(source: Source, objectives: Objectives, metres: Any, timed: bool) -> dict[str, str]:
+def _limiting(
+    source: Source, objectives: Objectives, metres: Objective | None, timed: bool
+) -> dict[str, _Limit]:
     """Return the members of vehicles that say VROOM's limits, which are on driving alone.
 
     Args:
@@ -270,7 +274,7 @@ def _limiting(source: Source, objectives: Objectives, metres: Any, timed: bool) 
         return "speed" not in objective and (straight or objective["from"] == "road_distance")
 
     first, second = objectives
-    members = {"max_distance": "max_distance"} if is_distance(first) else {}
+    members: dict[str, _Limit] = {"max_distance": "max_distance"} if is_distance(first) else {}
     if timed:
         return {**members, "max_travel_time": "max_driving"}
     return {**members, "max_distance" if is_distance(second) else "max_travel_time": "longest"}

@@ -4,13 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.files.fleets import Stop, Vehicle
+from service.files.fleets import Objective, Stop, Vehicle
 from service.files.planners.vroom_members import note_others, note_unused
-from service.files.planners.vroom_mixed import Layers, is_cost
+from service.files.planners.vroom_mixed import Layers, is_cost, nameless
 from service.files.reading import Source, quoted
 
 Matrix = list[list[Any]]
-Costs = dict[str, Any]  # as a member of an objective: matrix, or matrices by profile
 
 
 @dataclass(frozen=True)
@@ -89,20 +88,21 @@ def add_profiles(items: Sequence[Mapping[str, Any]], vehicles: Sequence[Vehicle]
 
 def layers_of(cuts: Sequence[Cut]) -> Layers:
     """Return all matrices, by profile if there are several."""
-    time = {"name": "longest route", "unit": "s", **costs_of(cuts, "durations")}
+    time: Objective = {"name": "longest route", "unit": "s", **costs_of(cuts, "durations")}
     return Layers(time, known_costs(cuts, "distances"), known_costs(cuts, "costs"))
 
 
-def known_costs(cuts: Sequence[Cut], name: str) -> Costs | None:
-    """Return the matrices of a name as a member of an objective, if each profile has one."""
+def known_costs(cuts: Sequence[Cut], name: str) -> Objective | None:
+    """Return the matrices of a name as an objective without a name, if each profile has one."""
     having = [cut for cut in cuts if cut.given.get(name)]
     if having and len(having) < len(cuts):
         note_unused(having[0].source, name, "matrices", "not each profile has them")
     return costs_of(cuts, name) if having and len(having) == len(cuts) else None
 
 
-def costs_of(cuts: Sequence[Cut], name: str) -> Costs:
-    """Return the matrices of a name as a member of an objective."""
+def costs_of(cuts: Sequence[Cut], name: str) -> Objective:
+    """Return the matrices of a name as an objective that has no name yet."""
     if len(cuts) == 1:
-        return {"matrix": cuts[0].matrix(name)}
-    return {"matrices": [{"profile": cut.profile, "matrix": cut.matrix(name)} for cut in cuts]}
+        return nameless(matrix=cuts[0].matrix(name))
+    matrices = [{"profile": cut.profile, "matrix": cut.matrix(name)} for cut in cuts]
+    return nameless(matrices=matrices)

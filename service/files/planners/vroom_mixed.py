@@ -1,9 +1,10 @@
 """Objectives and prices of VROOM's vehicles that differ in what they cost, or in their speed."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
-from service.files.fleets import Vehicle
+from service.files.fleets import Objective, Vehicle
+from service.files.json_files.records import is_number
 from service.files.planners.vroom_members import note_unused
 from service.files.reading import Source
 
@@ -23,9 +24,14 @@ class Ride(NamedTuple):
 class Layers(NamedTuple):
     """The costs that are known of the legs between stops: objectives, of which one is time."""
 
-    time: dict[str, Any]
-    distance: dict[str, Any] | None = None
-    cost: dict[str, Any] | None = None
+    time: Objective
+    distance: Objective | None = None
+    cost: Objective | None = None
+
+
+def nameless(**costs: Any) -> Objective:
+    """Return costs as an objective that has no name yet."""
+    return cast(Objective, costs)
 
 
 def rides_of(source: Source, items: Sequence[Mapping[str, Any]]) -> list[Ride]:
@@ -52,7 +58,7 @@ def rides_of(source: Source, items: Sequence[Mapping[str, Any]]) -> list[Ride]:
 
 def mixed_objectives(
     source: Source, rides: Sequence[Ride], vehicles: Sequence[Vehicle], layers: Layers
-) -> list[dict[str, Any]]:
+) -> list[Objective]:
     """Return both objectives of vehicles that differ, whose prices become their members.
 
     The first is VROOM's cost. The second is the longest route, in time.
@@ -69,7 +75,7 @@ def mixed_objectives(
     return [{**first, "name": "cost", "over": "sum"}, {**layers.time, "over": "max"}]
 
 
-def _costs(source: Source, rides: Sequence[Ride], costs: dict[str, Any]) -> dict[str, Any]:
+def _costs(source: Source, rides: Sequence[Ride], costs: Objective) -> Objective:
     """Return costs of matrices, and note rates beside them."""
     for name, usual in (("per_hour", PER_HOUR), ("per_km", PER_KM)):
         if any(getattr(ride, name) != usual for ride in rides):
@@ -78,8 +84,8 @@ def _costs(source: Source, rides: Sequence[Ride], costs: dict[str, Any]) -> dict
 
 
 def _by_distance(
-    source: Source, rides: Sequence[Ride], vehicles: Sequence[Vehicle], distance: dict[str, Any]
-) -> dict[str, Any]:
+    source: Source, rides: Sequence[Ride], vehicles: Sequence[Vehicle], distance: Objective
+) -> Objective:
     """Return distances, at the prices of kilometres and hours."""
     _set_prices(vehicles, [ride.per_km / 1000 for ride in rides])
     if any(ride.per_hour for ride in rides):
@@ -90,8 +96,8 @@ def _by_distance(
 
 
 def _by_time(
-    source: Source, rides: Sequence[Ride], vehicles: Sequence[Vehicle], time: dict[str, Any]
-) -> dict[str, Any]:
+    source: Source, rides: Sequence[Ride], vehicles: Sequence[Vehicle], time: Objective
+) -> Objective:
     """Return travel times, at the prices of hours; the faster a vehicle, the less it pays."""
     if any(ride.per_km for ride in rides):
         note_unused(source, "per_km", _OF, "there are no matrices of distances")
@@ -111,4 +117,4 @@ def _rounded(price: float) -> float:
 
 def is_cost(value: Any) -> bool:
     """Return whether a value is a number from 0."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0
+    return is_number(value) and bool(value >= 0)

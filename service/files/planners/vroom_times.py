@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from service.files.fleets import Stop
+from service.files.json_files.records import is_number
 from service.files.reading import Source
 
 
@@ -62,7 +63,7 @@ def _times(source: Source, task: VroomTask, name: str, types: Sequence[str]) -> 
         raise source.refusal("not-an-object", f"{task.where}/{name}_per_type", came=of_types)
     found = {kind: of_types.get(kind, usual) for kind in types}
     for value in found.values():
-        if not isinstance(value, int | float) or isinstance(value, bool):
+        if not is_number(value):
             raise source.refusal("no-seconds", f"{task.where}/{name}", came=value)
     return found
 
@@ -78,9 +79,3 @@ def load_of_jobs(problem: Mapping[str, Any]) -> str:
         return "delivery"
     brought = any(each.get("delivery") or each.get("amount") for each in jobs)
     return "delivery" if brought or problem.get("shipments") else "pickup"
-
-
-def pickup_of(job: Mapping[str, Any], load: str) -> dict[str, Any]:
-    """Return what a job puts on board as a member of a stop, unless that is its demand."""
-    taken = job.get("pickup")
-    return {"pickup": taken} if load == "delivery" and taken not in (None, []) else {}

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from service.errors.printable import shortened
 from service.files.column_names import fields_of, is_about_vehicles
 from service.files.reading import Source, UnreadableFile, quoted
 from service.files.tables import Row, Table, number_in, table_of_rows
@@ -166,8 +167,7 @@ def _note_hidden(source: Source, sheet: Sheet) -> None:
 
 def _counted(noun: str, which: Iterable[object]) -> str:
     named = [*map(str, which)]
-    more = f" and {len(named) - _MOST_NAMED} more" if len(named) > _MOST_NAMED else ""
-    return f"{noun}{'s' * (len(named) > 1)} {', '.join(named[:_MOST_NAMED])}{more}"
+    return f"{noun}{'s' * (len(named) > 1)} {shortened(named, _MOST_NAMED)}"
 
 
 def _begun(sentence: str) -> str:

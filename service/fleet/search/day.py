@@ -1,10 +1,13 @@
 """The costs of a fleet over the day as the arrays that the search reads."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from service.day.costs import CostsOfDay
 from service.day.driving import arrived, slices_of
 from service.fleet.fleet import Fleet
 from service.jit import by_reference, inlined
@@ -23,9 +26,11 @@ class FleetDay(NamedTuple):
         begins: As in `Slices`.
         factors: As in `Slices`.
         layers: As in `Slices`.
-        matrices: As in `Slices`; a forbidden leg costs a finite sum that no plan may cost.
+        matrices: As in `Slices`, shape (k, p n, n): the rows of one profile of vehicles after those
+            of another. A forbidden leg costs a finite sum that no plan may cost.
         clock: The number of the costs that are time.
         paces: By what each type of vehicles multiplies them, shape (v,).
+        rows: The first row of each type of vehicles in the matrices, shape (v,).
         departures: Scratch space, shape (2, k): the departures of some routes that are alike.
         times: When these are at a place on the way, shape (2, k).
         changes: When a leg becomes slower or faster, shape (2 s,).
@@ -37,6 +42,7 @@ class FleetDay(NamedTuple):
     matrices: Array
     clock: int
     paces: Array
+    rows: Indices
     departures: Array
     times: Array
     changes: Array
@@ -46,7 +52,7 @@ def day_of(fleet: Fleet, forbidden: float) -> FleetDay | None:
     """Return the costs of a fleet over the day; None if they do not change."""
     if fleet.day is None or fleet.rules.clock is None:
         return None
-    slices = slices_of(fleet.day)
+    slices = slices_of([_stacked(each) for each in zip(*fleet.days, strict=True)])
     # In every slice it costs as much, whatever the factor.
     most = forbidden / min(1.0, float(slices.factors.min()))
     matrices = np.where(np.isinf(slices.matrices), most, slices.matrices)
@@ -55,10 +61,18 @@ def day_of(fleet: Fleet, forbidden: float) -> FleetDay | None:
         *slices._replace(matrices=np.ascontiguousarray(matrices)),
         clock=fleet.rules.clock,
         paces=1.0 / np.array([vehicle.speed_factor for vehicle in fleet.rules.vehicles]),
+        rows=fleet.rules.n * np.array([vehicle.profile for vehicle in fleet.rules.vehicles]),
         departures=np.zeros((2, knots)),
         times=np.zeros((2, knots)),
         changes=np.zeros(2 * len(slices.factors)),
     )
+
+
+def _stacked(costs: Sequence[CostsOfDay]) -> CostsOfDay:
+    """Return costs whose matrices have the rows of each profile, given those of all profiles."""
+    if len(costs) == 1:
+        return costs[0]
+    return replace(costs[0], matrices=np.concatenate([each.matrices for each in costs], axis=1))
 
 
 class Moment(NamedTuple):
@@ -84,22 +98,22 @@ def slice_of(day: FleetDay, time: float) -> int:
 
 
 @inlined
-def driven(day: FleetDay, between: tuple[int, int], pace: float, time: float, known: int) -> Moment:
+def driven(day: FleetDay, between: tuple[int, int], kind: int, time: float, known: int) -> Moment:
     """Return the moment at which a vehicle arrives that begins a leg; at once from or to anywhere.
 
     Args:
         day: The day.
         between: The places where the leg begins and ends.
-        pace: By what its seconds are multiplied.
+        kind: The type of the vehicle.
         time: When it begins.
         known: The slice of this time.
     """
     a, b = between
     if a < 0 or b < 0:
         return Moment(time, known, 0.0, 0.0)
-    other = 1 - day.clock
-    cost = day.factors[known, other] * day.matrices[day.layers[known, other], a, b]
-    arrival, later = arrived(day, a, b, time, known, pace)
+    other, row = 1 - day.clock, day.rows[kind] + a
+    cost = day.factors[known, other] * day.matrices[day.layers[known, other], row, b]
+    arrival, later = arrived(day, row, b, time, known, day.paces[kind])
     if day.clock == 0:
         return Moment(arrival, later, arrival - time, cost)
     return Moment(arrival, later, cost, arrival - time)

@@ -24,7 +24,6 @@ def best_departure(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int
     leaves as early as it may.
     """
     kind, profile = problem.kind[slot], problem.profile[slot]
-    pace = day.paces[kind]
     start, end = len(problem.demand) + 2 * slot, len(problem.demand) + 2 * slot + 1
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     day.departures[0, 0] = day.times[0, 0] = departs
@@ -35,12 +34,12 @@ def best_departure(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int
         node = plan.next[node]
         via = plan.via[node]
         if via >= 0:
-            count = _drive(day, (at, via), pace, row, count)
+            count = _drive(day, (at, via), kind, row, count)
             row = 1 - row
             count = _enter(day, (plan.released[node], np.inf), row, count, 0)
             row = 1 - row
             at = via
-        count = _drive(day, (at, problem.place[node]), pace, row, count)
+        count = _drive(day, (at, problem.place[node]), kind, row, count)
         row = 1 - row
         at = problem.place[node]
         if node != end:
@@ -71,14 +70,14 @@ def _latest(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int, depar
 
 
 @compiled
-def _drive(day: FleetDay, between: tuple[int, int], pace: float, row: int, count: int) -> int:
+def _drive(day: FleetDay, between: tuple[int, int], kind: int, row: int, count: int) -> int:
     """Write the other row: the arrivals of those who leave at the times of a row."""
     a, b = between
     times = day.times[row]
     if a < 0 or b < 0:
         return _write_knots(day, row, count, 0)
     known = slice_of(day, times[0])
-    changes = _list_changes(day, between, pace, known, times[count - 1])
+    changes = _list_changes(day, between, kind, known, times[count - 1])
     if count + changes > len(times):
         changes = 0
     written = _write_knots(day, row, count, changes)
@@ -87,7 +86,7 @@ def _drive(day: FleetDay, between: tuple[int, int], pace: float, row: int, count
         time = arrivals[knot]
         while known + 1 < len(day.factors) and day.begins[known + 1] <= time:
             known += 1
-        arrivals[knot], _ = arrived(day, a, b, time, known, pace)
+        arrivals[knot], _ = arrived(day, day.rows[kind] + a, b, time, known, day.paces[kind])
     return written
 
 
@@ -116,7 +115,7 @@ def _write_knots(day: FleetDay, row: int, count: int, changes: int) -> int:
 
 @inlined
 def _list_changes(
-    day: FleetDay, between: tuple[int, int], pace: float, known: int, last: float
+    day: FleetDay, between: tuple[int, int], kind: int, known: int, last: float
 ) -> int:
     """Write when to leave for a leg so that a slice begins then or at the arrival, ascending.
 
@@ -126,7 +125,7 @@ def _list_changes(
     found = 0
     for later in range(known + 1, len(day.factors)):
         begins = day.begins[later]
-        leaves = left_at(day, a, b, begins, pace)
+        leaves = left_at(day, day.rows[kind] + a, b, begins, day.paces[kind])
         if leaves >= last:
             break
         found = _sort_in(day, leaves, found)

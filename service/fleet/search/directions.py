@@ -15,7 +15,8 @@ from math import inf
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
-from service.fleet.necessary import fewest_vehicles
+from service.fleet.necessary import fewest_vehicles, least_longest
+from service.fleet.punctuality import deviations_of
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 
@@ -38,13 +39,14 @@ _ANY_START = 0.25  # share of those under three objectives that start from a ran
 _BELOW = 0.95  # how far below the least longest route limits go
 
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
-# to find one vehicle less, for the fewest, and for any number; and the chance of the fewest after
-# that. Where few vehicles are full, only a hotter search gets from one plan to the next, and one
-# that may leave a stop out for a while.
-_DESCENT, _AT_FEWEST, _AT_ANY = 0.07, (0.3, 0.4), 0.5
-_ATTEMPTS = 4  # at one vehicle less
+# to shorten the first plan (at most a round a stop), to find one vehicle less, for the fewest, and
+# for any number; and the chance of the fewest after that. Where few vehicles are full, only a
+# hotter search gets from one plan to the next, and one that may leave a stop out for a while.
+_SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, 0.5, 0.6
+_ATTEMPTS = 6  # at one vehicle less
 _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
+_COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
 
 _LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
 
@@ -98,7 +100,7 @@ class Directions:
         self._left = left
         self._per_stop = ruins / max(1, min(len(fleet.rules.clients), _HOT_STOPS))
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
-        self._bound = _least_longest(fleet)
+        self._bound = least_longest(fleet)
         optional = any(fleet.rules.visits[stop].prize is not None for stop in fleet.rules.clients)
         self._by_limit = [over in _LIMITED for over in self._over]
         two = len(self._over) == OBJECTIVES and sum(self._by_limit) == 1
@@ -141,13 +143,13 @@ class Directions:
 
     def _by_vehicles(self) -> Iterator[Step]:
         """Yield directions to the fewest vehicles, and to the least length with each number."""
+        yield self._at_most(inf, min(self._share(_SHORTEN), len(self._rules.clients)))
         now, failed = self._ends()[0], 0
         while self._fewest < now and failed < _ATTEMPTS:
             yield replace(self._at_most(now - 1, self._share(_DESCENT)), ends_whole=True)
             found = self._ends()[0]
             now, failed = found, failed + 1 if found == now else 0
-        for share in _AT_FEWEST:
-            yield self._at_most(now, self._share(share))
+        yield self._at_most(now, self._share(_AT_FEWEST))
         yield self._at_most(inf, self._share(_AT_ANY))
         fewest, greatest = self._ends()
         for limit in range(greatest - 1, fewest, -1):
@@ -306,11 +308,20 @@ class Directions:
         if any_start and len(points):
             start = int(self._random.integers(len(points)))
         ruins = max(1.0, rounds * self._per_stop)
-        hotter = _HOTTER if self._counts_vehicles else 1.0
+        hotter = self._hotter(limits)
         heat, cooled = min(_HOTTEST, _HEAT * ruins**_POWER), hotter * unit * _COLDEST
         heat = max(hotter * unit * heat, 2 * cooled)
         direction = self._direction(weights, limits, bounds, unit)
         return Step(direction, start, rounds, heat, cooled)
+
+    def _hotter(self, limits: dict[int, float]) -> float:
+        """Return how many times as hot a search is where vehicles are counted."""
+        if not self._counts_vehicles:
+            return 1.0
+        if limits.get(self._by_limit.index(True), inf) < self._roomy:
+            return _HOTTER
+        colder = min(1.0, _COOLER_STOPS / len(self._rules.clients))
+        return max(1.0, _HOTTER * colder**0.5)
 
     def _direction(
         self, weights: Array, limits: dict[int, float], bounds: Array, unit: float
@@ -318,15 +329,23 @@ class Directions:
         """Return a direction with weights, shape (m,), and limits and bounds."""
         costs = np.zeros(OBJECTIVES)
         by_measure = dict.fromkeys(self._over, 0.0)
-        longest, routes, penalty = inf, 2**31, 0.0
+        longest, most, routes = inf, inf, 2**31
+        penalty = most_penalty = mean = deviation = 0.0
         for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
-            if over == "sum" and not (index == 0 and self._rules.priced):
+            percent = self._rules.percent(index)
+            if over == "sum" and percent is not None:
+                mean += float(weights[index])
+                deviation += float(weights[index]) * deviations_of(percent)
+            elif over == "sum" and not (index == 0 and self._rules.priced):
                 costs[layer] += weights[index]
             elif over == "max":
                 # Where only the longest route counts, a plan of short routes is a good start.
                 costs[layer] += _LESSER * weights[index]
-                longest = limits.get(index, inf)
-                penalty = _STRICT * unit / self._scale[index]
+                limited = limits.get(index, inf), _STRICT * unit / self._scale[index]
+                if percent is None:
+                    longest, penalty = limited
+                else:
+                    most, most_penalty = limited
             elif over == "vehicles":
                 routes = max(0, int(limits.get(index, routes)))
             by_measure[over] = float(weights[index])
@@ -344,8 +363,14 @@ class Directions:
             arrival=by_measure.get("weighted_arrival", 0.0),
             overlap=by_measure.get("overlap", 0.0),
             changes=by_measure.get("changes", 0.0),
+            late=by_measure.get("on_time", 0.0),
+            mean=mean,
+            deviation=deviation,
+            variance=0.0,
             longest=longest,
             penalty=penalty,
+            most=most,
+            most_penalty=most_penalty,
             beyond=0.0,
             required=(_CHEAP if self._counts_vehicles else _DEAR) * unit
             + float(weights[0]) * self._most_fixed,
@@ -354,25 +379,3 @@ class Directions:
             bounds=bounds,
             strict=_STRICT * unit / self._scale,
         )
-
-
-def _least_longest(fleet: Fleet) -> float:
-    """Return a length in the swept costs that the longest route of each plan has at least."""
-    rules = fleet.rules
-    if rules.swept is None:
-        return 0.0
-    there: dict[int | None, Array] = {None: np.zeros(rules.n)}
-    back = there.copy()
-    for vehicle in rules.vehicles:
-        if vehicle.start is not None and vehicle.start not in there:
-            there[vehicle.start] = fleet.least_paths(rules.swept, [vehicle.start])
-        if vehicle.end is not None and vehicle.end not in back:
-            back[vehicle.end] = fleet.least_paths(rules.swept, [vehicle.end], back=True)
-    required = [stop for stop in rules.clients if rules.visits[stop].prize is None]
-    ways = []
-    for kind, vehicle in enumerate(rules.vehicles):
-        way = (there[vehicle.start] + back[vehicle.end]) / rules.speed(kind, rules.swept)
-        served = [rules.service(kind, stop) for stop in required]
-        ways.append(way[required] + (np.array(served) if rules.swept == rules.clock else 0.0))
-    alone = np.min(ways, axis=0)
-    return float(alone.max(initial=0.0, where=np.isfinite(alone)))

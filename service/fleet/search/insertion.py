@@ -11,6 +11,8 @@ from service.fleet.search.spots import Place, Spot, better_at, nowhere
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
+    OUTSIDE,
+    REMOVED,
     TRY,
     TYPE,
     TYPES_END,
@@ -26,6 +28,9 @@ from service.search.local_search import random_below
 _NEIGHBOURS = 30  # beside which a stop is tried
 _SELDOM = 3  # one time in so many, one trip more is tried where the stop fits without
 _FEW = 8  # of them that are in routes: then all routes are tried
+# Where so many more stops are outside than are inserted, one that does not fit near its neighbours
+# is tried in all routes one time in so many: most fit nowhere then.
+_MANY_OUTSIDE, _SELDOM_ANYWHERE = 20, 10
 
 
 @compiled
@@ -49,7 +54,7 @@ def best_place(state: State, stop: int, most: float) -> Place:
             continue
         best = _better(state, stop, slot, beside, best)
         best = _better(state, stop, slot, plan.previous[beside], best)
-    if tried < _FEW or best.slot < 0:
+    if tried < _FEW or (best.slot < 0 and _looks_far(plan)):
         best = _anywhere(state, stop, best)
     for kind in range(plan.counts[TYPE], plan.counts[TYPES_END]):
         slot = new_slot(state, kind)
@@ -64,6 +69,13 @@ def new_slot(state: State, kind: int) -> int:
     """Return the slot of a vehicle of a type for one more route; -1 if there may be none."""
     problem, plan, direction = state
     return free_slot(problem, plan, kind) if plan.counts[USED] < direction.routes else -1
+
+
+@inlined
+def _looks_far(plan: WorkingPlan) -> bool:
+    """Return whether to try all routes for a stop that does not fit near its neighbours."""
+    few = plan.counts[OUTSIDE] <= _MANY_OUTSIDE + plan.counts[REMOVED]
+    return few or random_below(plan.random, _SELDOM_ANYWHERE) == 0
 
 
 @compiled

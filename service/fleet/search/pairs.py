@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
+from service.fleet.search.day import FleetDay
 from service.fleet.search.insertion import blinks, new_slot
 from service.fleet.search.problem import (
     FIRST,
@@ -169,9 +170,7 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
     detour = to + away - leg(problem, profile, at, b, 0)
     first = begun.first + detour
     second = way(problem, profile, at, delivery, b, 1) - leg(problem, profile, at, b, 1)
-    if first >= 0.5 * problem.forbidden or _is_too_far(
-        problem, plan, slot, first, second + begun.second
-    ):
+    if _is_too_far(problem.day, problem, plan, slot, (first, second + begun.second)):
         return best
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0:
@@ -199,10 +198,21 @@ def _delivered(state: State, pickup: int, slot: int, begun: _Begun, best: Place)
 
 @inlined
 def _is_too_far(
-    problem: Problem, plan: WorkingPlan, slot: int, first: float, second: float
+    day: FleetDay | None,
+    problem: Problem,
+    plan: WorkingPlan,
+    slot: int,
+    legs: tuple[float, float],
 ) -> bool:
-    """Return whether a route's legs are too far with so much more of both costs."""
-    return problem.capped and drives_too_far(problem, plan, slot, first, second)
+    """Return whether a route has a forbidden leg, or is too far, with so much more of both costs.
+
+    Over the day only a trial says how far it is.
+    """
+    if legs[0] >= 0.5 * problem.forbidden:
+        return True
+    if day is None:
+        return problem.capped and drives_too_far(problem, plan, slot, legs[0], legs[1])
+    return False
 
 
 @inlined

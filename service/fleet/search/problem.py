@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
-from service.fleet.rules import Measure, Over, Pace, Rules
+from service.fleet.rules import Measure, Over, Rules
 from service.fleet.search.day import FleetDay, day_of
 from service.fleet.search.extras import Extras, extras_of
-from service.fleet.vehicles import VehicleType
+from service.fleet.vehicles import Pace, VehicleType
 from service.jit import by_reference
 
 Array = NDArray[np.float64]
@@ -20,13 +20,13 @@ Nodes = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 
 MEASURES: tuple[str, ...] = (*get_args(Over), *get_args(Measure))
-MAX, VEHICLES, UNASSIGNED, IMBALANCE, OF_PROMISES = map(
-    MEASURES.index, ("max", "vehicles", "unassigned", "imbalance", "changes")
+SUM, MAX, VEHICLES, UNASSIGNED, IMBALANCE, OF_PROMISES = map(
+    MEASURES.index, ("sum", "max", "vehicles", "unassigned", "imbalance", "changes")
 )
 # The columns of the values of a route.
 FIRST, SECOND, OVERTIME, LATENESS, LOADED, RELEASED, EARLINESS, ARRIVAL = range(8)
-OVERLAP, CHANGES, WEIGHED = 8, 9, 10
-COLUMNS = 11
+OVERLAP, CHANGES, WEIGHED, LATE, MEAN, VARIANCE, MOST = range(8, 15)
+COLUMNS = 15
 _NEAR = 100  # stops that are near a stop, at most
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
@@ -122,7 +122,7 @@ def problem_of(fleet: Fleet) -> Problem:
     """Return the arrays of a fleet."""
     rules, loads = fleet.rules, loads_of(fleet.rules)
     visits, vehicles, windows = rules.visits, rules.vehicles, _windows(rules)
-    weighs = bool(rules.of_begins) or bool({"overlap", "changes"} & {*rules.over})
+    weighs = bool(rules.of_begins or rules.of_days or {"overlap", "changes"} & {*rules.over})
     opens, closes = windows[:, 0, 0], windows[:, -1, 1]
     clients = np.array(rules.clients, np.int32)
     delivery, pickup = _shipped(rules)
@@ -292,11 +292,11 @@ def _is_tried(fleet: Fleet, vehicle: VehicleType) -> bool:
     """Return whether a stop in a route may cost something else than what is known along it says.
 
     It may where costs change over the day, where the vehicle has breaks, where the begin of each
-    visit counts, or where it loads again and times or loads on the way depend on what all of a trip
-    brings.
+    visit counts or how times spread, or where it loads again and times or loads on the way depend
+    on what all of a trip brings.
     """
     rules = fleet.rules
-    if rules.of_begins or fleet.day is not None:
+    if rules.of_begins or rules.of_days or fleet.day is not None:
         return True
     if not vehicle.reload:
         return bool(vehicle.breaks)
@@ -326,7 +326,10 @@ def _column(rules: Rules, objective: int) -> int:
         "weighted_arrival": ARRIVAL,
         "overlap": OVERLAP,
         "changes": CHANGES,
+        "on_time": LATE,
     }
+    if over == "max" and rules.percent(objective) is not None:
+        return MOST
     if over == "imbalance":
         assert rules.swept is not None
         return rules.swept
@@ -365,8 +368,14 @@ class Direction(NamedTuple):
     arrival: float
     overlap: float
     changes: float
+    late: float
+    mean: float  # of the time of all routes, where that spreads
+    deviation: float
+    variance: float  # in place of the deviation, which is no sum over routes
     longest: float  # the limit on the length of a route in the swept costs
     penalty: float
+    most: float  # the limit on what a route does not exceed on most days
+    most_penalty: float
     beyond: float  # price of each unit by which a route is too long or ends too late, if it may
     required: float  # price of a stop outside that must be visited, at first
     steady: bool  # whether that price rises only while the plan that is changed lacks a stop

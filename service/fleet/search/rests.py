@@ -161,11 +161,11 @@ def _drive(
                 plan.state[taken, number, _TIME] += legs
                 plan.state[taken, number, _WORK] += legs
     else:
-        pace = day.paces[problem.kind[slot]]
+        kind = problem.kind[slot]
         for taken in range(len(plan.states)):
             for number in range(plan.states[taken]):
                 time = plan.state[taken, number, _TIME]
-                ends = driven(day, between, pace, time, slice_of(day, time)).time
+                ends = driven(day, between, kind, time, slice_of(day, time)).time
                 plan.state[taken, number, _TIME] = ends
 
 

@@ -128,12 +128,12 @@ def measure(state: State, slot: int) -> bool:
     fits = gather(problem, plan, slot, start)
     first, second = _sum_legs(problem, plan, slot, start)
     fits &= first < problem.forbidden
-    if problem.capped:
-        fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
     if problem.clock >= 0:
         fits &= _drive(problem.day, problem, plan, slot)
         _backward(problem, plan, slot, start)
+    if problem.capped:
+        fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
     if problem.weighs and fits:
         weigh(state, slot)
     fits &= _set_cost(state, slot, start + 1)

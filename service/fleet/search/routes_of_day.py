@@ -51,7 +51,7 @@ def drive_from(
     """
     kind = problem.kind[slot]
     start, end = _ends(problem, slot)
-    pace, first, second, loaded, first_trip = day.paces[kind], 0.0, 0.0, 0.0, True
+    first, second, loaded, first_trip = 0.0, 0.0, 0.0, True
     moment = _moment(day, departure)
     plan.ready[start], plan.late[start], plan.along[start] = departure, 0.0, 0.0
     plan.value[slot, EARLINESS] = plan.value[slot, ARRIVAL] = 0.0
@@ -60,12 +60,12 @@ def drive_from(
         away, on = 0.0, 0.0
         if plan.via[node] >= 0:
             # What was on board from the start, if anything, is unloaded there.
-            moment = driven(day, (at, plan.via[node]), pace, moment.time, moment.slice)
+            moment = driven(day, (at, plan.via[node]), kind, moment.time, moment.slice)
             away, on = moment.first, moment.second
             loaded += away * (problem.initial[kind] if first_trip else 0)
             first_trip, at = False, plan.via[node]
             moment = _moment(day, max(moment.time, plan.released[node]))
-        moment = driven(day, (at, problem.place[node]), pace, moment.time, moment.slice)
+        moment = driven(day, (at, problem.place[node]), kind, moment.time, moment.slice)
         loaded += moment.first * plan.ahead[node]
         plan.step[node, 0], plan.step[node, 1] = away + moment.first, on + moment.second
         first, second = first + plan.step[node, 0], second + plan.step[node, 1]

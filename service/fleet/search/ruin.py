@@ -7,7 +7,7 @@ problems".
 import numpy as np
 
 from service.fleet.search.changes import begin_iteration, save_slot
-from service.fleet.search.problem import Indices, Problem
+from service.fleet.search.problem import MOST, Indices, Problem
 from service.fleet.search.reloads import SELDOM, load_anew
 from service.fleet.search.route import measure
 from service.fleet.search.working_plan import (
@@ -74,10 +74,12 @@ def _is_ruined(problem: Problem, plan: WorkingPlan, stop: int) -> bool:
 def _seed(state: State) -> int:
     """Return a random stop, sometimes one of the longest route where that is over its limit."""
     problem, plan, direction = state
-    if direction.longest < np.inf and random_below(plan.random, _LONGEST_FIRST) == 0:
+    limit = min(direction.longest, direction.most)
+    if limit < np.inf and random_below(plan.random, _LONGEST_FIRST) == 0:
+        column = problem.swept if direction.longest < np.inf else MOST
         longest, found = -1.0, plan.used[0]
         for number in range(plan.counts[USED]):
-            length = plan.value[plan.used[number], problem.swept]
+            length = plan.value[plan.used[number], column]
             if length > longest:
                 longest, found = length, plan.used[number]
         node = plan.next[len(problem.demand) + 2 * found]

@@ -24,7 +24,14 @@ from service.fleet.search.problem import Nodes, Problem, loosened, problem_of
 from service.fleet.search.recreate import FAR, NEAR, RANDOM, SOON, insert_all, set_prices
 from service.fleet.search.rows import clear, load_row, write_point, write_row
 from service.fleet.search.ruin import limit_routes
-from service.fleet.search.working_plan import MISSING, State, make_working_plan, total_cost
+from service.fleet.search.spreading import weight_of_variance
+from service.fleet.search.working_plan import (
+    MISSING,
+    USED,
+    State,
+    make_working_plan,
+    total_cost,
+)
 from service.fleet.units import Units
 from service.fleet.vehicles import VehicleType, Visit
 from service.front import Termination
@@ -37,6 +44,7 @@ RUINS = 100  # in a round
 BRIEF = 0.25  # seconds to find what is in the way where there is no plan
 _CALL = 0.003  # seconds that compiled code may run before the time is checked
 _STILL = 0.1  # share of the rounds of a step at its end that accept nothing that is worse
+_UNSURE = 0.05  # share of the time of a step, in which its pace is not yet known
 _FIRST_ORDERS = NEAR, FAR, SOON, RANDOM  # in which the stops of a first plan are inserted
 _ATTEMPTS = 3  # at a first plan: of many stops some find every place passed by at random
 _FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
@@ -230,22 +238,44 @@ class RuinSearch:
         else:
             row[:] = self._archives.plans.tours[self._rows[step.start]]
         load_row(state, row)
+        if step.direction.deviation > 0:
+            state = _by_variance(state)
+            load_row(state, row)
         limit_routes(state)
         set_prices(state)
-        heat = step.heat
-        left, still = step.rounds, max(1, int(_STILL * step.rounds))
-        cooling = (step.cooled / step.heat) ** (1 / (step.rounds * RUINS))
-        while left > 0:
+        heat, done, most, ends = step.heat, 0, step.rounds, self._ends_of(step)
+        while done < most:
             if self._rounds >= self._options.iterations or self._ended():
                 return True
-            most = left if left <= still else left - still
-            rounds = min(most, self._options.iterations - self._rounds, self._at_once())
-            heat = heat if left > still else 0.0
+            most = self._in_time(done, most, ends)
+            cooling = (step.cooled / max(heat, step.cooled)) ** (1 / ((most - done) * RUINS))
+            still = max(1, int(_STILL * most))
+            until = most - still if done < most - still else most
+            heat = heat if until < most else 0.0
+            rounds = min(until - done, self._options.iterations - self._rounds, self._at_once())
             ruins = rounds * RUINS
-            heat, done = anneal(state, self._archives, ruins, heat, cooling, step.ends_whole)
-            self._rounds += math.ceil(done / RUINS)
-            left = left - rounds if done == ruins else 0
+            heat, made = anneal(state, self._archives, ruins, heat, cooling, step.ends_whole)
+            self._rounds += math.ceil(made / RUINS)
+            done = done + rounds if made == ruins else most
         return False
+
+    def _ends_of(self, step: Step) -> tuple[float, float]:
+        """Return when a step begins, and when it has had its share of the time that is left.
+
+        Where the number of iterations ends the search first, only they count.
+        """
+        now, left = self._watch.spent, self._left()
+        if not left or left >= self._options.iterations - self._rounds:
+            return now, math.inf
+        return now, now + self._watch.left * min(1.0, step.rounds / left)
+
+    def _in_time(self, done: int, most: int, ends: tuple[float, float]) -> int:
+        """Return how many rounds a step has in its time, once its pace is known."""
+        began, until = ends
+        now = self._watch.spent
+        if until == math.inf or now - began < _UNSURE * (until - began):
+            return most
+        return done + max(1, int(done * (until - now) / (now - began)))
 
     def _at_once(self) -> int:
         """Return for how many rounds there is time before the time is checked."""
@@ -295,6 +325,13 @@ class RuinSearch:
         limit = selection_limit(self._options.time_limit)
         selected = selection_seconds(self._options.size, found, len(self._reference_point), limit)
         return self._pause + checked + explained + selected
+
+
+def _by_variance(state: State) -> State:
+    """Return a state whose direction weighs the variance of a plan in place of its deviation."""
+    direction, plan = state.direction, state.plan
+    weight = weight_of_variance(plan, direction.deviation, int(plan.counts[USED]))
+    return state._replace(direction=direction._replace(variance=weight))
 
 
 def _width(problem: Problem) -> int:

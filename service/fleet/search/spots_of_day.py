@@ -23,11 +23,11 @@ def cost_over_the_day(
     problem, plan, direction = state
     slot, before, via, onward = spot
     after, kind = plan.next[before], problem.kind[slot]
-    profile, pace = problem.profile[slot], day.paces[problem.kind[slot]]
+    profile = problem.profile[slot]
     at, onto = problem.place[before], problem.place[after]
-    to = _through(day, (at, via, stop), pace, plan.ready[before])
+    to = _through(day, (at, via, stop), kind, plan.ready[before])
     time = max(to.time, problem.opens[stop]) + service_at(problem, profile, stop)
-    away = _through(day, (stop, onward, onto), pace, time)
+    away = _through(day, (stop, onward, onto), kind, time)
     first = to.first + away.first - plan.step[after, 0]
     second = to.second + away.second - plan.step[after, 1]
     if to.first + away.first >= 0.5 * problem.forbidden:
@@ -51,7 +51,7 @@ def cost_over_the_day(
 
 
 @inlined
-def _through(day: FleetDay, places: tuple[int, int, int], pace: float, time: float) -> Moment:
+def _through(day: FleetDay, places: tuple[int, int, int], kind: int, time: float) -> Moment:
     """Return the moment of arrival at the last of three places, with both costs of the way.
 
     The second place may be -1: then the way leads past it.
@@ -59,9 +59,9 @@ def _through(day: FleetDay, places: tuple[int, int, int], pace: float, time: flo
     a, via, b = places
     known = slice_of(day, time)
     if via < 0:
-        return driven(day, (a, b), pace, time, known)
-    half = driven(day, (a, via), pace, time, known)
-    whole = driven(day, (via, b), pace, half.time, half.slice)
+        return driven(day, (a, b), kind, time, known)
+    half = driven(day, (a, via), kind, time, known)
+    whole = driven(day, (via, b), kind, half.time, half.slice)
     return Moment(whole.time, whole.slice, half.first + whole.first, half.second + whole.second)
 
 

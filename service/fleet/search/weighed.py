@@ -1,7 +1,8 @@
-"""Measures that few fleets have as an objective: earliness, weighted arrivals, overlap and changes.
+"""Measures that few fleets have as an objective, such as earliness, overlap and changes.
 
 Where one of them is, `WEIGHED` is what a route costs for all of them. Earliness, weighted arrivals
-and late visits depend on when each visit begins; overlap and changes of vehicles do not.
+and late visits depend on when each visit begins; overlap and changes of vehicles do not. How times
+spread from day to day is measured in spreading.py.
 """
 
 import numpy as np
@@ -10,7 +11,19 @@ from service.fleet.rounding import is_over
 from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.extras import NO_PROMISE
-from service.fleet.search.problem import ARRIVAL, CHANGES, EARLINESS, OVERLAP, WEIGHED, Problem
+from service.fleet.search.problem import (
+    ARRIVAL,
+    CHANGES,
+    EARLINESS,
+    LATE,
+    MEAN,
+    MOST,
+    OVERLAP,
+    VARIANCE,
+    WEIGHED,
+    Problem,
+)
+from service.fleet.search.spreading import spread_along, spread_cost, spread_growth
 from service.fleet.search.working_plan import TRY, State, WorkingPlan, leg, service_at
 from service.jit import compiled, inlined
 
@@ -33,6 +46,12 @@ def weigh(state: State, slot: int) -> None:
         + direction.overlap * plan.value[slot, OVERLAP]
         + direction.changes * plan.value[slot, CHANGES]
     )
+    if problem.extras.spreads:
+        spread_along(problem, plan, slot)
+        value = plan.value[slot]
+        plan.value[slot, WEIGHED] += spread_cost(
+            direction, value[LATE], value[MEAN], value[VARIANCE], value[MOST]
+        )
 
 
 @inlined
@@ -57,6 +76,8 @@ def _growth(state: State, stop: int, slot: int, before: int) -> float:
             plan.met_at[slot] = plan.counts[TRY]
             plan.met[slot] = _added_overlap(problem, plan, stop, slot)
         growth += direction.overlap * plan.met[slot]
+    if problem.extras.spreads:
+        growth += spread_growth(state, stop, slot, before)
     if problem.timely and delivery < 0:
         return growth + _begins_changed(state, slot, stop, before)
     if problem.timely:  # With visits more, others begin later: the earliness may fall.

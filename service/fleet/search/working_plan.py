@@ -35,6 +35,9 @@ class WorkingPlan(NamedTuple):
     released: Array  # (n + 2 r,), when the load of the trip that begins on the way is released
     ready: Array  # (n + 2 r,), when the visit ends at the earliest
     late: Array  # (n + 2 r,), the lateness up to here
+    mean: Array  # (n + 2 r,), where times spread, when the visit begins, and its variance
+    variance: Array
+    share: Array  # (n + 2 r,), on what share of days it is late
     head: Array  # (n + 2 r, 3), the route up to here: see joined()
     tail: Array  # (n + 2 r, 3), and from here on
     tried: Indices  # (n + 2 r,), by node: the latest stop that was tried after it
@@ -99,6 +102,9 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         released=np.zeros(nodes),
         ready=np.zeros(nodes),
         late=np.zeros(nodes),
+        mean=np.zeros(nodes),
+        variance=np.zeros(nodes),
+        share=np.zeros(nodes),
         head=np.zeros((nodes, 3)),
         tail=np.zeros((nodes, 3)),
         tried=np.zeros(nodes, np.int64),

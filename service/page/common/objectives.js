@@ -2,7 +2,7 @@
 
 import { SECONDS } from "./durations.js";
 
-const TIMES = ["driving", "service", "waiting", "lateness", "earliness", "weighted_arrival", "overtime", "longest", "shortest", "imbalance"]; // measures of plans that are times
+const TIMES = ["driving", "service", "waiting", "lateness", "earliness", "weighted_arrival", "overtime", "longest", "shortest", "imbalance", "duration", "duration_p90"]; // measures of plans that are times
 const THINGS = ["people", "pedestrians", "accidents", "vehicles", "stops", "orders", "parcels", "customers", "visits", "turns", "crossings"];
 
 const SHORT = 16; // letters
@@ -60,8 +60,8 @@ export const isMetres = ({ unit }) => unit === "m";
 /** The units of loads that are carried so far, or for so long. */
 export const [LOAD_KM, LOAD_HOURS] = ["load-km", "load-hours"];
 
-/** How many of what the service counts in are one of the unit. */
-export const perUnit = ({ measure, unit }) => (measure === "overlap" ? PER_CENT : (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1);
+/** How many of what the service counts in are one of the unit. Of `on_time` a measure is a share, an objective are late visits. */
+export const perUnit = ({ measure, unit }) => (measure === "overlap" || (measure === "on_time" && unit === "%") ? PER_CENT : (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1);
 
 const PER_CENT = 0.01; // of a share
 

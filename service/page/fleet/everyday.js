@@ -176,10 +176,10 @@ function freeName(stops, id) {
 }
 
 /** Whether something is delivered or done at a stop, so that it stays one to visit. */
-function isOrder({ id, demand, window, windows, due, prize }, { stops, shipments }) {
+function isOrder({ id, demand, pickup, window, windows, due, prize }, { stops, shipments }) {
   const isLoaded = (each) => each?.some((amount) => amount > 0);
   const isTimed = !stops.some((stop) => isLoaded(stop.demand)) && (window ?? windows ?? due ?? prize) !== undefined;
-  return isLoaded(demand) || isTimed || shipments?.some(({ pickup, delivery }) => [pickup, delivery].includes(id));
+  return isLoaded(demand) || isLoaded(pickup) || isTimed || shipments?.some((each) => [each.pickup, each.delivery].includes(id));
 }
 
 /** The request whose vehicles start, end and load where they did not say so, or did so at the depot before. */

@@ -19,6 +19,9 @@ const NAMES = {
   load_distance: "Load carried",
   overlap: "Overlap of routes",
   changes: "Stops changed",
+  on_time: "Visits on time",
+  duration: "Time in all, on average",
+  duration_p90: "Nine days of ten within",
 };
 
 /**
@@ -27,7 +30,7 @@ const NAMES = {
  */
 export function measuresOf({ measures = {}, lengths }, objectives, request) {
   const same = (each, axis, name) => NAMES[name].startsWith(titled(each)) && lengths[axis] === measures[name];
-  const named = (name) => objectives.some((each, axis) => each.measure === name || same(each, axis, name));
+  const named = (name) => objectives.some((each, axis) => (each.measure === name && name !== "on_time") || same(each, axis, name));
   const shown = Object.keys(NAMES).filter((name) => name in measures && !named(name));
   return shown.map((measure) => {
     const unit = unitsOf(objectives, request)[measure] ?? "";
@@ -38,7 +41,7 @@ export function measuresOf({ measures = {}, lengths }, objectives, request) {
 
 function unitsOf(objectives, request) {
   const time = clockUnit(request);
-  const times = { driving: time, service: time, waiting: time, lateness: time, earliness: time, weighted_arrival: time, overtime: time };
+  const times = { driving: time, service: time, waiting: time, lateness: time, earliness: time, weighted_arrival: time, overtime: time, duration: time, duration_p90: time };
   const route = unitOfRoutes(request);
-  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit, load_distance: loadUnit(objectives), ...PLAIN };
+  return { ...times, longest: route, shortest: route, imbalance: route, unassigned: objectives[0].unit, load_distance: loadUnit(objectives), on_time: "%", ...PLAIN };
 }

@@ -58,7 +58,8 @@ export function loadOf(route, { stops: asked, types, pickups }) {
   const { capacity, reload, initial_load: initial } = types.get(vehicle) ?? {};
   const loads = (capacity ?? []).map((most, kind) => {
     const demand = (stop) => asked.get(stop)?.demand?.[kind] ?? 0;
-    const carried = tripsIn(stops, reload).map((trip, at) => onBoard(trip, demand, pickups, at ? 0 : (initial?.[kind] ?? 0)));
+    const taken = (stop) => asked.get(stop)?.pickup?.[kind] ?? 0;
+    const carried = tripsIn(stops, reload).map((trip, at) => onBoard(trip, { demand, taken }, pickups, at ? 0 : (initial?.[kind] ?? 0)));
     return `${length(Math.max(...carried))} of ${length(most)}${carried.length > 1 ? " at once" : ""}`;
   });
   return loads.join(", ");
@@ -74,10 +75,10 @@ function tripsIn(stops, reload = []) {
   return trips;
 }
 
-/** The most on board on a trip. What is not picked up on the way is on board from its start. */
-function onBoard(trip, demand, pickups, initial) {
+/** The most on board on a trip. What is not picked up on the way is on board from its start; what a stop gives back stays to the end. */
+function onBoard(trip, { demand, taken }, pickups, initial) {
   const picked = new Set(pickups.values());
-  const change = (stop) => (picked.has(stop) ? demand(stop) : -demand(pickups.get(stop) ?? stop));
+  const change = (stop) => (picked.has(stop) ? demand(stop) : taken(stop) - demand(pickups.get(stop) ?? stop));
   let load = trip.reduce((sum, stop) => (picked.has(stop) || pickups.has(stop) ? sum : sum + demand(stop)), initial);
   return Math.max(load, ...trip.map((stop) => (load += change(stop))));
 }

@@ -6,6 +6,8 @@ const LABELS = {
   id: "name",
   place: "place",
   demand: "load",
+  pickup: "load taken back",
+  profile: "kind of vehicle, for its roads",
   service: "time at the stop",
   due: "due, late from then on",
   due_from: "wanted from, early before",

@@ -13,7 +13,8 @@ const TIMES = ["window", "arrives", "waits", "break", "leaves"];
 const TITLES = { leaves: "sets off" }; // of columns of a sheet that people read
 const COLUMNS = ["vehicle", "position", "stop"];
 const ROLES = { start: "Start: ", end: "End: ", loading: "Load again: " }; // of stops that are not visited
-const AFTER_DETAILS = ["latitude", "longitude", ...TIMES, "load"];
+const LOADS = ["load", "takes back"];
+const AFTER_DETAILS = ["latitude", "longitude", ...TIMES, ...LOADS];
 
 /**
  * The routes of the selected tour or plan, each with a `name`, "" for that of a tour, a `note` on when it begins, and its
@@ -50,10 +51,13 @@ function routesOfPlan(routes, movers, asked) {
   return routes.map((route, at) => {
     const times = lanes[at]?.visits;
     const kinds = route.stops ? kindsOf(route, types.get(route.vehicle)) : [];
-    const visit = (stop, place) => ({ stop, kind: kinds[place], ...(times && inWords(times[place], clock)), load: stops.get(stop)?.demand?.join(", ") });
+    const visit = (stop, place) => ({ stop, kind: kinds[place], ...(times && inWords(times[place], clock)), ...loadsOf(stops.get(stop)) });
     return { name: names[at], note: times ? routeNote(times, clock.said) : "", visits: route[movers.through].map(visit) };
   });
 }
+
+/** What a stop gets, and what it gives back. */
+const loadsOf = ({ demand, pickup } = {}) => ({ load: demand?.join(", "), "takes back": pickup?.some((each) => each > 0) ? pickup.join(", ") : "" });
 
 /** The times of a visit in words: where a route starts it is only left, and where it ends only reached. */
 function inWords({ kind, arrival, waiting, rests, leaves, windows, wanted, due }, { said, lasting }) {
@@ -134,7 +138,7 @@ export function fillSheet(sheet, routes, { title, date, totals }) {
       part.append(newElement("header", {}, newElement("h1", {}, title || (name ? "Plan" : "Tour")), newElement("p", {}, printed)));
       const heading = Object.assign(document.createElement("h2"), { textContent: name || "Tour" });
       const table = document.createElement("table");
-      const columns = [...TIMES, "load"].filter((column) => visits.some((visit) => visit[column]));
+      const columns = [...TIMES, ...LOADS].filter((column) => visits.some((visit) => visit[column]));
       const told = detailsIn(visits);
       row(table.createTHead(), ["", "stop", ...told.names, ...columns.map((column) => TITLES[column] ?? column)]);
       const body = table.createTBody();

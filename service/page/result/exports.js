@@ -5,6 +5,8 @@ import { unnamed } from "../common/objectives.js";
 import { moversOf } from "../fleet/routes_of_plan.js";
 import { hoursOfPlan } from "../fleet/timetable.js";
 
+const OF_DAYS = [["on_time", "share of visits on time"], ["duration", "mean time in all"], ["duration_p90", "p90 time in all"]];
+
 /** The same request as a shell command. */
 export function curl({ path, body }) {
   const address = new URL(path, document.baseURI).href;
@@ -36,29 +38,32 @@ export function csv({ kind, front }, { objectives, asked }, selected) {
     const ofRoutes = objectives.map(({ measure, unit }, axis) => (measure === "imbalance" ? titled({ name: "whole route", unit }) : `route ${titles[axis]}`));
     return csvOfPlans(plans, titles, ofRoutes, movers, selected);
   }
-  const rows = front.map(({ angle, departure, lengths, tour, stops }, at) => {
+  const spreading = objectives.map((_, axis) => axis).filter((axis) => front.some(({ means, p90 }) => p90?.[axis] > means[axis]));
+  const ofDays = ["mean", "p90"].flatMap((name) => spreading.map((axis) => `${name} ${titles[axis]}`));
+  const rows = front.map(({ angle, departure, lengths, means, p90, tour, stops }, at) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
-    return [...[angle, departure].filter((each) => each !== undefined), ...lengths, places.join(" "), yesOrNo(at === selected)];
+    return [...[angle, departure].filter((each) => each !== undefined), ...lengths, ...[means, p90].flatMap((each) => spreading.map((axis) => each[axis])), places.join(" "), yesOrNo(at === selected)];
   });
   const before = [...(titles.length === 2 ? ["angle"] : []), ...(front[0]?.departure === undefined ? [] : ["departure"])];
-  return [[...before, ...titles, "tour", "selected"], ...rows].map(line).join("");
+  return [[...before, ...titles, ...ofDays, "tour", "selected"], ...rows].map(line).join("");
 }
 
 /** A route on each line, after the members of its plan, with the name of its vehicle or robot; with its shift, if its vehicle has several; and when it leaves and is back. */
 function csvOfPlans(plans, titles, ofRoutes, { one, stops, through }, selected) {
   const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
   const timed = plans.some(({ clock }) => clock);
-  const rows = plans.flatMap(({ balance, lengths, routes, names, lanes, clock }, plan) =>
+  const spreading = OF_DAYS.filter(([measure]) => measure in (plans[0]?.measures ?? {}));
+  const rows = plans.flatMap(({ balance, lengths, measures, routes, names, lanes, clock }, plan) =>
     routes.map((route, at) => {
       const visits = lanes[at]?.visits;
       const hours = visits ? [visits[0].arrival, visits.at(-1).leaves].map(clock.said) : ["", ""];
       const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
       const before = balance === undefined ? [plan] : [plan, balance];
-      return [...before, ...lengths, names[at], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, ...(timed ? hours : []), places, yesOrNo(plan === selected)];
+      return [...before, ...lengths, ...spreading.map(([measure]) => measures[measure]), names[at], ...(shifts ? [route.shift ?? ""] : []), ...route.lengths, ...(timed ? hours : []), places, yesOrNo(plan === selected)];
     }),
   );
   const flat = titles.length === 2 ? ["balance"] : [];
-  const head = ["plan", ...flat, ...titles, one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, ...(timed ? ["leaves", "back"] : []), stops.toLowerCase(), "selected"];
+  const head = ["plan", ...flat, ...titles, ...spreading.map(([, title]) => title), one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, ...(timed ? ["leaves", "back"] : []), stops.toLowerCase(), "selected"];
   return [head, ...rows].map(line).join("");
 }
 

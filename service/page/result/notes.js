@@ -12,6 +12,7 @@ const MEASURED = {
   load_distance: "each load times how far it is carried, added up",
   overlap: "how many neighbours ride with different vehicles, the nearest counting most",
   changes: "visited by another vehicle, or later, than in the plan before",
+  on_time: "begun after their window or when they are due, on an average day",
   weighted_arrival: "how long each stop waits for its visit, times its urgency, added up",
 };
 const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "waiting"], ["breaks", "in breaks"]];
@@ -25,7 +26,15 @@ export function noteOn(objectives, axis, item, { movers, asked }) {
   if (!item) return ""; // units are known from the answer on
   const objective = objectives[axis];
   const of = movers && !objective.measure ? ofRoutes(objective, axis, item, { movers, asked }) : "";
-  return [unitOf(objective), of, item.routes?.some(isOnTheWay) && "of the rest of the day", axis === 0 && prizesIn(objectives, item)].filter(Boolean).join("; ");
+  return [unitOf(objective), mostDays(objectives, axis, item, asked), of, item.routes?.some(isOnTheWay) && "of the rest of the day", axis === 0 && prizesIn(objectives, item)].filter(Boolean).join("; ");
+}
+
+/** What most days do not exceed: of a tour whose costs spread beside its mean; of plans, that the objective is of most days. */
+function mostDays(objectives, axis, { means, p90 }, asked) {
+  const said = (value) => amount(value, objectives[axis]);
+  if (p90?.[axis] > means?.[axis]) return `${said(means[axis])} on average; nine days of ten within ${said(p90[axis])}`;
+  const percent = asked?.objectives?.[axis]?.percentile;
+  return percent && !means ? `at most, on ${percent} days of a hundred` : "";
 }
 
 /** How much of the first objective is the prizes of stops that are left out; "" if they are not added to it. */

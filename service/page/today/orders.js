@@ -91,7 +91,7 @@ export class Orders {
       const rows = (request.stops ?? []).map((stop, row) => ({ ...stop, told: textsOf(row) })).filter(({ location }) => location);
       const fresh = rows.filter(({ id }) => !this.#isKnown(id) && !this.#added.some((each) => each.id === id));
       help.textContent = saidOf(rows.length, fresh.length);
-      this.#take([...this.#added, ...fresh.map(({ id, location, demand, window, windows, service, told }) => this.#timed(JSON.parse(JSON.stringify({ id, location, demand, window, windows, service, told }))))]);
+      this.#take([...this.#added, ...fresh.map(({ id, location, demand, pickup, window, windows, service, told }) => this.#timed(JSON.parse(JSON.stringify({ id, location, demand, pickup, window, windows, service, told }))))]);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       help.textContent = `Not read: ${error.message}.`;

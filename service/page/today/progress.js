@@ -9,7 +9,7 @@ import { customersIn } from "../inputs/details.js";
  * Each route of a plan: its `name`, and its `visits`, each with the `stop`, the `customer` there, its `kind` as of `visitTimes`, whether it is
  * `done`, and with a clock `begin`, when it begins; `isOut`, whether its vehicle has left; `isBack`, whether all is done;
  * and where the vehicle is: `at` is the visit that it goes on from, `share` how far it has come from there to the next, and `leaves` when it
- * leaves there, if that is later; null if it is not.
+ * leaves there, if that is later; null if it is not. By then it has driven a `distance` and has been `driving`, where its route says these.
  * A visit that has begun is done. Once somebody has taken a stop back or added one, the vehicle is at the last that is done.
  *
  * @param {{ routes: object[], names: string[], asked: object }} driven the plan that is driven
@@ -21,7 +21,14 @@ export function progressOf({ routes, names, asked }, { now, turned }) {
   const { types } = knownFleet(asked);
   const customerOf = customersIn(asked);
   const visitsOf = (route, at) => lanes[at]?.visits ?? kindsOf(route, types.get(route.vehicle)).map((kind, place) => ({ kind, stop: route.stops[place], customer: customerOf(route.stops[place]) }));
-  return { clock, vans: routes.map((route, at) => vanOf(names[at], visitsOf(route, at), now, turned)) };
+  return { clock, vans: routes.map((route, at) => withDriven(vanOf(names[at], visitsOf(route, at), now, turned), route)) };
+}
+
+/** A van with what its route says that it has driven, which between two visits is a share of the leg. */
+function withDriven(van, { distance, driving }) {
+  const { at, share } = van;
+  const reached = (each) => each && each[at] + share * ((each[at + 1] ?? each[at]) - each[at]);
+  return { ...van, distance: reached(distance), driving: reached(driving) };
 }
 
 function vanOf(name, visits, now, turned) {

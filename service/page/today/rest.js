@@ -34,7 +34,12 @@ export function bodyOf({ at: plan, asked }, { vans, now, nowSaid, out, removed, 
 function wayOf(van, isBroken, asked, nowSaid) {
   const position = isBroken ? undefined : positionOf(van, asked, nowSaid);
   const leaves = isBroken ? null : van.leaves;
-  return { done: doneOf(van), ...(leaves !== null && { leaves }), ...(position !== undefined && { position }), ...(isBroken && { broken_down: true }) };
+  return { done: doneOf(van), ...(leaves !== null && { leaves }), ...(position !== undefined && { position, ...drivenOf(van, position) }), ...(isBroken && { broken_down: true }) };
+}
+
+/** How far a van between two stops has driven; at a stop the service knows it. */
+function drivenOf({ distance, driving }, { id }) {
+  return id === undefined ? {} : { ...(distance !== undefined && { distance }), ...(driving !== undefined && { driving }) };
 }
 
 function positionOf({ name, visits, at, share, tip }, asked, nowSaid) {

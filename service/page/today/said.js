@@ -35,7 +35,10 @@ function whereOf(van, clock) {
   return `${done} of ${all} done, ${where}`;
 }
 
-/** What a vehicle has on board for the stops still to visit until it loads again, one number for each kind of load; "" without a capacity. */
+/**
+ * What a vehicle has on board for the stops still to visit until it loads again, and from those that gave something back, one number for each kind
+ * of load; "" without a capacity.
+ */
 export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
   const { capacity } = types.get(vehicle) ?? {};
   if (!capacity) return "";
@@ -44,7 +47,10 @@ export function onBoard({ visits }, { stops, types, pickups }, vehicle) {
   const [done, pickedUp] = [new Set(visits.filter((visit) => visit.done).map(({ stop }) => stop)), new Set(pickups.values())];
   const carried = trip.filter(({ stop, kind, done: isDone }) => kind === "visit" && !isDone && !pickedUp.has(stop) && (!pickups.has(stop) || done.has(pickups.get(stop))));
   const demand = ({ stop }, axis) => stops.get(pickups.get(stop) ?? stop)?.demand?.[axis] ?? 0;
-  return capacity.map((_, axis) => carried.reduce((sum, visit) => sum + demand(visit, axis), 0)).join(", ");
+  const back = visits.filter(({ kind, done: isDone }) => kind === "visit" && isDone);
+  const taken = ({ stop }, axis) => stops.get(stop)?.pickup?.[axis] ?? 0;
+  const sum = (each, of, axis) => each.reduce((all, visit) => all + of(visit, axis), 0);
+  return capacity.map((_, axis) => sum(carried, demand, axis) + sum(back, taken, axis)).join(", ");
 }
 
 const NO_LOADING =

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from service.errors.printable import shortened
+
 _MOST_NAMED = 3
 _LONGEST_NAME = 80  # characters
 
@@ -23,6 +25,4 @@ class Note:
 
 def listed(names: list[str]) -> str:
     """Return the first of some names, quoted, and how many more there are."""
-    shown = ", ".join(repr(name[:_LONGEST_NAME]) for name in names[:_MOST_NAMED])
-    more = len(names) - _MOST_NAMED
-    return f"{shown} and {more} more" if more > 0 else shown
+    return shortened([repr(name[:_LONGEST_NAME]) for name in names], _MOST_NAMED)

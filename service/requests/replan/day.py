@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from paretour.choice import knee
 from pydantic_core import from_json
@@ -32,6 +33,8 @@ class Way:
         broken_down: Whether it is out of service.
         home: Where it loads before it leaves: where it started the day, if it did at a stop.
         is_back: Whether all is done, and it stands where it loads: it can load what it brings next.
+        distance: How far it has driven; None where that is not known.
+        driving: How long it has driven; None where that is not known.
     """
 
     part: str
@@ -45,6 +48,8 @@ class Way:
     broken_down: bool
     home: int | None
     is_back: bool
+    distance: float | None
+    driving: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +74,37 @@ class DaySoFar:
         return frozenset(stop for way in self.ways for stop in way.done)
 
 
+class _Driven(NamedTuple):
+    """A route of the plan that is driven.
+
+    Attributes:
+        route: The route.
+        stops: Its stops, with its start and its end if these are stops.
+        departure: When its vehicle leaves; None without a clock.
+        distance: How far it has driven at each of these stops; empty where no limit is on that.
+        driving: How long it has driven at each of them, or empty.
+    """
+
+    route: Route
+    stops: tuple[int, ...]
+    departure: float | None
+    distance: tuple[float, ...]
+    driving: tuple[float, ...]
+
+    def reached(self, done: Sequence[int], position: int | None, *, is_done: bool) -> int | None:
+        """Return the place in `stops` where its vehicle goes on; None where it is none of them."""
+        first = max(map(self.stops.index, done), default=0)
+        places = [at for at in range(first, len(self.stops)) if self.stops[at] == position]
+        return (places[-1] if is_done else places[0]) if places else None
+
+
+def _so_far(given: float | None, planned: Sequence[float], reached: int | None) -> float | None:
+    """Return what was driven: as is given, or else as planned; None where neither says it."""
+    if given is not None or not planned or reached is None:
+        return given
+    return planned[reached]
+
+
 def day_of(
     request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
 ) -> DaySoFar:
@@ -83,28 +119,27 @@ def day_of(
     Raises:
         Refusal: The request names a plan, a route or a stop that is not there, or one twice.
     """
-    routes, departures, arrivals = _driven(request, stored, fleet, ids)
+    driven, arrivals = _driven(request, stored, fleet, ids)
     numbers: list[int] = []
     ways = []
     for index, item in enumerate(request.routes):
         part = f"routes/{index}"
-        if item.route >= len(routes):
-            raise invalid(f"{part}/route", "no-such-route", routes=len(routes), came=item.route)
+        if item.route >= len(driven):
+            raise invalid(f"{part}/route", "no-such-route", routes=len(driven), came=item.route)
         if item.route in numbers:
             raise invalid(f"{part}/route", "given-twice", came=item.route)
         numbers.append(item.route)
-        route, departure = routes[item.route], departures[item.route]
         if item.leaves is not None and fleet.rules.clock is None:
             raise invalid(f"{part}/leaves", "fleet-has-no-clock")
-        ways.append(_way(item, part, fleet, route, departure, ids))
-    waiting = {number: route for number, route in enumerate(routes) if number not in numbers}
+        ways.append(_way(item, part, fleet, driven[item.route], ids))
+    waiting = {at: each.route for at, each in enumerate(driven) if at not in numbers}
     return DaySoFar(tuple(ways), tuple(numbers), waiting, arrivals)
 
 
 def _driven(
     request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
-) -> tuple[list[Route], list[float | None], dict[int, float]]:
-    """Return the routes of the plan that is driven, and when each vehicle leaves and arrives."""
+) -> tuple[list[_Driven], dict[int, float]]:
+    """Return the routes of the plan that is driven, and when each stop is reached."""
     plans = stored.found.split()
     if not plans:
         raise not_replannable(stored.id, "it has no plan")
@@ -112,8 +147,7 @@ def _driven(
     if number >= len(plans):
         raise invalid("plan", "no-such-plan", plans=len(plans), came=number)
     types = {name: index for index, name in enumerate(fleet.vehicles)}
-    routes: list[Route] = []
-    departures: list[float | None] = []
+    routes: list[_Driven] = []
     arrivals: dict[int, float] = {}
     for item in from_json(plans[number])["routes"]:
         kind = types[VehicleName(item["vehicle"], item.get("shift"), item.get("route"))]
@@ -121,21 +155,21 @@ def _driven(
         stops = [ids[stop] for stop in item["stops"]]
         first = 0 if vehicle.start is None else 1
         last = len(stops) - (0 if vehicle.end is None else 1)
-        routes.append(Route(kind, tuple(stops[first:last])))
-        departures.append(item["arrivals"][0] if "arrivals" in item else None)
-        arrivals |= zip(stops, item.get("arrivals", ()), strict=False)
-    return routes, departures, arrivals
+        route, times = Route(kind, tuple(stops[first:last])), item.get("arrivals", ())
+        limited = (tuple(item.get(name, ())) for name in ("distance", "driving"))
+        routes.append(_Driven(route, tuple(stops), times[0] if times else None, *limited))
+        arrivals |= zip(stops, times, strict=False)
+    return routes, arrivals
 
 
 def _way(
     item: RouteOnTheWay,
     part: str,
     fleet: UnmeasuredFleet,
-    route: Route,
-    departure: float | None,
+    driven: _Driven,
     ids: Mapping[str, int],
 ) -> Way:
-    rules = fleet.rules
+    rules, route = fleet.rules, driven.route
     done = _done(item, part, rules, route, ids)
     after = max((route.stops.index(stop) for stop in done), default=-1) + 1
     vehicle = rules.vehicles[route.vehicle]
@@ -145,6 +179,8 @@ def _way(
     position = _position(item, part, rules, route, done, ids)
     skipped = [s for s in route.stops[:after] if s not in done and s not in reload]
     left = (*skipped, *route.stops[after:])
+    is_done = set(left) <= {*reload}
+    reached = driven.reached(done, position, is_done=is_done)
     return Way(
         part=part,
         type=route.vehicle,
@@ -152,11 +188,13 @@ def _way(
         left=left,
         done=done,
         trips=sum(stop in reload for stop in route.stops[:after]),
-        departure=departure,
+        departure=driven.departure,
         leaves=item.leaves or 0.0,
         broken_down=item.broken_down,
         home=home,
-        is_back=position is not None and position == home and set(left) <= {*reload},
+        is_back=position is not None and position == home and is_done,
+        distance=_so_far(item.distance, driven.distance, reached),
+        driving=_so_far(item.driving, driven.driving, reached),
     )
 
 

@@ -11,7 +11,7 @@ from service.fleet.rules import Rules
 from service.objectives import Objective
 from service.requests.replan.costs import AllStops, between, changed_sources, extended_sources
 from service.requests.replan.fields import CostEntry
-from service.requests.stops import Matrix, Source
+from service.requests.stops import Matrix, Source, base_of
 from service.requests.task import UnmeasuredFleet
 
 
@@ -71,6 +71,6 @@ def _check_profiles(
     if not stops.new:
         return
     for name, *sources in zip(names, *pairs, strict=False):
-        matrices = [source for source in sources if isinstance(source, Matrix)]
+        matrices = [base for each in sources if isinstance(base := base_of(each), Matrix)]
         if not all(np.array_equal(each.costs, matrices[0].costs) for each in matrices):
             raise invalid(next(iter(stops.new)), "profiles-need-matrices", objective=name)

@@ -50,6 +50,16 @@ class RouteOnTheWay(StrictModel):
         description="when it leaves there, if that is after the present time: at the end of the"
         " visit that has begun",
     )
+    distance: Cost | None = Field(
+        default=None,
+        description="how far it has driven, where its vehicle has a max_distance; by default as far"
+        " as in the plan, which does not say it of a new place",
+    )
+    driving: Cost | None = Field(
+        default=None,
+        description="how long it has driven, where its vehicle has a max_driving; by default as"
+        " long as in the plan, which does not say it of a new place",
+    )
     broken_down: bool = Field(
         default=False,
         description="whether its vehicle is out of service: other vehicles bring what it carries,"

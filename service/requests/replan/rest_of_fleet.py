@@ -154,6 +154,7 @@ class _Rest:
             leave=self._rules.leave,
             groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
             spread=self._rules.spread,
+            percents=self._rules.percents,
         )
         changed = self._request.costs, self._all
         chosen = np.array(list(self._place), np.int64)

@@ -124,8 +124,6 @@ def _on_the_way(
 ) -> VehicleType:
     """Return a vehicle on its way as a type of its own."""
     vehicle = fleet.rules.vehicles[way.type]
-    if vehicle.is_capped:
-        raise invalid(way.part, "capped-on-the-way")
     position = place_of(way) if way.position is None else way.position
     timed = fleet.rules.clock is not None
     leaves = max(now, way.leaves)
@@ -139,6 +137,8 @@ def _on_the_way(
         shift=(leaves, max(leaves, vehicle.shift[1])) if timed else vehicle.shift,
         leaves_by=leaves if timed and not way.is_back else inf,
         longest=max(0.0, vehicle.longest - gone),
+        max_distance=_left(vehicle.max_distance, way.distance, f"{way.part}/distance"),
+        max_driving=_left(vehicle.max_driving, way.driving, f"{way.part}/driving"),
         fixed=0.0,
         max_stops=None if visits is None else max(0, visits - len(way.done)),
         min_stops=max(0, vehicle.min_stops - len(way.done)),
@@ -146,6 +146,19 @@ def _on_the_way(
         max_trips=None if trips is None else max(1, trips - way.trips),
         initial_load=_on_board(way, fleet.rules, vehicle),
     )
+
+
+def _left(limit: float, driven: float | None, part: str) -> float:
+    """Return what is left of a limit on driving.
+
+    Raises:
+        Refusal: It is not known how much was driven.
+    """
+    if limit == inf:
+        return inf
+    if driven is None:
+        raise invalid(part, "not-driven", member=f"max_{part.rpartition('/')[2]}")
+    return max(0.0, limit - driven)
 
 
 def _on_board(way: Way, rules: Rules, vehicle: VehicleType) -> tuple[int, ...]:
