@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import cast
 
-from service.files.column_names import NAMES_OF_STOPS, plain_name
+from service.files.column_names import CUSTOMERS, NAMES_OF_STOPS, plain_name
 from service.files.columns import Columns
 from service.files.fleets import (
     ENDS,
@@ -37,11 +37,6 @@ _HOME = re.compile(  # as the whole name
 )
 _SHOP = re.compile(r"home depot", re.IGNORECASE)
 _NAMED = {*NAMES_OF_STOPS["id"].split(), "type", "stoptype", "kind", "description", "role"}
-_CUSTOMERS = {
-    *("customer", "customername", "client", "clientname", "recipient", "recipientname", "contact"),
-    *("contactname", "consignee", "company", "phone", "phonenumber", "mobile", "email", "kunde"),
-    *("kundenname", "empfaenger", "empfanger", "cliente", "klant", "asiakas"),
-}
 _TIMES = ("service", "window", "windows", "due", "release")
 _OF_VISITS = ("service", "due", "release", "prize")
 _OF_ORDERS = (*_TIMES, "demand", "pickup", "prize", "skills", "vehicle")
@@ -93,7 +88,7 @@ def _is_called_depot(columns: Columns, row: int) -> bool:
     texts = [text.replace("_", " ") for name, text in cells if plain_name(name) in _NAMED]
     if columns.table.heading is None and "id" in columns.fields:
         texts.append(columns.text(row, columns.fields.index("id")))
-    customers = [text.strip() for name, text in cells if plain_name(name) in _CUSTOMERS]
+    customers = [text.strip() for name, text in cells if plain_name(name) in CUSTOMERS]
     return any(_DEPOT.fullmatch(text) for text in customers) or any(
         (_DEPOT.search(text) and not _SHOP.search(text)) or _HOME.fullmatch(text) for text in texts
     )
@@ -109,7 +104,7 @@ def _is_horizon(stops: Sequence[Stop], row: int) -> bool:
 def _has_customer(columns: Columns, row: int) -> bool:
     """Return whether a row has a text in a column of customers that is not planned."""
     return any(
-        field is None and plain_name(name) in _CUSTOMERS and columns.text(row, at)
+        field is None and plain_name(name) in CUSTOMERS and columns.text(row, at)
         for at, (name, field) in enumerate(zip(columns.names, columns.fields, strict=True))
     )
 

@@ -5,6 +5,7 @@ document type is refused, and so are more elements than stops need.
 """
 
 import codecs
+import io
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -16,11 +17,10 @@ from service.files.other_files import STOPS, XML
 from service.files.places import check_range
 from service.files.reading import Source, UnreadableFile, quoted
 from service.files.tables import Table, number_in, table_of
+from service.files.xml_feed import feed
 
 _MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _BEGINS = (b"<", b"<\0", b"\0<")
-_PIECE = 2**14  # bytes that are parsed at once
-_LONGEST_TAG = 2**17  # bytes
 _DEEPEST = 50
 _LONGEST = 2000  # characters of a text
 _MOST_COLUMNS = 50
@@ -90,21 +90,11 @@ class _Points:
         parser.CharacterDataHandler = self._characters
         parser.StartDoctypeDeclHandler = self._doctype
         try:
-            self._feed(parser, self.source.file.data)
+            feed(self.source, parser, io.BytesIO(self.source.file.data).read)
         except UnreadableFile:  # which is a ValueError
             raise
         except (expat.ExpatError, LookupError, ValueError) as error:  # the latter of its encoding
             raise self.source.refusal("not-xml", reason=str(error)[:200]) from None
-
-    def _feed(self, parser: "expat.XMLParserType", data: bytes) -> None:
-        for at in range(0, len(data), _PIECE):
-            piece = data[at : at + _PIECE]
-            self.source.spend_on_xml(piece)
-            parser.Parse(piece)
-            # Expat begins again at the start of a tag or comment with each piece.
-            if at + len(piece) - parser.CurrentByteIndex > _LONGEST_TAG:
-                raise self.source.too_much_work()
-        parser.Parse(b"", True)
 
     def _doctype(self, name: str, *_: object) -> None:
         if name.casefold() == "html":

@@ -1,109 +1,34 @@
 """Check that every keyword of a file of TSPLIB, CVRPLIB, VRPLIB or LKH is read, or is refused.
 
-The keywords are those of TSPLIB (Reinelt, 1991), of LKH-3 (Helsgaun, 2017) and of the format of
-PyVRP. A keyword that says something about tours or routes is never left out without a sentence.
+They are in `keywords.toml`. A keyword that says something about tours or routes is never left out
+without a sentence.
 """
 
 import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from service.errors.printable import shortened
 from service.files.tables import number_in
 from service.files.tsplib import TsplibFile
 
-OF_VEHICLES = (
-    "MAX_DISTANCE",
-    "MAX_DURATION",
-    "MAX_RELOADS",
-    "FIXED_COST",
-    "UNIT_DISTANCE_COST",
-    "DEPOT",
-    "RELOAD_DEPOT",
-    "ALLOWED_CLIENTS",
-)
-_COUNTS = ("VEHICLES", "VEHICLE", "SALESMEN")
-_OF_COSTS = {
-    "NAME",
-    "TYPE",
-    "DIMENSION",
-    "EDGE_WEIGHT_TYPE",
-    "EDGE_WEIGHT_FORMAT",
-    "SCALE",
-    "NODE_COORD_SECTION",
-    "EDGE_WEIGHT_SECTION",
-}
-# What says nothing about tours: their pictures, and where a file comes from.
-_ABOUT = {
-    "COMMENT",
-    "NODE_COORD_TYPE",
-    "DISPLAY_DATA_TYPE",
-    "DISPLAY_DATA_SECTION",
-    "AUTHOR",
-    "BEST_KNOWN",
-    "BKS",
-    "OPTIMAL_VALUE",
-    "OPTIMAL_COST",
-    "OPTIMUM",
-    "GRID_SIZE",  # of TOR_2D alone
-}
+_KEYWORDS = tomllib.loads(Path(__file__).with_name("keywords.toml").read_text(encoding="utf-8"))
+OF_VEHICLES = tuple(_KEYWORDS["vehicles"].split())
+_COUNTS = tuple(_KEYWORDS["counts"].split())
+_OF_COSTS = {*_KEYWORDS["costs"].split(), *_KEYWORDS["about"].split()}
 _OF_FLEETS = {
     *_COUNTS,
-    "CAPACITY",
-    "CAPACITY_SECTION",
-    "DISTANCE",
-    "SERVICE_TIME",
-    "SERVICE_TIME_SECTION",
-    "RELEASE_TIME",
-    "RELEASE_TIME_SECTION",
-    "TIME_WINDOW_SECTION",
-    "DEMAND_SECTION",
-    "LINEHAUL_SECTION",
-    "BACKHAUL_SECTION",
-    "PICKUP_AND_DELIVERY_SECTION",
-    "PRIZE_SECTION",
-    "DEPOT_SECTION",
-    *(f"VEHICLES_{each}" for each in OF_VEHICLES),
-    *(f"VEHICLES_{each}_SECTION" for each in OF_VEHICLES),
+    *_KEYWORDS["fleets"].split(),
+    *(f"VEHICLES_{each}{end}" for each in OF_VEHICLES for end in ("", "_SECTION")),
 }
 # A file with one of these alone may be a tour: DEPOT_SECTION names its start.
 _TELLING = _OF_FLEETS - {"DEPOT_SECTION", "BACKHAUL_SECTION"}
-_NO_EFFECT = {"DEMAND_DIMENSION": 1, "EXTERNAL_SALESMEN": 0}  # with these values
-_NOTED = {
-    "FIXED_EDGES_SECTION": "tours may do without its edges",
-    "TOUR_SECTION": "the search needs no tour to start from",
-}
-_RETURNED = "pick-ups that are taken to the depot"
-_NOT_PLANNED = {
-    "SOP": "an order of cities",
-    "HCP": "no costs",
-    "TOUR": "a tour, and no costs",
-    "HPP": "a path: write TSP, and plan an open route",
-    "CTSP": "cities of several colours",
-    "GTSP": "one city of each set",
-    "AGTSP": "one city of each set",
-    "GVRP": "one stop of each set",
-    "1-PDTSP": "goods that are taken from any stop to any other",
-    "M-PDTSP": "goods that are taken from any stop to any other",
-    "M1-PDTSP": "goods that are taken from any stop to any other",
-    "PDTSPF": "first in, first out",
-    "PDTSPL": "last in, first out",
-    "RCTVRP": "a bound on risk",
-    "RCTVRPTW": "a bound on risk",
-    "TSPDL": "draft limits",
-    "TSPPD": _RETURNED,
-    "VRPB": "backhauls, and deliveries before them",
-    "VRPBTW": "backhauls, and deliveries before them",
-    "VRPMPD": _RETURNED,
-    "VRPMPDTW": _RETURNED,
-    "VRPSPD": _RETURNED,
-    "VRPSPDTW": _RETURNED,
-    "STTSP": "nodes that need not be visited",
-    "TSTSP": "nodes that need not be visited",
-    "OCMTSP": "tours some of which are open",
-    "OP": "a bound on the length, and scores",
-}
-_LATENCY = "it minimises the sum of all arrivals; here the objectives are lengths"
-_PLANNED_OTHERWISE = {"CCVRP": _LATENCY, "MLP": _LATENCY, "TRP": _LATENCY}
+_NO_EFFECT: Mapping[str, float] = _KEYWORDS["no_effect"]
+_NOTED: Mapping[str, str] = _KEYWORDS["noted"]
+_NOT_PLANNED: Mapping[str, str] = _KEYWORDS["not_planned"]
+_PLANNED_OTHERWISE: Mapping[str, str] = _KEYWORDS["planned_otherwise"]
 _SWITCH = re.compile("yes|no|true|false", re.IGNORECASE)
 _MOST_NAMED, _LONGEST_SHOWN = 5, 60
 _SPLIT = "SDVRP"  # or a site-dependent problem, if vehicles have clients
@@ -179,7 +104,6 @@ def _check_type(file: TsplibFile) -> None:
 
 def _check(file: TsplibFile, known: set[str]) -> None:
     """Refuse and note keywords that are not known; a file of other words has many."""
-    known = known | _ABOUT
     for name in file.sections:
         if name in _NOTED and file.listed(name):
             file.source.note("left-out", f"{name} was not used: {_NOTED[name]}.")

@@ -2,24 +2,14 @@
 
 from collections.abc import Sequence
 
-from service.files.column_names import plain_name
+from service.files.column_names import NAMES, plain_name
 from service.files.reading import Source, quoted
 from service.files.tables import number_in
-
-# Headings of names, or of customers who may have two orders.
-_NAMES = frozenset(
-    [
-        *("stop", "name", "stopname", "ordername", "alias", "customer", "customerid", "customerno"),
-        *("custno", "kunde", "kundennummer", "node", "label", "site", "client", "cliente", "klant"),
-        *("asiakas", "nom", "nome", "nombre", "naam", "nimi", "arret", "fermata", "parada"),
-        *("halte", "city", "point", "location", "position"),
-    ]
-)
 
 
 def are_names(heading: str) -> bool:
     """Return whether a heading is that of names, which may come twice, and not of ids."""
-    return plain_name(heading) in _NAMES
+    return plain_name(heading) in NAMES
 
 
 def is_list_of_cities(cities: Sequence[str], others: Sequence[Sequence[str]]) -> bool:

@@ -4,15 +4,13 @@ import io
 import posixpath
 import zipfile
 from collections.abc import Callable, Mapping
-from typing import Any
 from xml.parsers import expat
 
 from service.files.reading import Source, UnreadableFile
+from service.files.xml_feed import feed
 
 _MOST_PARTS = 2000
 _ENTRY = b"PK\x01\x02"  # of each part, in the list at the end of a zip file
-_PIECE = 2**14  # bytes
-_LONGEST_TAG = 2**17  # bytes: a cell has a few attributes, and expat keeps a tag whole
 _MOST_EARNED = 32  # units of work for each byte: packed cells have half a byte or more
 _COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _ROOT = "xl/workbook.xml"
@@ -102,7 +100,7 @@ class Package:
             raise self.source.refusal("not-deflated")
         try:
             with self._zip.open(info) as file:
-                self._feed(parser, file)
+                feed(self.source, parser, file.read)
         except UnreadableFile:  # which is a ValueError
             raise
         except (zipfile.BadZipFile, OSError, EOFError, RuntimeError, ValueError) as error:
@@ -111,17 +109,6 @@ class Package:
             if type(error).__module__ not in ("zlib", "pyexpat", "xml.parsers.expat"):
                 raise
             raise self.source.refusal("not-xlsx", reason=f"{part}: {error}") from None
-
-    def _feed(self, parser: "expat.XMLParserType", file: Any) -> None:
-        fed = 0
-        while piece := file.read(_PIECE):
-            self.source.spend_on_xml(piece)
-            parser.Parse(piece)
-            fed += len(piece)
-            # Expat begins again at the start of a tag or comment with each piece.
-            if fed - parser.CurrentByteIndex > _LONGEST_TAG:
-                raise self.source.too_much_work()
-        parser.Parse(b"", True)
 
     def _refuse_doctype(self, *_: object) -> None:
         given = "XML with a DOCTYPE, which it never has"

@@ -26,6 +26,7 @@ _DEEP = 12  # directions
 _SHALLOW = 20, 300  # a further direction takes one round in at least and at most so many left
 _LEAST_ROUNDS = 2
 _LESSER = 1e-6  # weight of the other objectives beside one alone
+_BESIDE = 0.3  # the same beside one of which many plans have none at all
 _STRICT = 100.0  # what a unit over a limit costs, in units of the first objective
 _DEAR = 10.0  # what a stop outside that must be visited costs at first, in the same
 _CHEAP, _ROOM = 2.0, 1.05  # the same, where vehicles are counted that could bring so many times all
@@ -48,6 +49,7 @@ _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
 _COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
 
+_OFTEN_NONE = ("lateness", "overtime", "earliness")  # of these
 _LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
 
 
@@ -129,7 +131,8 @@ class Directions:
         alone = [index for index, over in enumerate(self._over) if not self._by_limit[index]]
         rounds = self._share(_FIRST_SHARE / max(1, len(alone)))
         for objective in alone or [0]:
-            weights = np.zeros(len(self._over))
+            lesser = _BESIDE if self._over[objective] in _OFTEN_NONE else 0.0
+            weights = np.where(self._by_limit, 0.0, lesser)
             weights[objective] = 1.0
             yield self._step(weights / self._scale, {}, rounds)
             while not len(self._points()):
