@@ -30,6 +30,7 @@ _KINDS = 4 * (_LONGEST_PART + 1)  # of moves
 _LEAST_GAIN = 1e-12  # of the value of a tour
 _NEAR = 8  # places: how far apart the ends of the parts are that are swapped at random
 _WARMTH = 0.05  # of a tour's mean leg: by how much worse a changed tour may be that is kept
+_PARENTS = 10
 _FINE = 2**20  # steps of a random number between 0 and 1
 
 
@@ -40,8 +41,9 @@ class WeightedSearch(NamedTuple):
     whether moves at it have to be tried. `places`: the first place that may change, and the one
     after the last. `cursor`: where to look for the next dirty city. `kept` and `kept_value`: the
     tour that is changed next, and what `DrivenTour.value` was; `saved` and `saved_value`: those of
-    the best one. `random`: the state of the random numbers. `archive`: is offered every tour on the
-    way.
+    the best one. `parents`, `parent_values` and `bred`: tours that are crossed, their values, how
+    many there are, and how many children in a row were not among them. `random`: the state of the
+    random numbers. `archive`: is offered every tour on the way.
     """
 
     walk: DrivenTour
@@ -55,6 +57,9 @@ class WeightedSearch(NamedTuple):
     kept_value: Array
     saved: Cities
     saved_value: Array
+    parents: NDArray[np.int32]
+    parent_values: Array
+    bred: NDArray[np.int64]
     random: NDArray[np.int64]
     archive: Archive
 
@@ -96,6 +101,9 @@ def make_weighted_search(
         kept_value=np.zeros(2),
         saved=np.zeros(n, np.int32),
         saved_value=np.zeros(2),
+        parents=np.zeros((_PARENTS, n), np.int32),
+        parent_values=np.zeros(_PARENTS),
+        bred=np.zeros(2, np.int64),
         random=np.array([seed], np.int64),
         archive=archive,
     )
@@ -182,23 +190,6 @@ def warmth(search: WeightedSearch) -> float:
     """Return by how much worse than the kept tour one may be, this time."""
     chance = (1 + random_below(search.random, _FINE)) / _FINE
     return -np.log(chance) * _WARMTH * search.kept_value[0] / len(search.kept)
-
-
-@compiled
-def begin_anew(search: WeightedSearch) -> None:
-    """Go on from a local optimum that is reached from a random order of the cities."""
-    lowest, highest = search.places
-    for place in range(highest - 1, lowest, -1):
-        other = lowest + random_below(search.random, place + 1 - lowest)
-        kept = search.kept[place]
-        search.kept[place], search.kept[other] = search.kept[other], kept
-    load(search.walk, search.traffic, search.weights, search.kept, search.saved_value[1])
-    search.dirty[:] = True
-    descend_fully(search)
-    if search.walk.value[0] < search.saved_value[0]:
-        save(search)
-    else:
-        keep(search)
 
 
 @compiled

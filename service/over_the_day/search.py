@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from service.instance import tour_lengths
 from service.jit import compiled
+from service.over_the_day.breeding import CHANGES, breed
 from service.over_the_day.day import Day
 from service.over_the_day.descent import (
     WeightedSearch,
-    begin_anew,
     descend,
     insert_driven,
     iterate,
@@ -41,8 +41,7 @@ MOST_TRIED = 8  # stops: of up to as many, all tours are tried
 WEIGHTS = {2: 24, 3: 45, 4: 60}  # weighted sums, by the number of objectives
 PATIENCE = 1_000  # iterations per stop without a new tour, after which the search has converged
 _ENDS_EVERY = 4  # visits of weights: one of them is of an objective that changes over the day
-_MOST_ANEW = 60  # stops: of up to as many, searches also begin at random tours
-_ANEW_AFTER = 1_000  # iterations
+_MOST_BRED = 60  # stops: of up to as many, tours are crossed under one objective alone
 _TRIED_AT_ONCE = 100  # tours
 _CITIES_AT_ONCE = 20  # of a descent
 _VISITS_AT_ONCE = 10_000  # of iterations: some milliseconds
@@ -98,7 +97,6 @@ class DaySearch:
         self._weights = np.concatenate((alone, shares)) / instance.scale
         self._seeds = np.random.default_rng(seed).integers(1, 2**63 - 1, len(self._weights))
         self._searches: dict[int, WeightedSearch] = {}
-        self._since_anew: dict[int, int] = {}  # iterations of each weight
 
     @property
     def size(self) -> int:
@@ -190,18 +188,12 @@ class DaySearch:
             save(search)
         if not first_time:
             iterations = max(1, _VISITS_AT_ONCE // self._instance.n)
-            self._begin_anew(index, iterations)
-            iterate(search, iterations)
+            if index < self._ends and self._instance.n <= _MOST_BRED:
+                breed(search, max(1, iterations // CHANGES))
+            else:
+                iterate(search, iterations)
             yield iterations
         self._leave_better(search)
-
-    def _begin_anew(self, index: int, iterations: int) -> None:
-        """Let a search of few stops begin at a random tour, from time to time."""
-        since = self._since_anew.get(index, 0)
-        if since >= _ANEW_AFTER and self._instance.n <= _MOST_ANEW:
-            begin_anew(self._searches[index])
-            since = 0
-        self._since_anew[index] = since + iterations
 
     def _leave_better(self, search: WeightedSearch) -> None:
         """Let the best tour under a weight leave when it is better, if there is such a time."""
