@@ -35,6 +35,7 @@ INSTANCES = "instances/adamo_et_al_2019"
 SHEET = "tdtsptw-optima.ods"
 COUNT = 25
 MINUTE = 60.0
+_LOADED = 1.5  # times the limit: what takes less has nothing left to load
 _TABLES = "{urn:oasis:names:tc:opendocument:xmlns:table:1.0}"
 _REPEATED = f"{_TABLES}number-columns-repeated"
 _UNKNOWN = ("", "-")
@@ -71,7 +72,8 @@ def main(arguments: list[str]) -> None:
                 read(options.data / INSTANCES / f"{name}.json", least[name])
                 for name in spread_evenly([each for each in least if each.startswith(f"{n}_")])
             ][: options.count]
-            planned(client, 0.1, instances[0])  # the first request of a kind loads what it needs
+            while planned(client, LIMITS[n], instances[0])["seconds"] > _LOADED * LIMITS[n]:
+                pass  # the first requests of a kind load what they need
             measure = partial(planned, client, LIMITS[n])
             resume("optima", f"{n} stops, {LIMITS[n]:g} s", "", instances, measure)
     print(optima_table())
