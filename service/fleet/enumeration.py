@@ -17,8 +17,8 @@ import numpy as np
 
 from service.fleet.evaluation import first_broken, route_lengths, violations
 from service.fleet.fleet import Fleet
+from service.fleet.measures.punctuality import duration_of
 from service.fleet.plans import Plan, Route
-from service.fleet.punctuality import duration_of
 from service.fleet.rules import Rules
 from service.pareto import nondominated
 

@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service.fleet.carried import load_distance, loads_on
 from service.fleet.fleet import Array, Fleet
-from service.fleet.of_times import OF_TIMES, changes
-from service.fleet.overlap import overlap
+from service.fleet.measures.carried import load_distance, loads_on
+from service.fleet.measures.of_times import OF_TIMES, changes
+from service.fleet.measures.overlap import overlap
+from service.fleet.measures.punctuality import late_visits, longest_duration, punctuality
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.punctuality import late_visits, longest_duration, punctuality
 from service.fleet.rounding import is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of

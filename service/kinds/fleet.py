@@ -11,7 +11,6 @@ from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import Fault, NoTour, Refusal
-from service.fleet.carried import most_carried
 from service.fleet.evaluation import (
     first_broken,
     measures,
@@ -21,6 +20,7 @@ from service.fleet.evaluation import (
 )
 from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
+from service.fleet.measures.carried import most_carried
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
 from service.fleet.schedule import legs, schedule

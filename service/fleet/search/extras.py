@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
-from service.fleet.overlap import Nearness, nearness
-from service.fleet.punctuality import deviations_of
+from service.fleet.measures.overlap import Nearness, nearness
+from service.fleet.measures.punctuality import deviations_of
 from service.fleet.rules import Rules
 
 Array = NDArray[np.float64]
