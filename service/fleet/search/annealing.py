@@ -11,6 +11,7 @@ from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_ou
 from service.fleet.search.rows import write_point
 from service.fleet.search.ruin import ruin, uniform
 from service.fleet.search.values import lacking, values_of
+from service.fleet.search.waits import settle
 from service.fleet.search.working_plan import (
     MISSING,
     MORE_TRIPS,
@@ -55,14 +56,15 @@ def anneal(
         begin_iteration(plan)
         lacked = plan.counts[MISSING] > 0
         _make_another(state)
+        kept = not problem.waits.given or settle(state, False)
         exceeding = _beyond(state, found)
         after = total_cost(plan) + exceeding
         lacks = plan.counts[MISSING] > 0
         if lacks and (lacked or not direction.steady):
             raise_prices(state)
-        if not lacks and keeps_rules(state):
+        if not lacks and kept and keeps_rules(state):
             offer(problem, plan, found)
-        if after > before - heat * math.log(uniform(plan.random)):
+        if not kept or after > before - heat * math.log(uniform(plan.random)):
             restore(state)
         else:
             beyond = exceeding

@@ -2,6 +2,7 @@
 
 from service.fleet.search.problem import Problem
 from service.fleet.search.route import measure
+from service.fleet.search.waits import settle
 from service.fleet.search.working_plan import (
     OUTSIDE,
     REMOVED,
@@ -85,3 +86,5 @@ def restore(state: State) -> None:
         first += plan.saved_size[number]
     for number in range(counts[SAVED]):  # once all know again which stops ride with them
         measure(state, plan.saved[number])
+    if problem.waits.given:
+        settle(state, True)

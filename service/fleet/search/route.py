@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
@@ -26,6 +25,7 @@ from service.fleet.search.working_plan import (
     USED,
     State,
     WorkingPlan,
+    begin_at,
     leg,
     mark_used,
     service_at,

@@ -13,7 +13,7 @@ from service.errors import Fault, Refusal, invalid
 from service.errors.parts import by_stop
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
-from service.fleet.vehicles import Shipment, VehicleType, Visit
+from service.fleet.vehicles import Shipment, Span, VehicleType, Visit
 from service.requests.limits import (
     Limits,
     check_amounts,
@@ -214,6 +214,7 @@ class _Rest:
             visit = self._request.add[index].visit(f"add/{index}", types)
         else:
             visit = self._known_visit(stop)
+        visit = replace(visit, windows=self._windows(stop, visit))
         services = visit.services and tuple(visit.services[old] for old in self._old)
         servers, release = self._servers(stop, visit), self._release(stop, visit)
         vehicle, begin = self._promise(stop)
@@ -225,6 +226,23 @@ class _Rest:
             promised_to=vehicle,
             promised_by=begin,
         )
+
+    def _windows(self, stop: int, visit: Visit) -> tuple[Span, ...]:
+        """Return the windows of a stop from when on it may begin, after visits that are done."""
+        waiting, done = self._rules.groups.waiting.items(), self._day.done
+        ends = [self._ended(a) + gap for (a, b), gap in waiting if b == stop and a in done]
+        since = max(ends, default=0.0)
+        if since <= self._now:
+            return visit.windows
+        later = [(max(opens, since), closes) for opens, closes in visit.windows if since <= closes]
+        return tuple(later) or ((since, visit.windows[-1][1]),)
+
+    def _ended(self, stop: int) -> float:
+        """Return when a visit that is done has ended: now at the latest, or when it is left."""
+        way = next(way for way in self._day.ways if stop in way.done)
+        if stop == way.done[-1] and way.leaves > self._now:
+            return way.leaves
+        return min(self._now, self._day.ends.get(stop, self._now))
 
     def _promise(self, stop: int) -> tuple[int | None, float]:
         """Return the vehicle that visits a stop in the plan so far, and when, if changes count."""
