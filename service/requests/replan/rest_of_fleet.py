@@ -229,13 +229,25 @@ class _Rest:
 
     def _windows(self, stop: int, visit: Visit) -> tuple[Span, ...]:
         """Return the windows of a stop from when on it may begin, after visits that are done."""
-        waiting, done = self._rules.groups.waiting.items(), self._day.done
-        ends = [self._ended(a) + gap for (a, b), gap in waiting if b == stop and a in done]
-        since = max(ends, default=0.0)
+        firsts = [first for first, _ in self._firsts.get(stop, ()) if first in self._day.done]
+        since = self._waits_until(stop, {first: self._ended(first) for first in firsts})
         if since <= self._now:
             return visit.windows
         later = [(max(opens, since), closes) for opens, closes in visit.windows if since <= closes]
         return tuple(later) or ((since, visit.windows[-1][1]),)
+
+    def _waits_until(self, stop: int, ends: Mapping[int, float]) -> float:
+        """Return until when a visit waits for others, of which some have ended; 0 for none."""
+        firsts = self._firsts.get(stop, ())
+        return max((ends[first] + gap for first, gap in firsts if first in ends), default=0.0)
+
+    @cached_property
+    def _firsts(self) -> dict[int, list[tuple[int, float]]]:
+        """The stops for which the visit of each stop waits, and how long after each."""
+        found: dict[int, list[tuple[int, float]]] = {}
+        for (first, then), gap in self._rules.groups.waiting.items():
+            found.setdefault(then, []).append((first, gap))
+        return found
 
     def _ended(self, stop: int) -> float:
         """Return when a visit that is done has ended: now at the latest, or when it is left."""
@@ -249,6 +261,8 @@ class _Rest:
         if "changes" not in self._over or stop not in self._promised_to:
             return None, inf
         visit, arrival = self._rules.visits[stop], self._day.arrivals.get(stop)
+        if arrival is not None:
+            arrival = max(arrival, self._waits_until(stop, self._day.ends))
         begin = promised_begin(self._rules, visit, arrival, self._tolerance or 0.0)
         return self._promised_to[stop], begin
 
