@@ -333,8 +333,8 @@ def _column(rules: Rules, objective: int) -> int:
     if over == "max" and rules.percent(objective) is not None:
         return MOST
     if over == "imbalance":
-        assert rules.swept is not None
-        return rules.swept
+        assert rules.limited is not None
+        return rules.limited
     return columns.get(over, rules.layers[objective])
 
 
