@@ -40,6 +40,7 @@ RANDOM, LARGE, FAR, NEAR, NARROW, SOON, OPENING = 0, 4, 6, 7, 8, 9, 10
 ORDERS = 11
 _FEW_BLINKS, _MANY_BLINKS = 100, 4  # one place in so many for a stop is passed by
 _CHANCES = 20  # see _most()
+_ANY_ORDER = 4  # one time in so many, stops that wait for others may be inserted before these
 _OFTEN = 10  # one iteration in so many passes by many places
 
 
@@ -81,7 +82,7 @@ def _prepare(state: State, order: int) -> None:
         free_waiting(state)
         settle(state, False)
     _sort(problem, plan, order)
-    if problem.waits.given:
+    if problem.waits.given and random_below(plan.random, _ANY_ORDER) > 0:
         insert_firsts_first(problem, plan, plan.counts[REMOVED])
 
 
