@@ -208,7 +208,7 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
     for stop, since, until in route.bounds:
         place = route.stops.index(stop)
         windows, service, due, hold = stays[place]
-        stays[place] = Stay(_since(windows, since), service, due, min(hold, until))
+        stays[place] = Stay(_open_since(windows, since), service, due, min(hold, until))
     if len(trips) > 1:
         released = iter(trips[1:])
         for place, stop in enumerate(route.stops):
@@ -218,7 +218,7 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
     return [*start, *stays, *end]
 
 
-def _since(windows: Sequence[Span], since: float) -> tuple[Span, ...]:
+def _open_since(windows: Sequence[Span], since: float) -> tuple[Span, ...]:
     """Return the windows of a stop from a time on; all if none is open then."""
     later = ((max(opens, since), closes) for opens, closes in windows if not is_over(since, closes))
     return tuple(later) or tuple(windows)
