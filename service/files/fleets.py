@@ -126,10 +126,12 @@ def fleet_request(
     vehicles: list[Vehicle],
     objectives: list[Objective],
     shipments: list[Shipment] | None = None,
+    *,
+    waits: bool = False,
 ) -> FleetRequest:
-    """Return the request of a fleet, with a clock if stops or vehicles have times."""
+    """Return the request of a fleet, with a clock if it has times or its stops wait for others."""
     request: FleetRequest = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
-    if have_times(stops, vehicles):
+    if waits or have_times(stops, vehicles):
         request["clock"] = objectives[1]["name"]
     if shipments is not None:
         request["shipments"] = shipments
@@ -137,7 +139,12 @@ def fleet_request(
 
 
 def fleet_of_tables(
-    source: Source, stops: list[Stop], vehicles: list[Vehicle], plane: list[list[float]] | None
+    source: Source,
+    stops: list[Stop],
+    vehicles: list[Vehicle],
+    plane: list[list[float]] | None,
+    *,
+    waits: bool,
 ) -> FleetRequest:
     """Return the request of a fleet with the objectives that its data are for.
 
@@ -146,16 +153,17 @@ def fleet_of_tables(
         stops: The stops.
         vehicles: The vehicles.
         plane: The points of the stops in the plane, if they are not on the earth.
+        waits: Whether some stops wait for others, whoever drives.
     """
     if plane:
         objectives = planar({"name": "total length", "coordinates": plane})
     else:
-        objectives = measured(source, have_times(stops, vehicles), stops)
+        objectives = measured(source, waits or have_times(stops, vehicles), stops)
         if any("per_distance" in vehicle for vehicle in vehicles):
             objectives[0]["name"] = "cost"
         if any("profile" in vehicle for vehicle in vehicles):
             objectives[0]["from"] = "road_distance"
-    request = fleet_request(stops, vehicles, objectives)
+    request = fleet_request(stops, vehicles, objectives, waits=waits)
     _measure(source, request, stops, vehicles)
     return request
 

@@ -38,7 +38,7 @@ def groups_of(columns: Columns, stops: Sequence[Stop]) -> Groups:
     """Return the members of a request for a fleet that columns of groups are for.
 
     A field has ids of other stops, or of `together` and `apart` a text that several stops share.
-    A column of stops before others, or after them, that has no ids of stops is not used.
+    A column of stops before or after others, or that wait for others, is not used without ids.
 
     Raises:
         UnreadableFile: A stop is named that does not exist.
@@ -57,6 +57,11 @@ def groups_of(columns: Columns, stops: Sequence[Stop]) -> Groups:
         else:
             columns.leave_out(field, ", as it names no stops")
     return found
+
+
+def have_waits(groups: Groups) -> bool:
+    """Return whether some stops wait for others, whoever drives, which needs a clock."""
+    return any("vehicles" in each for each in groups.get("before", ()))
 
 
 def _check_ids(columns: Columns, at: int, ids: Sequence[str]) -> None:
@@ -79,7 +84,10 @@ def _add_by_ids(found: Groups, field: str, named: Named) -> None:
             found.setdefault("apart", []).append({"stops": [stop], "others": others})
         else:
             first, then = ([stop], others) if field == "before" else (others, [stop])
-            found.setdefault("before", []).append({"first": first, "then": then})
+            item: BeforeRequest = {"first": first, "then": then}
+            if field == "waits_for":
+                item["vehicles"] = "any"
+            found.setdefault("before", []).append(item)
 
 
 def _add_by_labels(found: Groups, columns: Columns, at: int, field: str, named: Named) -> None:

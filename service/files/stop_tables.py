@@ -15,7 +15,7 @@ from service.files.column_names import FLEET, GROUPS, PLANES
 from service.files.columns import Columns, columns_of, place_in
 from service.files.depots import for_stops
 from service.files.fleets import Stop, fleet_of_tables
-from service.files.groups import groups_of, without_groups
+from service.files.groups import groups_of, have_waits, without_groups
 from service.files.places import note_places, out_of_range, weighted
 from service.files.planes import (
     called_planes,
@@ -167,7 +167,7 @@ def _fleet(columns: Columns) -> Reading:
     groups = groups_of(columns, stops)
     stops, vehicles = for_stops(columns, stops, plane)
     columns.report()
-    request = fleet_of_tables(source, stops, vehicles, plane)
+    request = fleet_of_tables(source, stops, vehicles, plane, waits=have_waits(groups))
     return source.reading("fleet", {**request, **groups})
 
 

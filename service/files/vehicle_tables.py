@@ -26,7 +26,7 @@ from service.files.fleets import (
     fleet_of_tables,
     have_times,
 )
-from service.files.groups import groups_of
+from service.files.groups import groups_of, have_waits
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of
 from service.files.tables import Table
@@ -69,6 +69,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     read_calendar([visits, columns])
     units = add_visits(visits, stops)
     groups = groups_of(visits, stops)
+    waits = have_waits(groups)
     if plane is None:
         recognise_hours(columns)
         read_units(columns)
@@ -82,13 +83,14 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     stops = with_depots(visits, stops, vehicles, plane)
     add_bounds(columns, vehicles)
     paid = plane is None and columns.find("per_hour") is not None
-    clock = have_times(stops, vehicles) or paid
+    clock = waits or have_times(stops, vehicles) or paid
     add_profiles(columns, vehicles, located=plane is None)
     _add_limits(columns, vehicles, clock)
     add_times(columns, vehicles, clock)
     _add_costs(columns, vehicles, located=plane is None)
     columns.report()
-    request: FleetRequest = {**fleet_of_tables(source, stops, vehicles, plane), **groups}
+    tables = fleet_of_tables(source, stops, vehicles, plane, waits=waits)
+    request: FleetRequest = {**tables, **groups}
     return reading_of_several("fleet", request, (source, other))
 
 

@@ -1,9 +1,10 @@
 """Find the exact front of a fleet of few stops and vehicles by dynamic programming over routes.
 
 Every order of every subset of the stops is a route. One vehicle after another takes a route or
-none. Among the partial plans that visit the same stops, dominated ones are dropped. Where
-the imbalance is an objective, they are compared by their longest route, which should be short, and
-by their shortest, which should be long.
+none. Among the partial plans that visit the same stops, dominated ones are dropped, unless visits
+wait for others: then what a route costs depends on all routes. Where the imbalance is an objective,
+they are compared by their longest route, which should be short, and by their shortest, which should
+be long.
 """
 
 from collections import defaultdict
@@ -17,12 +18,13 @@ import numpy as np
 
 from service.fleet.evaluation import first_broken, route_lengths, violations
 from service.fleet.fleet import Fleet
+from service.fleet.measures.punctuality import duration_of
 from service.fleet.plans import Plan, Route
-from service.fleet.punctuality import duration_of
 from service.fleet.rules import Rules
 from service.pareto import nondominated
 
 MOST_STOPS = 6  # stops to visit
+_MOST_WAITING = 4  # where visits wait for others, so that all plans are tried
 _MOST_VEHICLES = 6
 Stops = frozenset[int]
 # How the values of two partial plans are joined, if not by adding them, and those of no route.
@@ -47,7 +49,8 @@ def is_enumerable(rules: Rules) -> bool:
     """Return whether a fleet has few stops and vehicles."""
     stops = len(rules.clients)
     vehicles = sum(min(vehicle.count, stops) for vehicle in rules.vehicles)
-    return stops <= MOST_STOPS and vehicles <= _MOST_VEHICLES
+    most = _MOST_WAITING if rules.groups.waiting else MOST_STOPS
+    return stops <= most and vehicles <= _MOST_VEHICLES
 
 
 def some_plan(fleet: Fleet, ended: Callable[[], bool]) -> Plan | None:
@@ -122,10 +125,12 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
     fixed = rules.vehicles[vehicle].fixed
     found: dict[Stops, list[_Partial]] = defaultdict(list)
     for stops, route in _in_order(rules, vehicle, ended):
-        if not first_broken(fleet, route):
+        broken = first_broken(fleet, route)
+        # A route that waits for others may be long enough.
+        if not broken or (broken.rule == "shortest" and rules.groups.waiting):
             first, *others = _values(fleet, route)
             found[frozenset(stops)].append(_Partial((first + fixed, *others), (route,)))
-    return _undominated(found)
+    return _undominated(rules, found)
 
 
 def _in_order(
@@ -196,7 +201,7 @@ def _with_another(
             if not visited & added:
                 joined = (_joined(rules, a, b) for a in before for b in each)
                 found.setdefault(visited | added, []).extend(joined)
-    return _undominated(found)
+    return _undominated(rules, found)
 
 
 def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
@@ -205,8 +210,10 @@ def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
     return _Partial(values, a.routes + b.routes)
 
 
-def _undominated(found: Partials) -> Partials:
+def _undominated(rules: Rules, found: Partials) -> Partials:
     """Return the partial plans without those that another one of the same stops dominates."""
+    if rules.groups.waiting:
+        return found
     return {
         visited: [each[index] for index in nondominated(np.array([one.values for one in each]))]
         if len(each) > 1

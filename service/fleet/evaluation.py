@@ -11,16 +11,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service.fleet.carried import load_distance, loads_on
 from service.fleet.fleet import Array, Fleet
-from service.fleet.of_times import OF_TIMES, changes
-from service.fleet.overlap import overlap
+from service.fleet.measures.carried import load_distance, loads_on
+from service.fleet.measures.of_times import OF_TIMES, changes
+from service.fleet.measures.overlap import overlap
+from service.fleet.measures.punctuality import late_visits, longest_duration, punctuality
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.punctuality import late_visits, longest_duration, punctuality
 from service.fleet.rounding import is_over
 from service.fleet.rules import Measure, Over, Rule, Rules
-from service.fleet.schedule import REMEMBERED, legs, schedule, trips_of
+from service.fleet.schedule import REMEMBERED, broken_waits, legs, schedule, trips_of, with_waits
 from service.fleet.times import Schedule
+
+
+class Broken(NamedTuple):
+    """A rule that a vehicle breaks on its route, and what it does, as "holds 4 of 3"."""
+
+    rule: Rule
+    detail: str
 
 
 @lru_cache(REMEMBERED)
@@ -56,7 +63,8 @@ def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, ...]:
 
     If the prizes of what is left out are an objective, the first does not include them.
     """
-    return joined_lengths(fleet, plan, [route_lengths(fleet, each) for each in plan.routes])
+    routes = with_waits(fleet, plan).routes
+    return joined_lengths(fleet, plan, [route_lengths(fleet, each) for each in routes])
 
 
 def joined_lengths(
@@ -131,7 +139,7 @@ def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     - `load_distance`: the sum over all legs of the first costs times the load, in its first
       dimension
     """
-    rules = fleet.rules
+    rules, plan = fleet.rules, with_waits(fleet, plan)
     found: dict[str, float] = {"vehicles": len(plan.routes)}
     if rules.clock is not None:
         found |= _times(fleet, plan, [schedule(fleet, route) for route in plan.routes])
@@ -190,12 +198,22 @@ def violations(fleet: Fleet, plan: Plan) -> list[str]:
         *_counts_broken(fleet.rules, plan),
         *_shipments_broken(fleet.rules, plan),
         *(
-            f"a vehicle of type {route.vehicle} {broken.detail}"
-            for route in plan.routes
-            if first_broken(fleet, route)
-            for broken in route_violations(fleet, route)
+            f"a vehicle of type {vehicle} {broken.detail}"
+            for vehicle, broken in routes_broken(fleet, plan)
         ),
     ]
+
+
+def routes_broken(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Broken]]:
+    """Yield each rule that a route of a plan breaks, by itself or beside the others, by vehicle."""
+    plan = with_waits(fleet, plan)
+    for route in plan.routes:
+        if first_broken(fleet, route):
+            yield from ((route.vehicle, broken) for broken in route_violations(fleet, route))
+    for wait in broken_waits(fleet, plan):
+        vehicle = next(each.vehicle for each in plan.routes if wait.then in each.stops)
+        detail = f"begins the visit of stop {wait.then} too soon after that of {wait.first}"
+        yield vehicle, Broken("before", detail)
 
 
 def _length(
@@ -266,13 +284,6 @@ def _shipments_broken(rules: Rules, plan: Plan) -> Iterator[str]:
             yield f"only half of the shipment from {each.pickup} to {each.delivery} is done"
         elif pickup and delivery and (pickup[0] != delivery[0] or pickup > delivery):
             yield f"the load for {each.delivery} was not picked up at {each.pickup} before"
-
-
-class Broken(NamedTuple):
-    """A rule that a vehicle breaks on its route, and what it does, as "holds 4 of 3"."""
-
-    rule: Rule
-    detail: str
 
 
 @lru_cache(REMEMBERED)

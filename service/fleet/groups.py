@@ -1,6 +1,6 @@
 """Groups of stops: those that share a vehicle, those that must not, and those in an order."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, product
@@ -22,11 +22,15 @@ class Groups:
             two stops of the first.
         before: Pairs of groups: on a route that has stops of both, those of the first come before
             those of the second.
+        gaps: For each of these pairs, how long after the end of the first visits the second ones
+            begin at the earliest, whoever drives; None, or no gap, if only the order on a route
+            counts.
     """
 
     together: tuple[tuple[int, ...], ...] = ()
     apart: tuple[Pair, ...] = ()
     before: tuple[Pair, ...] = ()
+    gaps: tuple[float | None, ...] = ()
 
     def __bool__(self) -> bool:
         """Return whether there are any."""
@@ -57,6 +61,15 @@ class Groups:
         """The pairs of stops of which the first comes first, on a route that has both."""
         return frozenset(pair for first, then in self.before for pair in product(first, then))
 
+    @cached_property
+    def waiting(self) -> dict[tuple[int, int], float]:
+        """The gaps of the pairs of stops whose second visit waits for the first, whoever drives."""
+        found: dict[tuple[int, int], float] = {}
+        for (first, then), gap in zip(self.before, self.gaps, strict=False):
+            for pair in product(first, then) if gap is not None else ():
+                found[pair] = max(gap or 0.0, found.get(pair, 0.0))
+        return found
+
     def broken(self, visited: Sequence[int]) -> Iterator[tuple[GroupRule, int, int]]:
         """Yield each rule that a route breaks, and the two stops that break it."""
         places = {stop: place for place, stop in enumerate(visited)}
@@ -76,15 +89,13 @@ class Groups:
         def placed(group: tuple[int, ...]) -> tuple[int, ...]:
             return tuple(places[stop] for stop in group if stop in places)
 
-        def paired(pairs: tuple[Pair, ...]) -> tuple[Pair, ...]:
-            # A second group of which nothing is left must not become one that was not given.
-            found = ((placed(a), placed(b), bool(b)) for a, b in pairs)
-            return tuple((a, b) for a, b, given in found if bool(b) == given)
-
+        # A second group of which nothing is left must not become one that was not given.
+        apart = ((placed(a), placed(b), bool(b)) for a, b in self.apart)
         return Groups(
             together=tuple(placed(group) for group in self.together),
-            apart=paired(self.apart),
-            before=paired(self.before),
+            apart=tuple((a, b) for a, b, given in apart if bool(b) == given),
+            before=tuple((placed(first), placed(then)) for first, then in self.before),
+            gaps=self.gaps,
         )
 
 
@@ -113,3 +124,36 @@ def check_groups(groups: Groups, depots: Collection[int], shipped: Collection[in
     for a, b in sorted(groups.rivals):
         if b in groups.mates.get(a, ()):
             raise invalid("apart", "together-and-apart", stop=a, other=b)
+
+
+def check_waiting(groups: Groups, *, timed: bool, others: Mapping[str, bool]) -> None:
+    """Raise a refusal of visits that wait for others, if they cannot.
+
+    Args:
+        groups: The groups.
+        timed: Whether the fleet has a clock.
+        others: Members of the request beside which visits cannot wait, and whether they are given.
+    """
+    gaps = enumerate(groups.gaps)
+    part = next((f"before/{index}/vehicles" for index, gap in gaps if gap is not None), None)
+    if part is None:
+        return
+    if not timed:
+        raise invalid(part, "untimed")
+    for member in (member for member, given in others.items() if given):
+        raise invalid(part, "also-given", member=member)
+    stop = _in_circle(groups.waiting)
+    if stop is not None:
+        raise invalid("before", "waits-for-itself", stop=stop)
+
+
+def _in_circle(pairs: Collection[tuple[int, int]]) -> int | None:
+    """Return a stop that waits for itself, maybe by way of others; None if there is none."""
+    left = {*pairs}
+    while left:
+        firsts, thens = {first for first, _ in left}, {then for _, then in left}
+        within = {(a, b) for a, b in left if a in thens and b in firsts}
+        if len(within) == len(left):
+            return min(firsts)
+        left = within
+    return None

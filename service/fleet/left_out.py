@@ -11,6 +11,7 @@ from service.fleet.evaluation import (
     first_broken,
     plan_lengths,
     route_lengths,
+    routes_broken,
     routes_together,
     unassigned,
 )
@@ -126,6 +127,8 @@ def _cheapest(fleet: Fleet, plan: Plan, routes: Sequence[_Inserted]) -> Plan | N
 
     def cost(inserted: _Inserted) -> float:
         number, route = inserted
+        if fleet.rules.groups.waiting:  # then the times of other routes may change
+            return sum(map(truediv, plan_lengths(fleet, _exchanged(plan, number, route)), scale))
         of_routes = [*known[:number], route_lengths(fleet, route), *known[number + 1 :]]
         routes = (*plan.routes[:number], route, *plan.routes[number + 1 :])
         lengths = routes_together(fleet, routes, of_routes)
@@ -136,7 +139,11 @@ def _cheapest(fleet: Fleet, plan: Plan, routes: Sequence[_Inserted]) -> Plan | N
     scale = fleet.scale.tolist()
     if not routes:
         return None
-    number, route = min(routes, key=cost)
+    return _exchanged(plan, *min(routes, key=cost))
+
+
+def _exchanged(plan: Plan, number: int, route: Route) -> Plan:
+    """Return a plan with another route of a number, or one more route."""
     return Plan((*plan.routes[:number], route, *plan.routes[number + 1 :]))
 
 
@@ -159,7 +166,7 @@ def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[_Inserted], d
     reasons: dict[int, Broken] = {}
     for number, route in _routes(fleet, plan):
         for extended in _extensions(fleet, route, stop):
-            broken = first_broken(fleet, extended)
+            broken = first_broken(fleet, extended) or _broken_beside(fleet, plan, number, extended)
             if broken is None:
                 found.append((number, extended))
                 continue
@@ -169,6 +176,14 @@ def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[_Inserted], d
             if broken.rule in _SAME_EVERYWHERE and not fleet.rules.vehicles[route.vehicle].reload:
                 break
     return found, reasons
+
+
+def _broken_beside(fleet: Fleet, plan: Plan, number: int, route: Route) -> Broken | None:
+    """Return the first rule that a plan breaks with an exchanged route, if visits wait."""
+    if not fleet.rules.groups.waiting:
+        return None
+    broken = routes_broken(fleet, _exchanged(plan, number, route))
+    return next((each for _, each in broken), None)
 
 
 def _routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:

@@ -38,6 +38,7 @@ def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> 
     _check_totals(rules)
     _refuse(_without_ways(fleet))
     _refuse(_shipped_too_late(rules))
+    _refuse(_waiting_too_long(rules))
     _refuse(_unreachable(fleet, ended))
 
 
@@ -255,6 +256,16 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
         soonest = opens + min(rules.service(k, each.pickup) for k in range(len(rules.vehicles)))
         if pickup.prize is None and is_over(soonest, closes):
             yield Obstacle("delivered-too-early", (each.delivery,), (each.pickup,))
+
+
+def _waiting_too_long(rules: Rules) -> Iterator[Obstacle]:
+    """Yield the stops whose windows close before the visits that they wait for can have ended."""
+    required = set(_required(rules))
+    for (first, then), gap in rules.groups.waiting.items():
+        service = min(rules.service(kind, first) for kind in range(len(rules.vehicles)))
+        soonest = rules.visits[first].windows[0][0] + service + gap
+        if {first, then} <= required and is_over(soonest, rules.windows[then][-1][1]):
+            yield Obstacle("waits-too-long", (then,), (first,))
 
 
 def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:

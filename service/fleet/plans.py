@@ -10,10 +10,18 @@ from service.fleet.rules import Rules
 
 @dataclass(frozen=True)
 class Route:
-    """The visits of one vehicle, in order, without its start and end."""
+    """The visits of one vehicle, in order, without its start and end.
+
+    Args:
+        vehicle: The type of the vehicle.
+        stops: The stops that it visits.
+        bounds: When some of these visits may begin because of those on other routes: the stop, from
+            when on, and until when without delaying another. See with_waits().
+    """
 
     vehicle: int
     stops: tuple[int, ...]
+    bounds: tuple[tuple[int, float, float], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from math import inf
 
 from service.fleet.fleet import Array, Fleet, urgency_of
-from service.fleet.punctuality import deviations_of
+from service.fleet.measures.punctuality import deviations_of
 from service.fleet.rules import Rules
 
 

@@ -17,7 +17,7 @@ from service.fleet.checks import (
     check_vehicle,
     check_visit,
 )
-from service.fleet.groups import NO_GROUPS, Groups, check_groups
+from service.fleet.groups import NO_GROUPS, Groups, check_groups, check_waiting
 from service.fleet.vehicles import ALWAYS, Pace, Shipment, Span, VehicleType, Visit
 
 Array = NDArray[np.float64]
@@ -119,6 +119,13 @@ class Rules:
             self.percents, self._of_clock, self.vehicles, spreads=self.spread is not None
         )
         check_groups(self.groups, self.depots, self.shipped)
+        others = {
+            "shipments": bool(self.shipments),
+            "reload": self.reloads,
+            "breaks": any(vehicle.breaks for vehicle in self.vehicles),
+            "spread": self.spread is not None,
+        }
+        check_waiting(self.groups, timed=self.clock is not None, others=others)
 
     @property
     def _costly_layers(self) -> set[int]:

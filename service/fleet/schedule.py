@@ -1,16 +1,17 @@
-"""The times of a route: when its vehicle leaves, arrives and waits, and how late it is."""
+"""The times of routes: when vehicles leave, arrive and wait, also for each other, and how late."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import pairwise
 from math import inf
+from typing import NamedTuple
 
 from service.fleet.breaks import Stay, place_breaks, with_breaks
 from service.fleet.day_legs import DayLeg
 from service.fleet.day_schedule import times_over_the_day
 from service.fleet.fleet import Fleet
-from service.fleet.plans import Route, path_of
+from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rounding import excess, is_over
 from service.fleet.rules import Rules
 from service.fleet.times import Schedule
@@ -18,6 +19,7 @@ from service.fleet.vehicles import ALWAYS, Span, VehicleType
 
 REMEMBERED = 4096  # latest routes whose times and lengths are known: plans share many routes
 _FREE = Stay((ALWAYS,), 0.0, inf)
+Times = Mapping[int, float]
 
 
 @lru_cache(REMEMBERED)
@@ -174,6 +176,20 @@ def _open_window(windows: Sequence[Span], number: int, time: float, reach: float
     return number
 
 
+@lru_cache(REMEMBERED)
+def earliest_begins(fleet: Fleet, route: Route) -> dict[int, float]:
+    """Return when each visit of a route begins if its vehicle leaves as early as it may.
+
+    The fleet has a clock, and its vehicles have no breaks and do not load again.
+    """
+    rules, vehicle = fleet.rules, fleet.rules.vehicles[route.vehicle]
+    stays = _stays(rules, route, [route.stops])
+    released = max(vehicle.way[0], _released(rules, route.stops))
+    driven = legs(fleet, route, rules.clock or 0)
+    times = _drive(stays, driven, [0] * len(stays), released, vehicle.way[1])
+    return dict(zip(path_of(rules, route), times.begins, strict=True))
+
+
 def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[Stay]:
     """Return what is asked for at each stop of `path_of`.
 
@@ -189,6 +205,10 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
         )
         for stop in route.stops
     ]
+    for stop, since, until in route.bounds:
+        place = route.stops.index(stop)
+        windows, service, due, hold = stays[place]
+        stays[place] = Stay(_open_since(windows, since), service, due, min(hold, until))
     if len(trips) > 1:
         released = iter(trips[1:])
         for place, stop in enumerate(route.stops):
@@ -196,6 +216,12 @@ def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[S
                 stays[place] = Stay(((_released(rules, next(released)), inf),), 0.0, inf)
     start, end = ([] if each is None else [_FREE] for each in (vehicle.start, vehicle.end))
     return [*start, *stays, *end]
+
+
+def _open_since(windows: Sequence[Span], since: float) -> tuple[Span, ...]:
+    """Return the windows of a stop from a time on; all if none is open then."""
+    later = ((max(opens, since), closes) for opens, closes in windows if not is_over(since, closes))
+    return tuple(later) or tuple(windows)
 
 
 def _released(rules: Rules, trip: Sequence[int]) -> float:
@@ -245,3 +271,97 @@ def _leg_of_day(fleet: Fleet, pace: tuple[float, int], a: int, b: int) -> DayLeg
     speed, profile = pace
     assert fleet.rules.clock is not None
     return DayLeg.of(fleet.days[profile][fleet.rules.clock], a, b, speed)
+
+
+class Wait(NamedTuple):
+    """Two stops that a plan visits: the second visit begins a gap after the end of the first."""
+
+    first: int
+    then: int
+    gap: float
+
+
+@lru_cache(REMEMBERED)
+def with_waits(fleet: Fleet, plan: Plan) -> Plan:
+    """Return a plan whose routes know the bounds of the visits that wait for others.
+
+    Every visit begins as early as the order of all routes allows. Then each vehicle leaves as late
+    as delays neither the end of its own route nor a visit on another one.
+    Where visits wait for each other in a circle, some begin before others have ended.
+    """
+    waits = _waits(fleet, plan)
+    if not waits:
+        return plan
+    services = _services(fleet, plan)
+    since: dict[int, float] = {}
+    begins = _begins(fleet, plan, since)
+    for _ in waits:  # a chain of them is as long at most
+        known, since = since, _since(waits, begins, services)
+        if since == known:
+            break
+        begins = _begins(fleet, plan, since)
+    until: dict[int, float] = {}
+    for first, then, gap in waits:
+        latest = begins[then] - gap - services[first]
+        until[first] = min(latest, until.get(first, inf))
+    return Plan(tuple(_bounded(route, since, until) for route in plan.routes))
+
+
+def broken_waits(fleet: Fleet, plan: Plan) -> Iterator[Wait]:
+    """Yield the pairs of visits of a plan, as with_waits() returns it, that keep no order."""
+    waits = _waits(fleet, plan)
+    begins: dict[int, float] = {}
+    for route in plan.routes if waits else ():
+        path = path_of(fleet.rules, route)
+        begins |= zip(path, schedule(fleet, route).begins, strict=True)
+    services = _services(fleet, plan)
+    for each in waits:
+        end = begins[each.first] + services[each.first] + each.gap
+        if is_over(end, begins[each.then]):
+            yield each
+
+
+def _waits(fleet: Fleet, plan: Plan) -> list[Wait]:
+    """Return the visits of a plan that wait for others.
+
+    Where one route has both and there is no gap, the order on the route says it all.
+    """
+    waiting = fleet.rules.groups.waiting
+    if not waiting:
+        return []
+    routes = {stop: number for number, route in enumerate(plan.routes) for stop in route.stops}
+    return [
+        Wait(first, then, gap)
+        for (first, then), gap in waiting.items()
+        if first in routes and then in routes and (gap or routes[first] != routes[then])
+    ]
+
+
+def _services(fleet: Fleet, plan: Plan) -> Times:
+    rules = fleet.rules
+    return {s: rules.service(route.vehicle, s) for route in plan.routes for s in route.stops}
+
+
+def _begins(fleet: Fleet, plan: Plan, since: Times) -> Times:
+    """Return when each visit of a plan begins at the earliest, if some begin no earlier."""
+    begins: dict[int, float] = {}
+    for route in plan.routes:
+        begins |= earliest_begins(fleet, _bounded(route, since, {}))
+    return begins
+
+
+def _since(waits: Sequence[Wait], begins: Times, services: Times) -> dict[int, float]:
+    """Return from when on visits may begin that wait for others."""
+    since: dict[int, float] = {}
+    for first, then, gap in waits:
+        since[then] = max(begins[first] + services[first] + gap, since.get(then, 0.0))
+    return since
+
+
+def _bounded(route: Route, since: Times, until: Times) -> Route:
+    bounds = (
+        (stop, since.get(stop, 0.0), until.get(stop, inf))
+        for stop in route.stops
+        if stop in since or stop in until
+    )
+    return replace(route, bounds=tuple(bounds))

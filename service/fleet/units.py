@@ -74,7 +74,15 @@ class Units:
         )
         slack = _scaled(rules.slack, time)
         tolerance = None if rules.tolerance is None else _scaled(rules.tolerance, time)
-        scaled = replace(rules, visits=visits, vehicles=vehicles, slack=slack, tolerance=tolerance)
+        gaps = tuple(gap and _scaled(gap, time) for gap in rules.groups.gaps)
+        scaled = replace(
+            rules,
+            visits=visits,
+            vehicles=vehicles,
+            slack=slack,
+            tolerance=tolerance,
+            groups=replace(rules.groups, gaps=gaps),
+        )
         return cls(fleet.scaled(scaled, shifts), shifts)
 
     def points(self, points: Array) -> Array:

@@ -11,19 +11,19 @@ from paretour.choice import balances, losses
 from pydantic_core import to_json
 
 from service.errors import Fault, NoTour, Refusal
-from service.fleet.carried import most_carried
 from service.fleet.evaluation import (
-    first_broken,
     measures,
     plan_lengths,
     route_lengths,
+    routes_broken,
     unassigned,
 )
 from service.fleet.fleet import Fleet
 from service.fleet.left_out import Serving, explain
+from service.fleet.measures.carried import most_carried
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, kept_share, path_of
-from service.fleet.schedule import legs, schedule
+from service.fleet.schedule import legs, schedule, with_waits
 from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Tools
 from service.objectives import OBJECTIVES
@@ -223,7 +223,7 @@ def document_of_plans(
 
 def _lengths_of(fleet: Fleet, driven: Plan) -> list[float] | None:
     """Return the lengths of the rest of a plan that is driven; None if it cannot go on so."""
-    if any(first_broken(fleet, route) for route in driven.routes):
+    if any(True for _ in routes_broken(fleet, driven)):
         return None
     return list(plan_lengths(fleet, driven))
 
@@ -239,6 +239,7 @@ def _encode_plan(
     names: Names,
     servings: Sequence[Serving],
 ) -> bytes:
+    plan = with_waits(fleet, plan)
     content = {
         **members,
         "measures": measures(fleet, plan),

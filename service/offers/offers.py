@@ -12,7 +12,6 @@ from typing import get_args
 
 import numpy as np
 
-from service.fleet.carried import load_distance
 from service.fleet.evaluation import (
     Broken,
     first_broken,
@@ -22,6 +21,7 @@ from service.fleet.evaluation import (
 )
 from service.fleet.fleet import Array, Fleet
 from service.fleet.left_out import Reason, with_stop
+from service.fleet.measures.carried import load_distance
 from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rules import Rule
 from service.fleet.schedule import legs, schedule

@@ -29,6 +29,9 @@ _CANDIDATES = 8  # cities that may follow each
 _KINDS = 4 * (_LONGEST_PART + 1)  # of moves
 _LEAST_GAIN = 1e-12  # of the value of a tour
 _NEAR = 8  # places: how far apart the ends of the parts are that are swapped at random
+_WARMTH = 0.05  # of a tour's mean leg: by how much worse a changed tour may be that is kept
+_PARENTS = 10
+_FINE = 2**20  # steps of a random number between 0 and 1
 
 
 class WeightedSearch(NamedTuple):
@@ -36,9 +39,11 @@ class WeightedSearch(NamedTuple):
 
     `candidates`: shape (n, k), the cities that are cheap to go to from each. `dirty`: by city,
     whether moves at it have to be tried. `places`: the first place that may change, and the one
-    after the last. `cursor`: where to look for the next dirty city. `saved` and `saved_value`: the
-    best tour, and what `DrivenTour.value` was. `random`: the state of the random numbers.
-    `archive`: is offered every tour on the way.
+    after the last. `cursor`: where to look for the next dirty city. `kept` and `kept_value`: the
+    tour that is changed next, and what `DrivenTour.value` was; `saved` and `saved_value`: those of
+    the best one. `parents`, `parent_values` and `bred`: tours that are crossed, their values, how
+    many there are, and how many children in a row were not among them. `random`: the state of the
+    random numbers. `archive`: is offered every tour on the way.
     """
 
     walk: DrivenTour
@@ -48,8 +53,13 @@ class WeightedSearch(NamedTuple):
     dirty: NDArray[np.bool_]
     places: NDArray[np.int64]
     cursor: NDArray[np.int64]
+    kept: Cities
+    kept_value: Array
     saved: Cities
     saved_value: Array
+    parents: NDArray[np.int32]
+    parent_values: Array
+    bred: NDArray[np.int64]
     random: NDArray[np.int64]
     archive: Archive
 
@@ -87,8 +97,13 @@ def make_weighted_search(
         dirty=np.zeros(n, np.bool_),
         places=np.array(places),
         cursor=np.zeros(1, np.int64),
+        kept=np.zeros(n, np.int32),
+        kept_value=np.zeros(2),
         saved=np.zeros(n, np.int32),
         saved_value=np.zeros(2),
+        parents=np.zeros((_PARENTS, n), np.int32),
+        parent_values=np.zeros(_PARENTS),
+        bred=np.zeros(2, np.int64),
         random=np.array([seed], np.int64),
         archive=archive,
     )
@@ -103,8 +118,17 @@ def take(search: WeightedSearch, tour: Cities, departure: float) -> None:
 
 
 @compiled
+def keep(search: WeightedSearch) -> None:
+    """Remember the tour as the one to change next."""
+    for k in range(len(search.kept)):
+        search.kept[k] = search.walk.tour[k]
+    search.kept_value[0], search.kept_value[1] = search.walk.value
+
+
+@compiled
 def save(search: WeightedSearch) -> None:
-    """Remember the tour as the best one."""
+    """Remember the tour as the best one, and as the one to change next."""
+    keep(search)
     for k in range(len(search.saved)):
         search.saved[k] = search.walk.tour[k]
     search.saved_value[0], search.saved_value[1] = search.walk.value
@@ -137,16 +161,35 @@ def descend(search: WeightedSearch, steps: int) -> bool:
 
 @compiled
 def iterate(search: WeightedSearch, steps: int) -> None:
-    """Change the best tour at random and descend, `steps` times; go back from worse results."""
+    """Change a tour at random and descend, `steps` times; go back from much worse results.
+
+    How much worse a result may be is random (Metropolis et al., 1953).
+    """
     for _ in range(steps):
         if not perturb(search):
             return
-        while not descend(search, len(search.dirty)):
-            pass
-        if search.walk.value[0] <= search.saved_value[0]:
+        descend_fully(search)
+        value = search.walk.value[0]
+        if value < search.saved_value[0]:
             save(search)
+        elif value <= search.kept_value[0] + warmth(search):
+            keep(search)
         else:
-            load(search.walk, search.traffic, search.weights, search.saved, search.saved_value[1])
+            load(search.walk, search.traffic, search.weights, search.kept, search.kept_value[1])
+
+
+@compiled
+def descend_fully(search: WeightedSearch) -> None:
+    """Descend to a local optimum."""
+    while not descend(search, len(search.dirty)):
+        pass
+
+
+@inlined
+def warmth(search: WeightedSearch) -> float:
+    """Return by how much worse than the kept tour one may be, this time."""
+    chance = (1 + random_below(search.random, _FINE)) / _FINE
+    return -np.log(chance) * _WARMTH * search.kept_value[0] / len(search.kept)
 
 
 @compiled

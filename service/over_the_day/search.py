@@ -1,7 +1,7 @@
 """The search over the day: all tours of a few stops; else weighted sums, one after another."""
 
 from collections.abc import Iterator
-from itertools import chain, count, permutations
+from itertools import cycle, permutations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from service.instance import tour_lengths
 from service.jit import compiled
+from service.over_the_day.breeding import CHANGES, breed
 from service.over_the_day.day import Day
 from service.over_the_day.descent import (
     WeightedSearch,
@@ -39,6 +40,8 @@ Tours = NDArray[np.integer]
 MOST_TRIED = 8  # stops: of up to as many, all tours are tried
 WEIGHTS = {2: 24, 3: 45, 4: 60}  # weighted sums, by the number of objectives
 PATIENCE = 1_000  # iterations per stop without a new tour, after which the search has converged
+_ENDS_EVERY = 4  # visits of weights: one of them is of an objective that changes over the day
+_MOST_BRED = 60  # stops: of up to as many, tours are crossed under one objective alone
 _TRIED_AT_ONCE = 100  # tours
 _CITIES_AT_ONCE = 20  # of a descent
 _VISITS_AT_ONCE = 10_000  # of iterations: some milliseconds
@@ -88,8 +91,11 @@ class DaySearch:
         instance = self._instance
         self._archive = make_archive(instance.n, instance.objectives)
         shares = weights(spread(WEIGHTS[instance.objectives], instance.objectives))
-        self._weights = shares / instance.scale
-        self._seeds = np.random.default_rng(seed).integers(1, 2**63 - 1, len(shares))
+        ends = [each == day.clock or costs.changes for each, costs in enumerate(day.costs)]
+        self._ends = sum(ends)
+        alone = np.eye(instance.objectives)[ends]
+        self._weights = np.concatenate((alone, shares)) / instance.scale
+        self._seeds = np.random.default_rng(seed).integers(1, 2**63 - 1, len(self._weights))
         self._searches: dict[int, WeightedSearch] = {}
 
     @property
@@ -148,15 +154,22 @@ class DaySearch:
             yield 0
 
     def _search_weights(self) -> Iterator[int]:
-        order = chain.from_iterable(range(len(self._weights)) for _ in count())
         last, unchanged = -1, 0
-        for index in order:
+        for index in self._order():
             for done in self._improve(index):
                 yield done
                 unchanged = 0 if self._archive.counts[2] != last else unchanged + done
                 last = self._archive.counts[2]
             if unchanged > PATIENCE * self._instance.n:
                 return
+
+    def _order(self) -> Iterator[int]:
+        """Yield the weights again and again, those of one objective alone more often."""
+        ends = cycle(range(self._ends))
+        for visit, index in enumerate(cycle(range(self._ends, len(self._weights)))):
+            if visit % (_ENDS_EVERY - 1) == 0:
+                yield next(ends)
+            yield index
 
     def _improve(self, index: int) -> Iterator[int]:
         """Descend from the best tour under a weight, then iterate from there."""
@@ -175,7 +188,10 @@ class DaySearch:
             save(search)
         if not first_time:
             iterations = max(1, _VISITS_AT_ONCE // self._instance.n)
-            iterate(search, iterations)
+            if index < self._ends and self._instance.n <= _MOST_BRED:
+                breed(search, max(1, iterations // CHANGES))
+            else:
+                iterate(search, iterations)
             yield iterations
         self._leave_better(search)
 

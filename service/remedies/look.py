@@ -19,6 +19,7 @@ from service.remedies.times import (
     longer_routes,
     longer_shifts,
     no_slack,
+    no_waits,
 )
 from service.remedies.vehicles import (
     larger_vehicles,
@@ -52,6 +53,7 @@ _KINDS: tuple[Look, ...] = (
     any_vehicle,
     larger_vehicles,
     no_slack,
+    no_waits,
 )
 _KINDS_OF_REST: tuple[Look, ...] = (leave_out, send_more, longer_shifts, later_windows, no_slack)
 # Plans a fleet within some seconds, and raises a refusal if it finds no plan.

@@ -10,7 +10,7 @@ from service.errors import CityNames, Remedy
 from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, path_of
 from service.fleet.rules import Rules
-from service.fleet.schedule import schedule
+from service.fleet.schedule import schedule, with_waits
 from service.fleet.vehicles import VehicleType
 from service.remedies.amounts import time_rounded_up
 from service.remedies.asked import AskedFleet, Members, Try, least_that_works
@@ -102,7 +102,7 @@ def _fewest_late(asked: AskedFleet, front: FleetFront, closing: Sequence[int]) -
 def _late_of(asked: AskedFleet, fleet: Fleet, plan: Plan, closing: Sequence[int]) -> list[int]:
     arrivals = {
         stop: arrival
-        for route in plan.routes
+        for route in with_waits(fleet, plan).routes
         for stop, arrival in zip(
             path_of(fleet.rules, route), schedule(fleet, route).arrivals, strict=True
         )
@@ -116,6 +116,18 @@ def no_slack(asked: AskedFleet, tried: Try) -> Remedy | None:
     if not asked.rules.slack or tried(replace(asked.rules, slack=0.0)) is None:
         return None
     return Remedy("no-slack", (put("/slack", 0.0),), {})
+
+
+def no_waits(asked: AskedFleet, tried: Try) -> Remedy | None:
+    """Let no visit wait for those of other vehicles; the order on each route stays."""
+    groups = asked.rules.groups
+    if not groups.waiting or tried(replace(asked.rules, groups=replace(groups, gaps=()))) is None:
+        return None
+    items = [f"/before/{index}" for index, gap in enumerate(groups.gaps) if gap is not None]
+    changes = (
+        put(f"{item}/{k}", v) for item in items for k, v in (("vehicles", "one"), ("gap", 0))
+    )
+    return Remedy("no-waits", tuple(changes), {})
 
 
 def longer_routes(asked: AskedFleet, tried: Try) -> Remedy | None:

@@ -25,16 +25,14 @@ from service.requests.fields import (
     optional,
 )
 from service.requests.fleet_fields import (
-    ApartItem,
-    BeforeItem,
     Clock,
     ClockItem,
     FleetObjectiveItem,
     FleetStopItem,
-    References,
     ShipmentItem,
     VehicleItem,
 )
+from service.requests.group_fields import ApartItem, BeforeItem, References
 from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
 from service.requests.profile_fields import (
     Profile,
@@ -81,7 +79,8 @@ class FleetRequest(SearchFields):
         default_factory=list, description="stops that must not be on one route"
     )
     before: Annotated[list[BeforeItem], _SOME_GROUPS] = Field(
-        default_factory=list, description="stops that come before others on one route"
+        default_factory=list,
+        description="stops that come before others, on one route or whoever drives",
     )
     clock: Clock | None = Field(
         default=None,
@@ -216,6 +215,9 @@ class FleetRequest(SearchFields):
         if named is not None:
             names = [item.name for item in self.objectives]
             check_in_seconds(named, "clock" if own else f"objectives/{names.index(named.name)}")
+        for index, each in enumerate(self.before):
+            if each.vehicles == "any":
+                raise invalid(f"before/{index}/vehicles", "waits-over-the-day")
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
         """Return the groups of stops.
@@ -240,6 +242,7 @@ class FleetRequest(SearchFields):
                 (found(each.first, f"before/{i}/first"), found(each.then, f"before/{i}/then"))
                 for i, each in enumerate(self.before)
             ),
+            gaps=tuple(each.least_gap(f"before/{i}") for i, each in enumerate(self.before)),
         )
 
     @property

@@ -36,7 +36,6 @@ _MOST_SHIFTS = 31
 _MOST_RELOADS = 20
 _MOST_SKILLS = 50
 _MOST_BREAKS = 10
-_MOST_IN_GROUP = 100
 _MOST_SERVICES = 100
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
 Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
@@ -163,33 +162,6 @@ class ShipmentItem(StrictModel):
         """
         pickup = find_index(self.pickup, ids, f"{part}/pickup", len(ids))
         return Shipment(pickup, find_index(self.delivery, ids, f"{part}/delivery", len(ids)))
-
-
-References = Annotated[
-    list[StopReference], Field(min_length=1, max_length=_MOST_IN_GROUP, fail_fast=True)
-]
-
-
-class ApartItem(StrictModel):
-    """Stops that must not ride with each other, or with others."""
-
-    stops: References = Field(description="by index or id")
-    others: Annotated[list[StopReference], Field(max_length=_MOST_IN_GROUP, fail_fast=True)] = (
-        Field(
-            default_factory=list,
-            description="by index or id: no vehicle visits one of these and one of `stops`;"
-            " without any, no vehicle visits two of `stops`",
-        )
-    )
-
-
-class BeforeItem(StrictModel):
-    """Stops that come first on a route, and others that come then."""
-
-    first: References = Field(description="by index or id")
-    then: References = Field(
-        description="by index or id: on a route after all of `first` that are on it"
-    )
 
 
 class BreakItem(StrictModel):

@@ -37,6 +37,7 @@ _NAMES = (
     "load",
     "networks",
     "open_routes",
+    "optima",
     "page",
     "public",
     "replan",

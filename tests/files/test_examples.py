@@ -123,6 +123,11 @@ OTHERS = {
         apart=[{"stops": ["B"], "others": ["A1", "A2"]}],
         before=[{"first": ["A1"], "then": ["B"]}],
     ),
+    "waits-for.csv": fleet(
+        "D A1 A2 B",
+        before=[{"first": ["A1", "A2"], "then": ["B"], "vehicles": "any"}],
+        clock="time",
+    ),
     "assigned.csv": fleet(
         "home boiler_1 boiler_2 roof",
         "vehicle",

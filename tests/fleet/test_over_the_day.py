@@ -9,7 +9,7 @@ import pytest
 from service.fleet.evaluation import first_broken, points_of, route_violations, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
-from service.fleet.of_times import overtime
+from service.fleet.measures.of_times import overtime
 from service.fleet.plans import FleetFront, Route
 from service.fleet.schedule import legs, schedule
 from service.fleet.search.search import RuinSearch

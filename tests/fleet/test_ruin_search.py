@@ -26,6 +26,7 @@ from tests.helpers.fleets import (
     taking_fleet,
     tidy_fleet,
     varied_fleet,
+    waiting_fleet,
 )
 from tests.helpers.sampled import third
 
@@ -40,7 +41,7 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
     "fleet_of",
     [
         *(random_fleet, bounded_fleet, mixed_fleet, shipping_fleet),
-        *(tidy_fleet, varied_fleet, taking_fleet, spreading_fleet),
+        *(tidy_fleet, varied_fleet, taking_fleet, spreading_fleet, waiting_fleet),
     ],
 )
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(

@@ -7,6 +7,7 @@ import numpy as np
 
 from tests.benchmarks.day_table import day_table
 from tests.benchmarks.markdown import table
+from tests.benchmarks.optima_table import optima_table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.roads import roads_table
 from tests.benchmarks.scale_table import scale_table
@@ -26,6 +27,7 @@ def figures() -> dict[str, tuple[Path, str]]:
         "times": (limits, times_table()),
         "scale": (quality, scale_table()),
         "road-times": (limits, roads_table(load("roads"))),
+        "optima": (quality, optima_table()),
         "day": (GUIDE / "plan-around-the-rush-hour.md", day_table()),
     }
 

@@ -178,6 +178,22 @@ def grouped_fleet(seed: int) -> Fleet:
     return fleet.under(dataclasses.replace(rules, groups=groups, vehicles=vehicles))
 
 
+def waiting_fleet(seed: int) -> Fleet:
+    """Return a fleet of three or four stops some of whose visits wait for others."""
+    fleet = _bounded(seed, *MIXED[seed % len(MIXED)], least=3)
+    random, rules = np.random.default_rng([seed, 3]), fleet.rules
+    vehicles = tuple(
+        dataclasses.replace(each, reload=(), max_trips=None, breaks=()) for each in rules.vehicles
+    )
+    rules = dataclasses.replace(rules, vehicles=vehicles)
+    order = random.permutation(rules.clients).tolist()
+    pairs = [((order[0],), (order[1],)), ((order[1],), (order[2],)), ((order[0],), (order[2],))]
+    chosen = random.permutation(3)[: int(random.integers(1, 4))].tolist()
+    gaps = random.choice([0.0, 0.0, 4.0, 15.0], len(chosen)).tolist()
+    groups = Groups(before=tuple(pairs[each] for each in chosen), gaps=tuple(gaps))
+    return fleet.under(dataclasses.replace(rules, groups=groups))
+
+
 def varied_fleet(seed: int) -> Fleet:
     """Return one of the others with vehicles of different speeds, times at stops and prices."""
     makers = (random_fleet, bounded_fleet, mixed_fleet, shipping_fleet)

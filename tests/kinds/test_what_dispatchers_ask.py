@@ -542,6 +542,52 @@ def test_what_a_vehicle_has_visited_counts_while_the_fleet_is_replanned() -> Non
     }
 
 
+CREWS = {
+    "wires": {"at": EAST, "service": 30, "skills": ["wires"]},
+    "paint": {"at": EAST, "vehicle": "van"},
+}
+
+
+def with_crews(**wait: Any) -> Json:
+    """Return a request of an electrician and a painter, who are wanted at the same house."""
+    request = fleet(CREWS, before=[{"first": ["wires"], "then": ["paint"], **wait}])
+    electrician = {**request["vehicles"][0], "id": "electrician", "skills": ["wires"]}
+    return {**request, "vehicles": [*request["vehicles"], electrician]}
+
+
+@pytest.mark.parametrize(
+    ("wait", "end"),
+    # On one route alone the order counts; then the wires must be done, or the plaster dry.
+    [({}, 10), ({"vehicles": "any"}, 40), ({"vehicles": "any", "gap": 50}, 90)],
+)
+def test_a_vehicle_waits_until_another_is_done(wait: Json, end: float) -> None:
+    plan = planned(with_crews(**wait))
+    ends = {
+        stop: end for r in plan["routes"] for stop, end in zip(r["stops"], r["ends"], strict=True)
+    }
+    assert (ends["wires"], ends["paint"]) == (40, end)
+    assert plan["measures"]["waiting"] == 0  # the painter leaves later instead
+
+
+@pytest.mark.parametrize(("done", "begins"), [([], 100), (["wires"], 90)])
+def test_a_gap_counts_from_a_visit_that_is_done(done: list[str], begins: float) -> None:
+    request = with_crews(vehicles="any", gap=50)
+    task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
+    front = run_fleet(task.subject, task, Tools({}, LIMITS), Watch())
+    [*plans] = json.loads(front.json(id="", status="done"))["front"]
+    begun = next(i for i, r in enumerate(plans[0]["routes"]) if r["vehicle"] == "electrician")
+    routes = [{"route": begun, "done": done}] if done else []
+    changes = {"plan": 0, "now": 45 if done else 10, "routes": routes}
+    source = ReplanSource(json.dumps(changes).encode(), StoredFront("", encode_task(task), front))
+    rest = parse_replan(source, LIMITS, {})
+    document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+    [plan, *_] = json.loads(document.json(id="", status="done"))["front"]
+    ends = {
+        stop: end for r in plan["routes"] for stop, end in zip(r["stops"], r["ends"], strict=True)
+    }
+    assert ends["paint"] == begins
+
+
 def over_the_day(request: Json, **members: Any) -> Json:
     """Return a request whose travel times change over the day."""
     time, *others = request["objectives"]

@@ -255,6 +255,31 @@ def closing(arrives: str, closes: str, stop: str) -> dict[str, Any]:
     return {**visit(arrives, arrives, stop=stop), "closes": at(closes), "by": at(closes)}
 
 
+WAITING = """async (before) => {
+  const { knownFleet } = await import("./page/fleet/known_fleet.js");
+  const { visitTimes } = await import("./page/fleet/visit_times.js");
+  const { visitSentence } = await import("./page/fleet/visit_sentence.js");
+  const stops = ["A", "C", "B"].map((id) => ({ id }));
+  const known = knownFleet({ stops, vehicles: [{ id: "van" }], before });
+  const route = { vehicle: "van", stops: ["B"], arrivals: [5], ends: [20] };
+  const visits = visitTimes(route, known).map((visit) => ({ ...visit, closing: "" }));
+  const clock = { said: (time) => `${time} h`, lasting: (time) => `${time} h` };
+  return visitSentence({ name: "van", visits }, 0, clock);
+}"""
+
+
+@pytest.mark.parametrize(
+    ("before", "said"),
+    [
+        ([{"first": [0], "then": ["B"], "vehicles": "any"}], "waits 15 h until A is done."),
+        ([{"first": [0, "C"], "then": [2], "vehicles": "any"}], "until A and C are done."),
+        ([{"first": [0], "then": ["B"]}], "arrives at 5 h."),  # on one route
+    ],
+)
+def test_a_vehicle_waits_until_others_are_done(node: Node, before: list[Any], said: str) -> None:
+    assert node.evaluate(WAITING, before).endswith(said)
+
+
 NOTE = """async (visits) => {
   const { departureNote } = await import("./page/fleet/visit_sentence.js");
   const minutes = (time) => String((time / 60) % 60).padStart(2, "0");

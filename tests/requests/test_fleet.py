@@ -149,6 +149,8 @@ REFUSED = [
     ("together", [["stop-5", "stop-0"]], "/together/0"),
     ("together", [["stop-5", "stop-3"]], "/together/0"),
     ("before", [{"first": ["stop-5"], "then": []}], "/before/0/then"),
+    ("before", [{"first": [5], "then": [6], "gap": 9}], "/before/0/gap"),
+    ("before", [{"first": [5], "then": [6], "vehicles": "any"}], "/before/0/vehicles"),
     ("apart", [{"stops": ["stop-5", "stop-9"]}], "/apart/0/stops/1"),
     ("promised", {"routes": []}, "/promised/routes"),
     ("promised", promised("car", "stop-1"), "/promised/routes/0/vehicle"),

@@ -193,10 +193,12 @@ class ApartRequest(TypedDict, total=False):
 
 
 class BeforeRequest(TypedDict, total=False):
-    """Stops that come first on a route, and others that come then."""
+    """Stops that come first, and others that come then."""
 
     first: Required[Sequence[int | str] | ArrayLike]
     then: Required[Sequence[int | str] | ArrayLike]
+    vehicles: Literal["one", "any"]
+    gap: float
 
 
 # The source of travel times that are not an objective, maybe over the day.

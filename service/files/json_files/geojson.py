@@ -10,7 +10,7 @@ from service.files.column_names import FLEET, field_of_each
 from service.files.columns import Columns, columns_of, place_in
 from service.files.depots import for_stops
 from service.files.fleets import Stop, Vehicle, fleet_of_tables, have_times
-from service.files.groups import groups_of
+from service.files.groups import groups_of, have_waits
 from service.files.json_files.records import check_lists, is_place, members_of
 from service.files.reading import Reading, Request, Source, quoted
 from service.files.stop_tables import reading_of_columns, visits_of
@@ -78,14 +78,16 @@ def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Mapping[str, Any]:
     stops, _ = visits_of(columns)
     add_visits(columns, stops)
     groups = groups_of(columns, stops)
+    waits = have_waits(groups)
     vehicles: list[Vehicle] = rest.get("vehicles", [])
     if "vehicles" not in rest:
         stops, vehicles = for_stops(columns, stops, None)
     columns.report()
     if "objectives" not in rest:
-        return {**fleet_of_tables(columns.source, stops, vehicles, None), **groups}
+        tables = fleet_of_tables(columns.source, stops, vehicles, None, waits=waits)
+        return {**tables, **groups}
     request: dict[str, Any] = {"stops": stops, "vehicles": vehicles, **groups}
-    if have_times(stops, vehicles) and "clock" not in rest:
+    if (waits or have_times(stops, vehicles)) and "clock" not in rest:
         request["clock"] = _clock(columns, rest["objectives"])
     return request
 

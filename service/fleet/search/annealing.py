@@ -3,19 +3,26 @@
 import math
 
 from service.fleet.rounding import is_over
-from service.fleet.search.changes import begin_iteration, measure_changed, restore
+from service.fleet.search.changes import begin_iteration, measure_changed
 from service.fleet.search.ejection import eject
 from service.fleet.search.found import Found, offer
 from service.fleet.search.other_vehicle import SELDOM, change_vehicles, choose_type
 from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_outside
+from service.fleet.search.route import measure
 from service.fleet.search.rows import write_point
 from service.fleet.search.ruin import ruin, uniform
 from service.fleet.search.values import lacking, values_of
+from service.fleet.search.waits import settle
 from service.fleet.search.working_plan import (
     MISSING,
     MORE_TRIPS,
+    OUTSIDE,
+    SAVED,
+    SAVED_OUTSIDE,
     USED,
     State,
+    leave_out,
+    take_in,
     total_cost,
 )
 from service.jit import compiled, inlined
@@ -55,14 +62,15 @@ def anneal(
         begin_iteration(plan)
         lacked = plan.counts[MISSING] > 0
         _make_another(state)
+        kept = not problem.waits.given or settle(state, False)
         exceeding = _beyond(state, found)
         after = total_cost(plan) + exceeding
         lacks = plan.counts[MISSING] > 0
         if lacks and (lacked or not direction.steady):
             raise_prices(state)
-        if not lacks and keeps_rules(state):
+        if not lacks and kept and keeps_rules(state):
             offer(problem, plan, found)
-        if after > before - heat * math.log(uniform(plan.random)):
+        if not kept or after > before - heat * math.log(uniform(plan.random)):
             restore(state)
         else:
             beyond = exceeding
@@ -126,3 +134,35 @@ def _beyond(state: State, found: Found) -> float:
             excess = found.point[objective] - direction.bounds[objective]
             cost += direction.strict[objective] * excess
     return cost
+
+
+@inlined
+def restore(state: State) -> None:
+    """Return to the plan before this iteration."""
+    problem, plan, _ = state
+    counts, n = plan.counts, len(problem.demand)
+    while counts[OUTSIDE] > 0:
+        take_in(problem, plan, plan.outside[counts[OUTSIDE] - 1])
+    for place in range(counts[SAVED_OUTSIDE]):
+        stop = plan.saved_outside[place]
+        leave_out(problem, plan, stop)
+        plan.route[stop] = plan.via[stop] = -1
+        if problem.delivery[stop] >= 0:
+            plan.route[problem.delivery[stop]] = -1
+    first = 0
+    for number in range(counts[SAVED]):
+        slot = plan.saved[number]
+        start, end = n + 2 * slot, n + 2 * slot + 1
+        before = start
+        for place in range(first, first + plan.saved_size[number]):
+            stop = plan.saved_stops[place]
+            plan.next[before], plan.previous[stop] = stop, before
+            plan.route[stop] = slot
+            plan.via[stop] = plan.saved_via[place]
+            before = stop
+        plan.next[before], plan.previous[end] = end, before
+        first += plan.saved_size[number]
+    for number in range(counts[SAVED]):  # once all know again which stops ride with them
+        measure(state, plan.saved[number])
+    if problem.waits.given:
+        settle(state, True)

@@ -11,8 +11,6 @@ from service.fleet.search.working_plan import (
     STAMP,
     State,
     WorkingPlan,
-    leave_out,
-    take_in,
 )
 from service.jit import inlined
 
@@ -55,33 +53,3 @@ def measure_changed(state: State) -> None:
     if problem.clock < 0 and direction.load_distance == 0:
         for number in range(plan.counts[SAVED]):
             measure(state, plan.saved[number])
-
-
-@inlined
-def restore(state: State) -> None:
-    """Return to the plan before this iteration."""
-    problem, plan, _ = state
-    counts, n = plan.counts, len(problem.demand)
-    while counts[OUTSIDE] > 0:
-        take_in(problem, plan, plan.outside[counts[OUTSIDE] - 1])
-    for place in range(counts[SAVED_OUTSIDE]):
-        stop = plan.saved_outside[place]
-        leave_out(problem, plan, stop)
-        plan.route[stop] = plan.via[stop] = -1
-        if problem.delivery[stop] >= 0:
-            plan.route[problem.delivery[stop]] = -1
-    first = 0
-    for number in range(counts[SAVED]):
-        slot = plan.saved[number]
-        start, end = n + 2 * slot, n + 2 * slot + 1
-        before = start
-        for place in range(first, first + plan.saved_size[number]):
-            stop = plan.saved_stops[place]
-            plan.next[before], plan.previous[stop] = stop, before
-            plan.route[stop] = slot
-            plan.via[stop] = plan.saved_via[place]
-            before = stop
-        plan.next[before], plan.previous[end] = end, before
-        first += plan.saved_size[number]
-    for number in range(counts[SAVED]):  # once all know again which stops ride with them
-        measure(state, plan.saved[number])

@@ -15,8 +15,8 @@ from math import inf
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet
+from service.fleet.measures.punctuality import deviations_of
 from service.fleet.necessary import fewest_vehicles, least_longest
-from service.fleet.punctuality import deviations_of
 from service.fleet.search.problem import Direction
 from service.objectives import OBJECTIVES
 

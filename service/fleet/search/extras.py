@@ -1,18 +1,20 @@
-"""The arrays of a fleet that few measures read: what is near, is promised, or spreads."""
+"""The arrays of a fleet that few need: neighbours, promises, spreads, and visits that wait."""
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
-from service.fleet.overlap import Nearness, nearness
-from service.fleet.punctuality import deviations_of
+from service.fleet.measures.overlap import Nearness, nearness
+from service.fleet.measures.punctuality import deviations_of
 from service.fleet.rules import Rules
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Nodes = NDArray[np.int32]
+Flags = NDArray[np.bool_]
 NO_PROMISE = -2
 
 
@@ -34,6 +36,65 @@ class Extras(NamedTuple):
     latest: Array  # (n, w), after which a visit is late that keeps a window: see Problem.windows
     deviations: Array  # (m,), above the mean up to a percentile; -1 where there is none
     most_deviations: float  # of the objective that is a maximum
+
+
+class Waits(NamedTuple):
+    """The pairs of n stops whose second visit waits for the first, whoever drives.
+
+    The windows of these stops in `Problem` are what the plan that is changed leaves of their own:
+    from `since` to `until`.
+    """
+
+    given: bool  # whether there are any
+    stops: Nodes  # (p,), all stops of these pairs
+    firsts: Nodes  # (n, x), for which the visit of each stop waits; -1 after the last
+    first_gaps: Array  # (n, x), how long it waits after each
+    thens: Nodes  # (n, y), those that wait for it; -1 after the last
+    then_gaps: Array  # (n, y)
+    windows: Array  # (n, w, 2), the windows of the stops themselves
+    since: Array  # (n,), from when on each visit may begin
+    until: Array  # (n,), and until when, so that no other begins later than it does
+    settled: Array  # (n,), scratch space: the same before
+    stale: Flags  # (r,), scratch space: the routes to measure again
+
+
+def waits_of(rules: Rules, windows: Array, routes: int) -> Waits:
+    """Return the pairs of stops whose visits wait, if there are any.
+
+    Args:
+        rules: The rules.
+        windows: The windows of n stops, shape (n, w, 2).
+        routes: The most routes of a plan.
+    """
+    waiting = rules.groups.waiting
+    n = rules.n if waiting else 1
+    firsts: list[dict[int, float]] = [{} for _ in range(n)]
+    thens: list[dict[int, float]] = [{} for _ in range(n)]
+    for (first, then), gap in waiting.items():
+        firsts[then][first] = thens[first][then] = gap
+    return Waits(
+        given=bool(waiting),
+        stops=np.array(sorted({stop for pair in waiting for stop in pair}), np.int32),
+        firsts=_filled(firsts, lambda each: [*each], -1).astype(np.int32),
+        first_gaps=_filled(firsts, lambda each: [*each.values()], 0.0),
+        thens=_filled(thens, lambda each: [*each], -1).astype(np.int32),
+        then_gaps=_filled(thens, lambda each: [*each.values()], 0.0),
+        windows=windows.copy() if waiting else np.empty((n, 1, 2)),
+        since=np.zeros(n),
+        until=np.full(n, np.inf),
+        settled=np.full(n, np.inf),
+        stale=np.zeros(routes if waiting else 1, np.bool_),
+    )
+
+
+def _filled(
+    rows: Sequence[dict[int, float]], values: Callable[[dict[int, float]], list[float]], rest: float
+) -> Array:
+    """Return a row of numbers for each of these, filled up to one length."""
+    filled = np.full((len(rows), max(1, *map(len, rows))), rest)
+    for row, each in zip(filled, rows, strict=True):
+        row[: len(each)] = values(each)
+    return filled
 
 
 def extras_of(fleet: Fleet) -> Extras:

@@ -8,6 +8,7 @@ from service.fleet.search.problem import (
     Problem,
 )
 from service.fleet.search.spots import Place, Spot, better_at, nowhere
+from service.fleet.search.waits import bound
 from service.fleet.search.working_plan import (
     BLINKS,
     MORE_TRIPS,
@@ -123,6 +124,8 @@ def has_room(problem: Problem, plan: WorkingPlan, stop: int, slot: int) -> bool:
     """Return whether a vehicle may be able to carry one more stop's load."""
     kind = problem.kind[slot]
     fits = True
+    if problem.waits.given:
+        bound(problem, plan, stop, slot)
     if problem.grouped and not may_join(problem, plan, stop, slot):
         return False
     if problem.takes and not _may_take(problem, plan, stop, slot):

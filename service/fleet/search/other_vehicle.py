@@ -6,6 +6,7 @@ from service.fleet.search.changes import save_slot
 from service.fleet.search.problem import Problem
 from service.fleet.search.route import measure
 from service.fleet.search.values import route_cost, values_of
+from service.fleet.search.waits import bound
 from service.fleet.search.working_plan import (
     SAVED,
     TYPE,
@@ -150,3 +151,8 @@ def _move(problem: Problem, plan: WorkingPlan, slot: int, other: int) -> None:
     while node != to + 1:
         plan.route[node] = other
         node = plan.next[node]
+    if problem.waits.given:  # once all know which stops ride with them
+        node = first
+        while node != to + 1:
+            bound(problem, plan, node, other)
+            node = plan.next[node]

@@ -10,7 +10,7 @@ from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
 from service.fleet.rules import Measure, Over, Rules
 from service.fleet.search.day import FleetDay, day_of
-from service.fleet.search.extras import Extras, extras_of
+from service.fleet.search.extras import Extras, Waits, extras_of, waits_of
 from service.fleet.vehicles import Pace, VehicleType
 from service.jit import by_reference
 
@@ -109,6 +109,7 @@ class Problem(NamedTuple):
     rivals: Nodes  # (n, y), the stops that must not ride with each; -1 after the last
     ordered: bool  # whether stops have an order
     earlier: Flags  # (n, n), whether the first comes before the second; (1, 1) if none does
+    waits: Waits  # where there are any, `windows`, `opens` and `closes` change with the plan
     grows: bool  # whether a route with one more stop costs as much as its legs alone, at least
     bounded_below: bool  # whether a route may have too few stops, or be too short
     min_stops: Indices  # (v,)
@@ -205,6 +206,7 @@ def problem_of(fleet: Fleet) -> Problem:
         rivals=_rivals(rules),
         ordered=bool(rules.groups.ordered),
         earlier=_earlier(rules),
+        waits=waits_of(rules, windows, len(kind)),
         grows=not (weighs or any(vehicle.is_bounded_below for vehicle in vehicles)),
         bounded_below=any(vehicle.is_bounded_below for vehicle in vehicles),
         min_stops=np.array([vehicle.min_stops for vehicle in vehicles]),
@@ -331,8 +333,8 @@ def _column(rules: Rules, objective: int) -> int:
     if over == "max" and rules.percent(objective) is not None:
         return MOST
     if over == "imbalance":
-        assert rules.swept is not None
-        return rules.swept
+        assert rules.limited is not None
+        return rules.limited
     return columns.get(over, rules.layers[objective])
 
 

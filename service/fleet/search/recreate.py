@@ -9,8 +9,9 @@ from service.fleet.search.pairs import best_pair
 from service.fleet.search.problem import Problem
 from service.fleet.search.reloads import SELDOM, load_anew
 from service.fleet.search.route import measure, measure_with
-from service.fleet.search.ruin import uniform
+from service.fleet.search.ruin import free_waiting, uniform
 from service.fleet.search.spots import Place, Spot, put, take_back
+from service.fleet.search.waits import bind, bound, insert_firsts_first, settle, unbind
 from service.fleet.search.weighed import promised_stops
 from service.fleet.search.working_plan import (
     BLINKS,
@@ -39,6 +40,7 @@ RANDOM, LARGE, FAR, NEAR, NARROW, SOON, OPENING = 0, 4, 6, 7, 8, 9, 10
 ORDERS = 11
 _FEW_BLINKS, _MANY_BLINKS = 100, 4  # one place in so many for a stop is passed by
 _CHANCES = 20  # see _most()
+_ANY_ORDER = 4  # one time in so many, stops that wait for others may be inserted before these
 _OFTEN = 10  # one iteration in so many passes by many places
 
 
@@ -52,9 +54,7 @@ def recreate(state: State, order: int) -> None:
     often = random_below(plan.random, _OFTEN) == 0
     plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
     plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
-    if problem.grouped:
-        want_mates(problem, plan)
-    _sort(problem, plan, order)
+    _prepare(state, order)
     for number in range(plan.counts[REMOVED]):
         stop = plan.removed[number]
         most = _most(problem, plan, stop)
@@ -73,22 +73,44 @@ def recreate(state: State, order: int) -> None:
 
 
 @inlined
+def _prepare(state: State, order: int) -> None:
+    """Add to the stops to insert what belongs to them, and sort them in an order."""
+    problem, plan, _ = state
+    if problem.grouped:
+        want_mates(problem, plan)
+    if problem.waits.given:
+        free_waiting(state)
+        settle(state, False)
+    _sort(problem, plan, order)
+    if problem.waits.given and random_below(plan.random, _ANY_ORDER) > 0:
+        insert_firsts_first(problem, plan, plan.counts[REMOVED])
+
+
+@inlined
 def insert(state: State, stop: int, place: Place) -> None:
     """Put a stop into its place, and of a shipment the delivery too."""
     problem, plan, _ = state
     onward = plan.via[plan.next[place.before]]
+    if problem.waits.given:
+        bound(problem, plan, stop, place.slot)
     take_in(problem, plan, stop)
     put(plan, stop, Spot(place.slot, place.before, place.via, place.onward))
     if place.last >= 0:
         link(plan, place.slot, problem.delivery[stop], place.last)
-    if measure_with(state, place.slot, stop):
+    kept = measure_with(state, place.slot, stop)
+    if kept and problem.waits.given:
+        kept = bind(state, place.slot)
+    if kept:
         return
-    # A rounding apart from what was worked out before: a place like any other that is none.
+    # A rounding apart from what was worked out before, or a gap that was not known on this route: a
+    # place like any other that is none.
     if place.last >= 0:
         unlink(plan, problem.delivery[stop])
     take_back(plan, stop, onward)
     leave_out(problem, plan, stop)
     measure(state, place.slot)
+    if problem.waits.given:
+        unbind(state, stop)
 
 
 @inlined

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.on_board import gather
 from service.fleet.search.problem import (
@@ -26,6 +25,7 @@ from service.fleet.search.working_plan import (
     USED,
     State,
     WorkingPlan,
+    begin_at,
     leg,
     mark_used,
     service_at,
@@ -351,7 +351,9 @@ def _latest_departure(problem: Problem, plan: WorkingPlan, start: int, profile: 
         service = service_at(problem, profile, node)
         begin = plan.ready[node] - service
         limit = min(time - service, max(problem.extras.holds[node], begin))
-        latest = _reached_by(problem, node, begin) if problem.narrow else begin
+        latest = begin
+        if problem.narrow:
+            latest = _reached_by(problem, node, begin, plan.ready[node])
         for number in range(problem.windows.shape[1]):
             if problem.windows[node, number, 0] <= limit:
                 latest = max(latest, min(limit, problem.windows[node, number, 1]))
@@ -361,10 +363,11 @@ def _latest_departure(problem: Problem, plan: WorkingPlan, start: int, profile: 
 
 
 @compiled
-def _reached_by(problem: Problem, stop: int, begin: float) -> float:
+def _reached_by(problem: Problem, stop: int, begin: float, end: float) -> float:
     """Return the latest arrival at a stop for a visit that begins as its window opens, or later."""
     for number in range(problem.windows.shape[1]):
-        if problem.windows[stop, number, 0] == begin:
+        opens = problem.windows[stop, number, 0]
+        if not (_is_over(opens, begin, end) or _is_over(begin, opens, end)):
             return min(begin, problem.windows[stop, number, 1])
     return begin
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay, Moment, driven, slice_of
 from service.fleet.search.departures import best_departure
 from service.fleet.search.problem import (
@@ -15,7 +14,7 @@ from service.fleet.search.problem import (
     SECOND,
     Problem,
 )
-from service.fleet.search.working_plan import WorkingPlan, service_at
+from service.fleet.search.working_plan import WorkingPlan, begin_at, service_at
 from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)

@@ -21,6 +21,7 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.route import measure
 from service.fleet.search.values import at_prices
+from service.fleet.search.waits import settle
 from service.fleet.search.weighed import promised_stops
 from service.fleet.search.working_plan import (
     OUTSIDE,
@@ -61,8 +62,8 @@ def write_row(problem: Problem, plan: WorkingPlan, row: Nodes) -> None:
 
 
 @compiled
-def load_row(state: State, row: Nodes) -> None:
-    """Make the plan that of a row, as write_row() writes it."""
+def load_row(state: State, row: Nodes) -> bool:
+    """Make the plan that of a row, as write_row() writes it; return whether its visits can wait."""
     problem, plan, _ = state
     n = len(problem.demand)
     clear(state)
@@ -85,6 +86,7 @@ def load_row(state: State, row: Nodes) -> None:
             before, via = stop, -1
     for number in range(plan.counts[USED]):
         measure(state, plan.used[number])
+    return not problem.waits.given or settle(state, True)
 
 
 @compiled

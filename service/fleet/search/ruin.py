@@ -27,6 +27,7 @@ _REMOVED = 10  # stops that an iteration takes out, on the mean
 _LONGEST_STRING = 10
 _SPLIT = 2  # one string in so many leaves stops in its middle
 _STAYING = 100  # one time in so many, more of them
+_WITH_FIRST = 2  # one time in so many, a stop is taken out with one that it waits for
 _LONGEST_FIRST = 4  # one ruin in so many begins in the longest route, where that counts
 
 
@@ -193,3 +194,21 @@ def limit_routes(state: State) -> None:
             if plan.size[plan.used[number]] < plan.size[shortest]:
                 shortest = plan.used[number]
         dissolve(state, shortest)
+
+
+@compiled
+def free_waiting(state: State) -> None:
+    """Take out, at times, the stops that wait for those that are inserted: these may be later."""
+    problem, plan, _ = state
+    number = 0
+    while number < plan.counts[REMOVED]:
+        stop = plan.removed[number]
+        for place in range(problem.waits.thens.shape[1]):
+            then = problem.waits.thens[stop, place]
+            if then >= 0 and plan.route[then] >= 0 and random_below(plan.random, _WITH_FIRST) == 0:
+                slot = plan.route[then]
+                save_slot(problem, plan, slot)
+                remove(problem, plan, then)
+                if not measure(state, slot):
+                    dissolve(state, slot)
+        number += 1

@@ -206,8 +206,8 @@ class RuinSearch:
                 least = cost
                 write_row(self._problem, self._working, row)
                 best[:] = row
-        load_row(state, best)
-        if self._working.counts[MISSING] == 0 and not self._problem.bounded_below:
+        kept = load_row(state, best)
+        if kept and self._working.counts[MISSING] == 0 and not self._problem.bounded_below:
             self._offer()
 
     def _offer(self) -> None:

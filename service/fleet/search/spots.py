@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.problem import (
     FIRST,
@@ -29,6 +28,7 @@ from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
+    begin_at,
     leg,
     link,
     service_at,

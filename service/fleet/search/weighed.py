@@ -8,7 +8,6 @@ spread from day to day is measured in spreading.py.
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.begins import begin_at
 from service.fleet.search.day import FleetDay
 from service.fleet.search.extras import NO_PROMISE
 from service.fleet.search.problem import (
@@ -24,7 +23,7 @@ from service.fleet.search.problem import (
     Problem,
 )
 from service.fleet.search.spreading import spread_along, spread_cost, spread_growth
-from service.fleet.search.working_plan import TRY, State, WorkingPlan, leg, service_at
+from service.fleet.search.working_plan import TRY, State, WorkingPlan, begin_at, leg, service_at
 from service.jit import compiled, inlined
 
 _is_over = inlined(is_over)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from service.fleet.rounding import is_over
 from service.fleet.search.problem import COLUMNS, Array, Direction, Indices, Nodes, Problem
 from service.jit import by_reference, compiled, inlined
 
@@ -16,6 +17,8 @@ from service.jit import by_reference, compiled, inlined
 USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
 BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS, TYPE, TYPES_END = 8, 9, 10, 11, 12, 13
 MOST_STATES = 24  # ways to have taken so many breaks up to a stop, of which none is always better
+
+_is_over = inlined(is_over)
 
 
 @by_reference
@@ -195,6 +198,15 @@ def way(problem: Problem, profile: int, a: int, via: int, b: int, layer: int) ->
 def service_at(problem: Problem, profile: int, stop: int) -> float:
     """Return how long the visit of a stop takes in a profile."""
     return float(problem.service[profile, stop])
+
+
+@inlined
+def begin_at(problem: Problem, stop: int, arrival: float) -> float:
+    """Return when a visit begins, in the first window that is not over; infinite after all."""
+    for number in range(problem.windows.shape[1]):
+        if not _is_over(arrival, problem.windows[stop, number, 1]):
+            return max(arrival, problem.windows[stop, number, 0])
+    return np.inf
 
 
 @inlined

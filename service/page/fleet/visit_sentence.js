@@ -22,9 +22,10 @@ export function visitSentence({ name: named, visits }, at, { said, lasting }) {
   const waits = waiting ? ` and waits ${lasting(waiting)}` : "";
   const rest = rests.length ? `; the driver has a break from ${spansIn(rests, said).join(" and from ")}` : "";
   if (kind === "loading") return `${stop}: ${name} loads again at ${said(begin)}${waited(released, begin)}; it arrives at ${said(arrival)}${from}${waits}${rest}.`;
-  return `${stop}: ${limitsOf(visit, said).map((each) => `${each}, `).join("")}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && " for the window to open"}${rest}${tripOf(visits, at, said)}.`;
+  return `${stop}: ${limitsOf(visit, said).map((each) => `${each}, `).join("")}begins ${said(begin)}${visit.closing && `, ${visit.closing}`}${punctual(visit, lasting)}; ${arrives}${waits}${waits && waitedFor(visit)}${rest}${tripOf(visits, at, said)}.`;
 }
 
+const waitedFor = ({ firsts }) => (firsts ? ` until ${firsts.join(" and ")} ${firsts.length > 1 ? "are" : "is"} done` : " for the window to open");
 const called = ({ stop, customer }) => withCustomer(stop, customer);
 const waited = (released, begin) => (released && released >= begin ? ", when its load is released" : "");
 

@@ -11,12 +11,13 @@ const NEAR = 1e-6; // times that differ by less, relative to them, are equal
  * `rests` are breaks there, each `[from, to]`, and `leaves` is when it goes on; `due` is when a visit should begin, or a shift
  * ends, and `late` how much later that is; it is `wanted` from then on, if it is, and `early` says how much earlier that is; `windows` are those of the stop, and it `opens` when the visit begins, if it was
  * closed before, and `closes` after that, and must be reached `by` then; `released` is when the last load of the trip that begins there is released, 0
- * without one; `shift` is when the shift of a vehicle that starts there begins.
+ * without one; `shift` is when the shift of a vehicle that starts there begins; `firsts` are the stops that must be done before, if
+ * the visit waits for one of them.
  *
- * @param {{ vehicle: string, stops: string[], arrivals: number[], breaks?: number[], shift?: number }} route
- * @param {{ stops: Map<string, object>, types: Map<string, object>, slack: number }} known the request, by `knownFleet`
+ * @param {{ vehicle: string, stops: string[], arrivals: number[], ends?: number[], breaks?: number[], shift?: number }} route
+ * @param {{ stops: Map<string, object>, types: Map<string, object>, firsts: Map<string, string[]>, slack: number }} known the request, by `knownFleet`
  */
-export function visitTimes(route, { stops: asked, types, slack }) {
+export function visitTimes(route, { stops: asked, types, firsts, slack }) {
   const { stops, arrivals, shift = 0 } = route;
   const type = types.get(route.vehicle) ?? UNKNOWN;
   const kinds = kindsOf(route, type);
@@ -26,12 +27,14 @@ export function visitTimes(route, { stops: asked, types, slack }) {
     const kind = kinds[at];
     const { service = 0, window, windows = window ? [window] : [], due } = kind === "visit" ? (asked.get(stop) ?? {}) : {};
     const released = kind === "start" || kind === "loading" ? releaseOf(at, stops, kinds, asked) : 0;
-    const ready = (time) => (kind === "loading" ? Math.max(time, released) : opened(windows, time));
+    const waitsFor = kind === "visit" ? firsts.get(stop) : undefined;
+    const since = waitsFor && route.ends ? route.ends[at] - service : 0; // only the service knows when others are done
+    const ready = (time) => (kind === "loading" ? Math.max(time, released) : Math.max(opened(windows, time), since));
     const times = timesAt(arrivals[at], ready, service, breaks[at]);
     const [wanted, until] = Array.isArray(due) ? due : [undefined, due ?? (kind === "end" ? to : undefined)];
     const opens = windows.find(([opening]) => Math.abs(times.begin - opening) <= NEAR * opening)?.[0];
     const closes = openIn(windows, times.begin)?.[1];
-    return { stop, kind, ...times, wanted, early: laterBy(wanted ?? times.begin, times.begin), due: until, late: laterBy(times.begin, until), windows, opens, closes, by: closes - slack, released, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
+    return { stop, kind, ...times, wanted, early: laterBy(wanted ?? times.begin, times.begin), due: until, late: laterBy(times.begin, until), windows, opens, closes, by: closes - slack, released, firsts: laterBy(times.begin, opened(windows, times.arrival)) ? waitsFor : undefined, shift: kind === "start" && !isOnTheWay(route) ? from : undefined };
   });
 }
 

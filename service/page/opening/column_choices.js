@@ -20,6 +20,7 @@ const LABELS = {
   apart: "does not ride with",
   before: "comes before",
   after: "comes after",
+  waits_for: "waits until these are done",
   fixed: "cost of using it",
   per_km: "cost by the kilometre",
   per_hour: "cost by the hour",

@@ -61,12 +61,14 @@ class DaySoFar:
         numbers: The number of the route of each in the plan.
         waiting: The routes whose vehicles have not left, by their numbers in the plan.
         arrivals: When each stop is reached in the plan; nothing without a clock.
+        ends: When each visit ends in the plan; nothing without a clock.
     """
 
     ways: tuple[Way, ...]
     numbers: tuple[int, ...]
     waiting: Mapping[int, Route]
     arrivals: Mapping[int, float]
+    ends: Mapping[int, float]
 
     @property
     def done(self) -> frozenset[int]:
@@ -119,7 +121,7 @@ def day_of(
     Raises:
         Refusal: The request names a plan, a route or a stop that is not there, or one twice.
     """
-    driven, arrivals = _driven(request, stored, fleet, ids)
+    driven, arrivals, ends = _driven(request, stored, fleet, ids)
     numbers: list[int] = []
     ways = []
     for index, item in enumerate(request.routes):
@@ -133,13 +135,13 @@ def day_of(
             raise invalid(f"{part}/leaves", "fleet-has-no-clock")
         ways.append(_way(item, part, fleet, driven[item.route], ids))
     waiting = {at: each.route for at, each in enumerate(driven) if at not in numbers}
-    return DaySoFar(tuple(ways), tuple(numbers), waiting, arrivals)
+    return DaySoFar(tuple(ways), tuple(numbers), waiting, arrivals, ends)
 
 
 def _driven(
     request: ReplanFleetRequest, stored: StoredFront, fleet: UnmeasuredFleet, ids: Mapping[str, int]
-) -> tuple[list[_Driven], dict[int, float]]:
-    """Return the routes of the plan that is driven, and when each stop is reached."""
+) -> tuple[list[_Driven], dict[int, float], dict[int, float]]:
+    """Return the routes of the plan that is driven, and when each visit is reached and ends."""
     plans = stored.found.split()
     if not plans:
         raise not_replannable(stored.id, "it has no plan")
@@ -149,6 +151,7 @@ def _driven(
     types = {name: index for index, name in enumerate(fleet.vehicles)}
     routes: list[_Driven] = []
     arrivals: dict[int, float] = {}
+    ends: dict[int, float] = {}
     for item in from_json(plans[number])["routes"]:
         kind = types[VehicleName(item["vehicle"], item.get("shift"), item.get("route"))]
         vehicle = fleet.rules.vehicles[kind]
@@ -159,7 +162,8 @@ def _driven(
         limited = (tuple(item.get(name, ())) for name in ("distance", "driving"))
         routes.append(_Driven(route, tuple(stops), times[0] if times else None, *limited))
         arrivals |= zip(stops, times, strict=False)
-    return routes, arrivals
+        ends |= zip(stops, item.get("ends", ()), strict=False)
+    return routes, arrivals, ends
 
 
 def _way(

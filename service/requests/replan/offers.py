@@ -157,6 +157,8 @@ def offers_task(
     slots = request.spans()
     if fleet.rules.clock is None:
         raise invalid("every" if request.every else "slots", "fleet-has-no-clock")
+    if fleet.rules.groups.waiting:
+        raise invalid("order", "offered-beside-waits")
     members = _members_of_replan(request, source)
     most = max(1, _MOST_BYTES // len(to_json(members["add"][-1])))
     _check_count("every/length" if request.every else "slots", len(slots), most)

@@ -13,7 +13,7 @@ from service.errors import Fault, Refusal, invalid
 from service.errors.parts import by_stop
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
-from service.fleet.vehicles import Shipment, VehicleType, Visit
+from service.fleet.vehicles import Shipment, Span, VehicleType, Visit
 from service.requests.limits import (
     Limits,
     check_amounts,
@@ -214,6 +214,7 @@ class _Rest:
             visit = self._request.add[index].visit(f"add/{index}", types)
         else:
             visit = self._known_visit(stop)
+        visit = replace(visit, windows=self._windows(stop, visit))
         services = visit.services and tuple(visit.services[old] for old in self._old)
         servers, release = self._servers(stop, visit), self._release(stop, visit)
         vehicle, begin = self._promise(stop)
@@ -226,11 +227,42 @@ class _Rest:
             promised_by=begin,
         )
 
+    def _windows(self, stop: int, visit: Visit) -> tuple[Span, ...]:
+        """Return the windows of a stop from when on it may begin, after visits that are done."""
+        firsts = [first for first, _ in self._firsts.get(stop, ()) if first in self._day.done]
+        since = self._waits_until(stop, {first: self._ended(first) for first in firsts})
+        if since <= self._now:
+            return visit.windows
+        later = [(max(opens, since), closes) for opens, closes in visit.windows if since <= closes]
+        return tuple(later) or ((since, visit.windows[-1][1]),)
+
+    def _waits_until(self, stop: int, ends: Mapping[int, float]) -> float:
+        """Return until when a visit waits for others, of which some have ended; 0 for none."""
+        firsts = self._firsts.get(stop, ())
+        return max((ends[first] + gap for first, gap in firsts if first in ends), default=0.0)
+
+    @cached_property
+    def _firsts(self) -> dict[int, list[tuple[int, float]]]:
+        """The stops for which the visit of each stop waits, and how long after each."""
+        found: dict[int, list[tuple[int, float]]] = {}
+        for (first, then), gap in self._rules.groups.waiting.items():
+            found.setdefault(then, []).append((first, gap))
+        return found
+
+    def _ended(self, stop: int) -> float:
+        """Return when a visit that is done has ended: now at the latest, or when it is left."""
+        way = next(way for way in self._day.ways if stop in way.done)
+        if stop == way.done[-1] and way.leaves > self._now:
+            return way.leaves
+        return min(self._now, self._day.ends.get(stop, self._now))
+
     def _promise(self, stop: int) -> tuple[int | None, float]:
         """Return the vehicle that visits a stop in the plan so far, and when, if changes count."""
         if "changes" not in self._over or stop not in self._promised_to:
             return None, inf
         visit, arrival = self._rules.visits[stop], self._day.arrivals.get(stop)
+        if arrival is not None:
+            arrival = max(arrival, self._waits_until(stop, self._day.ends))
         begin = promised_begin(self._rules, visit, arrival, self._tolerance or 0.0)
         return self._promised_to[stop], begin
 

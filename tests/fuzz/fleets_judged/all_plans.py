@@ -6,6 +6,7 @@ from itertools import combinations, permutations, product
 
 from tests.fuzz.fleets_judged.judge import Judge, Judged
 from tests.fuzz.fleets_judged.timeline import Json
+from tests.fuzz.fleets_judged.waits import has_waits
 
 Point = tuple[float, ...]
 Routes = dict[frozenset[int], list[Judged]]
@@ -16,7 +17,10 @@ def exact_points(judge: Judge) -> list[Point]:
     routes = [_routes(judge, vehicle) for vehicle in judge.vehicles]
     found: set[Point] = set()
     for plan in _plans(judge, routes, tuple(judge.clients), [], Counter()):
-        found.add(judge.lengths(plan))
+        waits = has_waits(judge.request)
+        beside = judge.beside([(each.vehicle, each.stops) for each in plan]) if waits else plan
+        if not isinstance(beside, str):
+            found.add(judge.lengths(beside))
     points = sorted(found)
     return [p for p in points if not any(_dominates(q, p) for q in points)]
 
@@ -36,7 +40,10 @@ def _routes(judge: Judge, vehicle: Json) -> Routes:
                 pairs = zip(before, stops, strict=True)
                 route = tuple(each for reload, stop in pairs for each in (*reload, stop))
                 judged = judge.route(vehicle, route)
-                if not isinstance(judged, str):
+                if has_waits(judge.request):
+                    if not isinstance(judged, str) or judged == "shortest":
+                        found[frozenset(stops)].append(Judged(vehicle, route, [], (), 0.0))
+                elif not isinstance(judged, str):
                     _add(judged, found[frozenset(stops)], fair)
     return found
 

@@ -7,6 +7,7 @@ from math import inf, isclose
 from typing import Any, NamedTuple
 
 from tests.fuzz.fleets_judged.timeline import (
+    Bounds,
     Json,
     Timeline,
     best_timelines,
@@ -14,6 +15,7 @@ from tests.fuzz.fleets_judged.timeline import (
     span_of,
     trips_of,
 )
+from tests.fuzz.fleets_judged.waits import bounds_of, has_waits
 
 CLOSE = 1e-7
 
@@ -67,12 +69,30 @@ class Judge:
         prize: float | None = self.stops[self.pickup_of.get(stop, stop)].get("prize")
         return prize
 
-    def route(self, vehicle: Json, stops: tuple[int, ...]) -> Judged | str:
+    def route(
+        self, vehicle: Json, stops: tuple[int, ...], bounds: Bounds | None = None
+    ) -> Judged | str:
         """Return the lengths of a route, or a rule that it breaks."""
         profile = vehicle.get("profile")
-        return self.own.get(profile, self)._judged(vehicle, stops)
+        return self.own.get(profile, self)._judged(vehicle, stops, bounds or {})
 
-    def _judged(self, vehicle: Json, stops: tuple[int, ...]) -> Judged | str:
+    def beside(self, routes: list[tuple[Json, tuple[int, ...]]]) -> list[Judged] | str:
+        """Return the routes of a plan, whose visits may wait for others, or a rule they break."""
+        bounds: Bounds | None = {}
+        if has_waits(self.request):
+            own = [self.own.get(vehicle.get("profile"), self) for vehicle, _ in routes]
+            bounds = bounds_of(self.request, [each.clock["matrix"] for each in own], routes)
+        if bounds is None:
+            return "waits"
+        found = []
+        for vehicle, stops in routes:
+            judged = self.route(vehicle, stops, bounds)
+            if isinstance(judged, str):
+                return f"{judged} on {stops}"
+            found.append(judged)
+        return found
+
+    def _judged(self, vehicle: Json, stops: tuple[int, ...], bounds: Bounds) -> Judged | str:
         ends = ([] if each is None else [each] for each in (vehicle.get("start"), None))
         path = [*next(ends), *stops, *([] if vehicle.get("end") is None else [vehicle["end"]])]
         matrices = [each["matrix"] for each in self.objectives if "matrix" in each]
@@ -84,7 +104,7 @@ class Judge:
             return broken
         times, best = None, []
         if self.clock is not None:
-            best = best_timelines(self.request, self.clock["matrix"], vehicle, list(stops))
+            best = best_timelines(self.request, self.clock["matrix"], vehicle, list(stops), bounds)
             if not best:
                 return "times"
             times = best[0]
@@ -190,7 +210,7 @@ class Judge:
         if "matrix" in objective:
             if times is not None and self._is_clock(objective):
                 return times.end - times.departure
-            return self._driven(objective, vehicle, path)
+            return self._sum_of_legs(objective, vehicle, path)
         match objective["measure"]:
             case "vehicles":
                 return 1.0
@@ -265,7 +285,7 @@ class Judge:
         most = vehicle.get("max_distance", inf)
         return "max_distance" if any(is_later(_way(each, path), most) for each in others) else ""
 
-    def _driven(self, objective: Json, vehicle: Json, path: list[int]) -> float:
+    def _sum_of_legs(self, objective: Json, vehicle: Json, path: list[int]) -> float:
         """Return what the legs of a path cost a vehicle."""
         return float(sum(self._leg(objective, vehicle, a, b) for a, b in pairwise(path)))
 
@@ -301,23 +321,14 @@ class Judge:
 
     def faults(self, plan: Json) -> Iterator[str]:
         """Yield what is wrong with a plan of an answer."""
-        routes, used = [], Counter[tuple[str, int]]()
-        visits = Counter[int]()
-        for route in plan["routes"]:
-            number = route.get("shift", 0)
-            vehicle = next(
-                v for v in self.vehicles if (v["id"], v["number"]) == (route["vehicle"], number)
-            )
-            used[vehicle["id"], number] += 1
-            path = [int(stop) for stop in route["stops"]]
-            begin = vehicle.get("start") is not None
-            stops = tuple(path[begin : len(path) - (vehicle.get("end") is not None)])
-            visits.update(stop for stop in stops if stop not in self.depots)
-            judged = self.route(vehicle, stops)
-            if isinstance(judged, str):
-                yield f"{stops} breaks {judged}: {route}"
-                return
-            routes.append(judged)
+        pairs = [self._driven(route) for route in plan["routes"]]
+        used = Counter((vehicle["id"], vehicle["number"]) for vehicle, _ in pairs)
+        visits = Counter(s for _, stops in pairs for s in stops if s not in self.depots)
+        routes = self.beside(pairs)
+        if isinstance(routes, str):
+            yield f"breaks {routes}: {plan['routes']}"
+            return
+        for route, judged in zip(plan["routes"], routes, strict=True):
             yield from self._misreported(route, judged)
         for vehicle in self.vehicles:
             if used[vehicle["id"], vehicle["number"]] > vehicle.get("count", 1):
@@ -327,6 +338,14 @@ class Judge:
                 yield f"stop {stop} is visited {visits[stop]} times"
         if not _close(plan["lengths"], self.lengths(routes), self._reach(routes)):
             yield f"lengths {plan['lengths']} are {self.lengths(routes)}"
+
+    def _driven(self, route: Json) -> tuple[Json, tuple[int, ...]]:
+        """Return the vehicle of a route of an answer, and the stops on its way."""
+        name = route["vehicle"], route.get("shift", 0)
+        vehicle = next(each for each in self.vehicles if (each["id"], each["number"]) == name)
+        path = [int(stop) for stop in route["stops"]]
+        begin = vehicle.get("start") is not None
+        return vehicle, tuple(path[begin : len(path) - (vehicle.get("end") is not None)])
 
     def _reach(self, routes: list[Judged]) -> float:
         return max([each.best[0].end for each in routes if each.best], default=1.0)

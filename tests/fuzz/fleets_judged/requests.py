@@ -13,6 +13,7 @@ _MEASURES = (
     *("earliness", "weighted_arrival", "overlap"),
 )
 TAKING = 0.3  # share of fleets with stops that put something on board
+WAITING = 0.5  # share of fleets with groups whose visits wait for others, if there is a clock
 PROFILED = 0.2  # share of fleets whose vehicles have profiles
 _TIMED = ("overtime", "lateness", "earliness", "weighted_arrival")
 
@@ -97,11 +98,27 @@ def _add_groups(rng: random.Random, request: Json, clients: list[int]) -> None:
         "before": [{"first": rng.sample(clients, 1), "then": rng.sample(clients, 2)}],
     }
     request |= {name: each for name, each in groups.items() if rng.random() < 0.5}
+    if request.get("clock") is not None and rng.random() < WAITING:
+        add_waits(rng, request, clients)
     for vehicle in request["vehicles"]:
         if rng.random() < 0.3:
             vehicle["min_stops"] = min(2, vehicle.get("max_stops", 2))
         if "longest" in vehicle and rng.random() < 0.5:
             vehicle["shortest"] = _number(rng, 5, 30, 1)
+
+
+def add_waits(rng: random.Random, request: Json, clients: list[int]) -> None:
+    """Let some visits wait for others, whoever drives."""
+    for vehicle in request["vehicles"]:
+        for name in ("reload", "max_trips", "breaks"):
+            vehicle.pop(name, None)
+    order = rng.sample(clients, len(clients))
+    waits = []
+    for _ in range(rng.choice((1, 1, 2, 3))):
+        a, b = sorted(rng.sample(range(len(order)), 2))
+        item = {"first": [order[a]], "then": [order[b]], "vehicles": "any"}
+        waits.append(item | ({"gap": _number(rng, 1, 20, 1)} if rng.random() < 0.4 else {}))
+    request["before"] = [*request.get("before", ()), *waits]
 
 
 def _matrix(rng: random.Random, n: int) -> list[list[float | None]]:

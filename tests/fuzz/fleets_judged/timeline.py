@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 TOLERANCE = 1e-9  # of the largest time
 
 Json = dict[str, Any]
+Bounds = dict[int, tuple[float, float]]  # by stop: from when on a visit begins, and its hold
 
 
 class Event(NamedTuple):
@@ -22,6 +23,7 @@ class Event(NamedTuple):
     due: float
     leg: float
     stop: int  # the place in the route; for a break -1, or -2 after the visit at a place
+    hold: float = inf  # until when it begins, so that no visit of another route is later for it
 
 
 class Timeline(NamedTuple):
@@ -58,7 +60,9 @@ def trips_of(vehicle: Json, stops: list[int]) -> list[list[int]]:
     return trips
 
 
-def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -> list[Timeline]:
+def best_timelines(
+    request: Json, times: Any, vehicle: Json, stops: list[int], bounds: Bounds
+) -> list[Timeline]:
     """Return the best times of a route by the clock, or none where it cannot be in time.
 
     They end as early as possible, then are the least late, then leave as late as possible, or as
@@ -69,10 +73,11 @@ def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -
         times: The costs that are time.
         vehicle: The vehicle, with one `shift` at most.
         stops: The visits, and where it loads again.
+        bounds: Of the visits that wait for others, and of those that others wait for.
     """
     begin, last = span_of(vehicle)
     trips = trips_of(vehicle, stops)
-    begin = max(begin, _released(request, trips[0]))
+    begin = max(begin, released(request, trips[0]))
     rests, early = vehicle.get("breaks", []), request.get("leave") == "early"
     found = []
     for first in range(len(rests) + 1):
@@ -81,7 +86,7 @@ def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -
             begin = max(begin, opens + length)
         for after in range(first, len(rests) + 1):
             until = min([last, *(each["window"][1] for each in rests[after:])])
-            places = _places(request, times, vehicle, stops)
+            places = places_of(request, times, vehicle, stops, bounds)
             for events in _ways(places, rests[first:after], [], begin):
                 timeline = _timed(events, begin, until, early)
                 if timeline is not None:
@@ -98,11 +103,13 @@ def best_timelines(request: Json, times: Any, vehicle: Json, stops: list[int]) -
     return [each for each in found if abs(each.departure - departure) <= rounding]
 
 
-def _released(request: Json, trip: list[int]) -> float:
+def released(request: Json, trip: list[int]) -> float:
     return max((request["stops"][stop].get("release", 0.0) for stop in trip), default=0.0)
 
 
-def _places(request: Json, times: Any, vehicle: Json, stops: list[int]) -> list[list[Event]]:
+def places_of(
+    request: Json, times: Any, vehicle: Json, stops: list[int], bounds: Bounds
+) -> list[list[Event]]:
     """Return the visit at each place of a route, once for each window."""
     start, end = vehicle.get("start"), vehicle.get("end")
     path = [*([] if start is None else [start]), *stops, *([] if end is None else [end])]
@@ -114,8 +121,10 @@ def _places(request: Json, times: Any, vehicle: Json, stops: list[int]) -> list[
         due = visit.get("due", inf)
         latest = due[1] if isinstance(due, list) else due
         rest = (_service(visit, vehicle), latest, legs[place], place)
+        since, hold = bounds.get(stop, (0.0, inf))
         windows = _windows(request, vehicle, stops, path, place)
-        found.append([Event(opens, closes, *rest) for opens, closes in windows])
+        open_then = [each for each in windows if not is_later(since, each[1])]
+        found.append([Event(max(a, since), b, *rest, hold) for a, b in open_then])
     return found
 
 
@@ -171,7 +180,7 @@ def _windows(
     stop, first = path[place], vehicle.get("start") is not None
     if stop in vehicle.get("reload", ()) and 0 <= place - first < len(stops):
         trip = trips_of(vehicle, stops[place - first + 1 :])[0]
-        return [(_released(request, trip), inf)]
+        return [(released(request, trip), inf)]
     visit, slack = request["stops"][stop], request.get("slack", 0.0)
     one = [visit["window"]] if visit.get("window") else []
     return [(a, b - slack) for a, b in visit.get("windows") or one] or [(0.0, inf)]
@@ -199,7 +208,8 @@ def _timed(events: list[Event], begin: float, last: float, early: bool) -> Timel
         return None
     latest = end
     for event, started in zip(reversed(events), reversed(begins), strict=True):
-        latest = min(latest - event.length, event.closes, max(event.due, started)) - event.leg
+        latest = min(latest - event.length, event.closes, max(min(event.due, event.hold), started))
+        latest -= event.leg
     departure = begin if early else max(begin, latest)
     again = _forward(events, departure)
     assert again is not None
