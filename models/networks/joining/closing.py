@@ -85,13 +85,14 @@ def joined_to_one(costs: Costs, fragments: Fragments) -> Fragments:
     cities = fragments.ends.gather(1, slots)
     is_alone = slots[:, :ENOUGH] == slots[:, ENOUGH:]
     way, lean = _cheapest(costs, fragments, slots, is_alone)
-    mates = _WAYS.mates.index_select(0, way)
+    ways = _Ways(*(part.to(way.device) for part in _WAYS))
+    mates = ways.mates.index_select(0, way)
     n = (fragments.links.shape[1] - 1) // 2
     # A city alone is joined at its second slot first.
     seconds = torch.cat((torch.ones_like(is_alone), ~is_alone), dim=1).long()
     places = torch.where(mates >= 0, cities + n * seconds, 2 * n)
     links = fragments.links.scatter(1, places, cities.gather(1, mates.clamp(min=0)))
-    both = torch.cat((slots[:, :1], slots.gather(1, _WAYS.last.index_select(0, way))), dim=1)
+    both = torch.cat((slots[:, :1], slots.gather(1, ways.last.index_select(0, way))), dim=1)
     partners = torch.zeros_like(fragments.partners).scatter(1, both, both.flip(1))
     open_ = torch.zeros_like(partners).scatter(1, both, torch.ones_like(both)) > 0
     leans = fragments.leans
@@ -110,7 +111,9 @@ def _slots(fragments: Fragments) -> Int[Tensor, "r s"]:
     index = torch.arange(partners.shape[1], device=partners.device).expand_as(partners)
     is_first = fragments.open & (index <= partners)
     places = torch.where(is_first, is_first.long().cumsum(dim=1) - 1, ENOUGH)
-    room = fragments.left[:, None] * torch.zeros(ENOUGH + 1, dtype=torch.long)
+    room = fragments.left[:, None] * torch.zeros(
+        ENOUGH + 1, dtype=torch.long, device=partners.device
+    )
     firsts = room.scatter(1, places, index)[:, :ENOUGH]
     return torch.cat((firsts, partners.gather(1, firsts)), dim=1)
 
@@ -120,14 +123,16 @@ def _cheapest(
 ) -> tuple[Int[Tensor, " r"], Float[Tensor, "r 1"] | None]:
     """Return the cheapest way of each row, and what it costs more than the other direction."""
     cities = fragments.ends.gather(1, slots)
-    starts, stops = (cities.index_select(1, ends) for ends in torch.tensor(_EDGES).T)
+    starts, stops = (
+        cities.index_select(1, ends) for ends in torch.tensor(_EDGES, device=cities.device).T
+    )
     means, leans = costs.steps(starts, stops)
-    numbers = fragments.left[:, None] == torch.arange(1, ENOUGH + 1)
+    numbers = fragments.left[:, None] == torch.arange(1, ENOUGH + 1, device=cities.device)
     parts = torch.cat((means, is_alone.to(means), numbers.to(means)), dim=1)
-    of_ways = parts @ _WAYS.parts
+    of_ways = parts @ _WAYS.parts.to(parts)
     if leans is None or fragments.leans is None:
         return of_ways.argmin(dim=1), None
     of_fragments = fragments.leans.gather(1, slots[:, :ENOUGH])
-    leaning = torch.cat((leans, of_fragments), dim=1) @ _WAYS.leans
+    leaning = torch.cat((leans, of_fragments), dim=1) @ _WAYS.leans.to(parts)
     way = (of_ways - leaning.abs()).argmin(dim=1, keepdim=True)
     return way[:, 0], leaning.gather(1, way)
