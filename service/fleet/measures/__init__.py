@@ -1,1 +1,1 @@
-"""What plans of fleets are measured by, beside the costs of their legs."""
+"""Measure plans of fleets, beside the costs of their legs."""

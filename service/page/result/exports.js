@@ -38,7 +38,7 @@ export function csv({ kind, front }, { objectives, asked }, selected) {
     const ofRoutes = objectives.map(({ measure, unit }, axis) => (measure === "imbalance" ? titled({ name: "whole route", unit }) : `route ${titles[axis]}`));
     return csvOfPlans(plans, titles, ofRoutes, movers, selected);
   }
-  const spreading = objectives.map((_, axis) => axis).filter((axis) => front.some(({ means, p90 }) => p90?.[axis] > means[axis]));
+  const spreading = objectives.map((_, axis) => axis).filter((axis) => front.some(({ means, p90 }) => p90 && p90[axis] > means[axis]));
   const ofDays = ["mean", "p90"].flatMap((name) => spreading.map((axis) => `${name} ${titles[axis]}`));
   const rows = front.map(({ angle, departure, lengths, means, p90, tour, stops }, at) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
