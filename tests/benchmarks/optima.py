@@ -65,7 +65,7 @@ def main(arguments: list[str]) -> None:
     least = least_durations(options.data / SHEET)
     with (
         serve_process({"PARETOUR_WORKERS": "1"}, ready=True) as service,
-        httpx.Client(base_url=service.url, timeout=60) as client,
+        httpx.Client(base_url=service.url, timeout=300) as client,
     ):
         for n in options.stops:
             instances = [
