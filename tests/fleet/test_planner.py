@@ -329,10 +329,10 @@ def loading_again(fleet: Fleet) -> Fleet:
 @pytest.mark.parametrize(
     ("over", "loads", "size"),
     [
-        (("sum", "max"), False, 1),
-        (("sum", "max"), True, 100),
-        (("sum", "vehicles"), False, 100),
-        (("sum", "vehicles"), True, 1),
+        (("sum", "max"), False, 100),
+        (("sum", "max"), True, 1),
+        (("sum", "vehicles"), False, 1),
+        (("sum", "vehicles"), True, 100),
     ],
 )
 def test_a_plan_that_keeps_most_of_the_driven_one_is_in_its_front(

@@ -189,11 +189,6 @@ REFUSED = {
             "Start of van must be the name of a stop, got “yard”",
         ),
     ],
-    DAY: [("Start", "order-8", "start", "Start must be the name of a stop")],
-    LAYERED: [
-        ("Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
-        ("Name of cost layer 2", "distance", "cost_layers", "layer needs a name of its own"),
-    ],
     SERVED: [
         (
             "Served by of shop",
@@ -203,6 +198,11 @@ REFUSED = {
         ),
         ("Served by of shop", "van 2", "stops", "“van 2”: give that vehicle a row of its"),
     ],
+    LAYERED: [
+        ("Name of cost layer 2", "noise", "cost_layers", "Each cost layer needs a name"),
+        ("Name of cost layer 2", "distance", "cost_layers", "layer needs a name of its own"),
+    ],
+    DAY: [("Start", "order-8", "start", "Start must be the name of a stop")],
     NAMED: [
         ("Name of stop 2", "depot", "stops", "Each stop needs a name of its own"),
         ("Seconds of planning", "100000", "time_limit", "must be at most 60"),
