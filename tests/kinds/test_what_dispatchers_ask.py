@@ -467,10 +467,8 @@ def test_a_promised_plan_is_kept_or_changed_for_a_shorter_one() -> None:
     plans = front_of(request)
     kept = plans[-1]
     assert kept["measures"]["changes"] == kept["lengths"][1] == 0
-    assert {each["route"]: each["stops"][1:-1] for each in kept["routes"]} == {
-        0: ["west", "east"],
-        1: ["near", "far", "new"],
-    }
+    # "new" may come before "far" or after it: neither is longer, nor late.
+    assert routes(kept) == [{"west", "east"}, {"near", "far", "new"}]
     shortest = plans[0]
     assert shortest["lengths"][0] < kept["lengths"][0]
     assert shortest["lengths"][1] > 0
