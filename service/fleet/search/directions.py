@@ -49,7 +49,7 @@ _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
 _COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
 
-_OFTEN_NONE = ("lateness", "overtime", "earliness")  # of these
+_OFTEN_NONE = "lateness", "overtime", "earliness"  # which many plans have none of
 _LIMITED = ("max", "imbalance", "vehicles")  # objectives that limits lead to, not weights
 
 
