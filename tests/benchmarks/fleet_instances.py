@@ -15,6 +15,8 @@ from service.requests.fleet import parse_fleet_request
 from service.settings import Settings
 
 _MOST_STOPS = 10_000
+_DAY = 6000.0  # of those that load again, whose depot is at most 708 from a stop
+_RELOADING = 0.06  # vehicles a stop, of which each does three or four trips of seven stops
 CAPACITIES = {10: 30, 20: 30, 50: 40, 100: 50}  # of Bi-CVRP, by customers
 
 
@@ -50,6 +52,26 @@ def bi_cvrp(n: int, seed: int) -> FleetInstance:
     places = random.random((n + 1, 2))
     demands = random.integers(1, 10, n).tolist()
     return _with_capacity(f"{n}/{seed}", places, demands, CAPACITIES[n])
+
+
+def reloading(n: int, seed: int) -> FleetInstance:
+    """Return the fleet of n stops with this number, whose few vehicles load three or four times.
+
+    Places are uniform in a square with the depot in its middle, demands 1 to 29, capacity 100;
+    every second stop has a window of a fifth of the day.
+    """
+    random = np.random.default_rng([n, seed])
+    places = np.vstack([[500.0, 500.0], 1000 * random.random((n, 2))])
+    made = _with_capacity(f"{n}/{seed}", places, random.integers(1, 30, n).tolist(), 100)
+    stops, (vehicle,) = made.request["stops"], made.request["vehicles"]
+    begins = random.uniform(0.1 * _DAY, 0.7 * _DAY, n).tolist()
+    for number, (stop, begin) in enumerate(zip(stops[1:], begins, strict=True)):
+        stop |= {"service": 20}
+        if number % 2:
+            stop |= {"window": [begin, begin + 0.2 * _DAY]}
+    vehicle |= {"count": round(_RELOADING * n), "shift": [0, _DAY], "reload": ["0"]}
+    request = {**made.request, "clock": "longest route"}
+    return FleetInstance(made.name, request, fleet_of(request))
 
 
 def read_instance(folder: Path, name: str, *, counts_vehicles: bool) -> FleetInstance:

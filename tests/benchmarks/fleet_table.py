@@ -17,6 +17,7 @@ from tests.benchmarks.rows import Points
 
 OURS, NO_SEARCH = "paretour", "paretour without a search"
 SWEEP, ALONE = "PyVRP in a sweep", "PyVRP alone"
+EARLIER = "the earlier engine with PyVRP"
 VROOM, OR_TOOLS, OR_TOOLS_SWEEP = "VROOM", "OR-Tools", "OR-Tools in a sweep"
 _HIT = 0.01  # by which a distance may exceed a best known one, which has two decimals
 Front = list[list[float]]
@@ -42,6 +43,11 @@ _ABOUT = {
     "hypervolume in its box, with the\nstandard error of the mean. The first rows are printed, of "
     "200 other instances of the recipe. Instances differ more\nthan methods do, so methods are to "
     "be compared on the same ones.",
+    "streets": "Orders on the streets of Helsinki, every third for an hour, after which it is "
+    "late: driving against lateness; of\nthree, the longest route too. The earlier engine "
+    "is that of commit e0d108ee. Hypervolumes are in the box\nof both fronts.",
+    "reloads": "Places uniform in a square, 6 vehicles for 100 stops, which load three or four "
+    "times, and every second stop has a\nwindow; total against longest route.",
     "x": "CVRPLIB X, total against longest route: how far the least total is above the best known, "
     "and how many plans the\nfront has.",
     "hfvrp": "Mixed fleets of Pessoa, Sadykov and Uchoa (2018), total cost against longest route: "
@@ -77,7 +83,7 @@ def table_of(name: str) -> str:
     """Return the table of a set."""
     rows = _rows(load("fleets"), name)
     match name:
-        case "uniform" | "longest":
+        case "uniform" | "streets" | "reloads" | "longest":
             return _boxes(rows)
         case "bi-cvrp":
             return _bi_cvrp(rows)

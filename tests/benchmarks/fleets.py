@@ -8,6 +8,11 @@ Every plan is checked. The sets, of which `--sets` chooses:
 - `bi-cvrp`: as in the literature on neural solvers: the unit square, demands 1 to 9, capacity 30,
   40 and 50 at 20, 50 and 100 customers; total against longest route, also without a search.
   PyVRP and OR-Tools in a sweep.
+- `streets`: orders on the streets of Helsinki, every third for an hour, after which it is late:
+  the example of six vans, and as many vans for each of 400 orders; driving against lateness, and
+  the longest route as well. The earlier engine, which `git` must still have.
+- `reloads`: few vehicles that load three or four times a day, half of the stops with windows; total
+  against longest route. PyVRP alone.
 - `x`: CVRPLIB X, total against longest route: how far the least total is above the best known.
   PyVRP alone.
 - `hfvrp`: mixed fleets of Pessoa, Sadykov and Uchoa (2018), total cost against longest route: how
@@ -23,8 +28,9 @@ VRPLIB, tests/data/cvrplib), in github.com/PyVRP/Instances (HFVRP) and at sintef
 pdptw_alns, pdp_100).
 
 Prints tables, and stores `results/fleets.json`; what is stored is not measured again. All of it
-takes under three hours on one quiet core: `bi-cvrp` one, `solomon` and `li-lim` half an hour each,
-`x` and `homberger` 20 minutes each, `hfvrp` ten, `uniform` six and `longest` two.
+takes three hours on one quiet core: `bi-cvrp` one, `solomon` and `li-lim` half an hour each,
+`x` and `homberger` 20 minutes each, `hfvrp` and `streets` ten, `uniform` six, `reloads` three and
+`longest` two.
 """
 
 import argparse
@@ -50,12 +56,14 @@ from tests.benchmarks.fleet_instances import (
     FleetInstance,
     bi_cvrp,
     read_instance,
+    reloading,
     settings,
     uniform,
 )
 from tests.benchmarks.fleet_table import (
     ALONE,
     BI_CVRP,
+    EARLIER,
     NO_SEARCH,
     OR_TOOLS,
     OR_TOOLS_SWEEP,
@@ -64,11 +72,14 @@ from tests.benchmarks.fleet_table import (
     VROOM,
     table_of,
 )
+from tests.benchmarks.rivals import earlier_fleets
 from tests.benchmarks.rows import resume_beside
+from tests.benchmarks.street_fleets import street_fleets
 
 Find = Callable[[FleetInstance, float], Sequence[Plan]]
 
-UNIFORM = (100, 250, 480, 1000, 2000)
+STREETS = {59: 1, 400: 3}  # orders, and instances of so many
+_SECONDS_OF_STREETS = (8.0, 20.0)
 X = (
     *("X-n101-k25", "X-n200-k36", "X-n303-k21", "X-n401-k29", "X-n502-k39", "X-n599-k92"),
     *("X-n701-k44", "X-n801-k40", "X-n895-k37", "X-n1001-k43"),
@@ -99,6 +110,18 @@ class Files(NamedTuple):
     counts_vehicles: bool = True
 
 
+class Recipe(NamedTuple):
+    """A set that is made, three instances of each size."""
+
+    make: Callable[[int, int], FleetInstance]
+    sizes: Sequence[int]
+    methods: Sequence[str]
+
+
+RECIPES = {
+    "uniform": Recipe(uniform, (100, 250, 480, 1000, 2000), (OURS, SWEEP, ALONE)),
+    "reloads": Recipe(reloading, (50, 100, 200), (OURS, ALONE)),
+}
 _ENDS = (OURS, ALONE)
 FILES = {
     "x": Files(X, 60.0, (OURS, ALONE), counts_vehicles=False),
@@ -108,7 +131,7 @@ FILES = {
     "li-lim": Files(names_of(LI_LIM), 10.0, _ENDS),
     "longest": Files(LONGEST, 10.0, (OURS, SWEEP), counts_vehicles=False),
 }
-SETS = ("uniform", "bi-cvrp", *FILES)
+SETS = ("uniform", "bi-cvrp", "streets", "reloads", *FILES)
 
 
 class Group(NamedTuple):
@@ -137,7 +160,6 @@ def main(arguments: list[str]) -> None:
     options = parser.parse_args(arguments)
     if options.data is None and set(options.sets) & set(FILES):
         parser.error(f"{', '.join(set(options.sets) & set(FILES))}: --data must name a folder")
-    ours(bi_cvrp(10, 0), 0.1)  # compiled before it is timed
     for name in options.sets:
         for group in _groups(name, options):
             _measure(name, group, options)
@@ -146,15 +168,18 @@ def main(arguments: list[str]) -> None:
 
 def _groups(name: str, options: argparse.Namespace) -> Iterator[Group]:
     """Yield the groups of instances of a set."""
-    if name == "uniform":
-        for n in options.sizes or UNIFORM:
-            made = [uniform(n, seed) for seed in range(options.count or 3)]
-            yield Group(f"{n} stops", made, 8.0, (OURS, SWEEP, ALONE))
+    if name in RECIPES:
+        recipe = RECIPES[name]
+        for n in options.sizes or recipe.sizes:
+            made = [recipe.make(n, seed) for seed in range(options.count or 3)]
+            yield Group(f"{n} stops", made, 8.0, recipe.methods)
     elif name == "bi-cvrp":
         for n in options.sizes or BI_CVRP:
             made = [bi_cvrp(n, seed) for seed in range(options.count or 200)]
             methods = (NO_SEARCH, OURS, SWEEP, OR_TOOLS_SWEEP)
             yield Group(f"{n} customers", made, BI_CVRP[n].seconds, methods)
+    elif name == "streets":
+        yield from _of_streets(options)
     else:
         files = FILES[name]
         for each in options.names or files.names:
@@ -162,10 +187,21 @@ def _groups(name: str, options: argparse.Namespace) -> Iterator[Group]:
             yield Group(each, [read], files.seconds, files.methods, files.counts_vehicles)
 
 
+def _of_streets(options: argparse.Namespace) -> Iterator[Group]:
+    for n in options.sizes or STREETS:
+        for count in (2, 3):
+            made = street_fleets(n, objectives=count, instances=options.count or STREETS[n])
+            for seconds in (options.seconds,) if options.seconds else _SECONDS_OF_STREETS:
+                group = f"{n} orders, {count} objectives, {seconds:g} s"
+                yield Group(group, made, seconds, (OURS, EARLIER))
+
+
 def _measure(name: str, group: Group, options: argparse.Namespace) -> None:
     """Measure a group by all methods, one instance after another, and store the rows."""
     seconds = options.seconds or group.seconds
     measures = {}
+    for method in {OURS, EARLIER} & set(group.methods):
+        _method(method, group.counts_vehicles)(group.instances[0], 0.1)  # compiled before it counts
     for method in options.methods or group.methods:
         limit = 0.0 if method == NO_SEARCH else seconds
         find = _method(method, group.counts_vehicles)
@@ -177,6 +213,8 @@ def _method(name: str, counts_vehicles: bool) -> Find:
     """Return a method by its name. The libraries of others are imported where they are used."""
     if name in (OURS, NO_SEARCH):
         return ours
+    if name == EARLIER:
+        return earlier
     rivals = _RIVALS_OF_ENDS if counts_vehicles else _RIVALS
     module, _, function = rivals[name].partition(".")
     find: Callable[[Fleet, float], list[Plan]] = getattr(
@@ -213,6 +251,11 @@ def ours(instance: FleetInstance, seconds: float) -> list[Plan]:
     ]
     np.testing.assert_allclose(front.lengths, points_of(instance.fleet, plans), rtol=1e-9)
     return plans
+
+
+def earlier(instance: FleetInstance, seconds: float) -> list[Plan]:
+    """Return the plans of the earlier engine."""
+    return earlier_fleets.front_of({**instance.request, "time_limit": seconds})
 
 
 @cache

@@ -1,11 +1,16 @@
 """The benchmark of fleets measures each of its sets, and is right about lengths and rules."""
 
+import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from service.fleet.evaluation import points_of
 from tests.benchmarks import fleet_table, provenance
+from tests.benchmarks.fleet_instances import fleet_of
+from tests.benchmarks.rivals import earlier_fleets
+from tests.benchmarks.street_fleets import street_fleets
 
 # A vehicle holds two of three customers. One that visits 2 after 1 is on its way for 24.
 WINDOWS = """T1
@@ -56,6 +61,15 @@ FILES = {
     "LT.txt": SHIPMENTS,
     "X-t.vrp": CAPACITY,
     "X-t.sol": "Route #1: 2 1\nRoute #2: 3\nCost 22\n",
+}
+REQUEST: dict[str, Any] = {
+    "stops": [{"id": "0"}, *({"id": str(stop), "demand": [7]} for stop in (1, 2, 3))],
+    "vehicles": [{"id": "van", "start": "0", "end": "0", "capacity": [10], "shift": [0, 100]}],
+    "objectives": [
+        {"name": "total", "coordinates": [[0, 0], [3, 0], [0, 4], [-3, 4]], "over": "sum"},
+        {"name": "longest", "coordinates": [[0, 0], [3, 0], [0, 4], [-3, 4]], "over": "max"},
+    ],
+    "clock": "longest",
 }
 TOTAL = [22.0, 20.0]  # and the longest route, without and with time
 BOTH = {
@@ -113,6 +127,42 @@ def test_recipes_are_planned_and_printed(fleets: Any, capsys: pytest.CaptureFixt
     printed = capsys.readouterr().out
     assert "| 20 stops (1) | PyVRP in a sweep |" in printed
     assert "| paretour without a search | 0.5" in printed  # of the literature's box
+
+
+def test_late_orders_on_streets_are_planned_by_us_and_by_the_earlier_engine(fleets: Any) -> None:
+    commit = f"{earlier_fleets.COMMIT}^{{commit}}"
+    known = subprocess.run(["git", "cat-file", "-e", commit], cwd=provenance.ROOT, check=False)
+    if known.returncode:
+        pytest.skip("this clone lacks the commit of the earlier engine")
+    fleets.main(["--sets", "streets", "--sizes", "59", "--seconds", "2"])
+    stored = provenance.load("fleets")
+    assert list(stored) == [
+        f"streets: 59 orders, {count} objectives, 2 s, {method}, 2 s"
+        for count in (2, 3)
+        for method in ("paretour", "the earlier engine with PyVRP")
+    ]
+    for key, entry in stored.items():
+        (found,) = entry["instances"]
+        assert {len(point) for point in found["points"]} == {2 if "2 objectives" in key else 3}
+
+
+def test_each_hour_that_a_customer_named_may_be_missed() -> None:
+    (instance,) = street_fleets(59, objectives=2, instances=1)
+    named = [stop for stop in instance.request["stops"] if "due" in stop]
+    assert len(named) == 20
+    for stop in named:
+        begins, closes = stop["window"]
+        assert (stop["due"], closes) == (begins + 3600, 12 * 3600)
+
+
+def test_a_vehicle_of_pyvrp_loads_again() -> None:
+    """It holds the demand of one of three stops, which are 3, 4 and 5 away from the depot."""
+    rival = pytest.importorskip("tests.benchmarks.rivals.pyvrp_fleets", reason="needs the extra")
+    (vehicle,) = REQUEST["vehicles"]
+    once = fleet_of(REQUEST)
+    often = fleet_of({**REQUEST, "vehicles": [{**vehicle, "reload": ["0"]}]})
+    assert rival.least_total(once, 0.1) == []
+    assert points_of(often, rival.least_total(often, 0.1)).tolist() == [[24.0, 24.0]]
 
 
 def test_best_known_plans_are_hit_by_as_few_vehicles_and_as_short_routes(

@@ -1,4 +1,4 @@
-"""PyVRP alone, for fleets of one type of vehicle that start and end at stop 0.
+"""PyVRP alone, for fleets of one type of vehicle that start, load and end at stop 0.
 
 It has everything in its own whole numbers: the longest leg is 10,000 to 100,000 units. Legs are
 rounded up and windows inwards, so that its plans keep the rules.
@@ -100,6 +100,7 @@ class _Problem:
             list(vehicle.capacity),
             tw_early=early,
             tw_late=late,
+            reload_depots=[0] if vehicle.reload else [],
         )
         self.data = pyvrp.ProblemData(
             [pyvrp.Location(0, 0)] * rules.n,
@@ -140,6 +141,8 @@ class _Problem:
         for visit in _visits(route):
             if visit.is_client():
                 yield self._clients[visit.idx]
+            elif visit.is_depot():  # where the vehicle loads again
+                yield 0
             elif visit.is_pickup():
                 yield shipments[visit.idx].pickup
             else:
