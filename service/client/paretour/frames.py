@@ -21,6 +21,7 @@ _OF_FLEETS = ("demand", *_NUMBERS, "window", "windows", "skills")
 _DEGREES = 4326  # the EPSG code of WGS84: longitude and latitude
 _SIDES = ("rows", "columns")
 _ENDS = 2  # of a window
+_PLAIN = {bool, float, int, str, type(None)}
 _SEPARATOR = re.compile(r"[;|,]")  # between skills in one text
 _MOST_SHOWN = 80  # characters of a wrong value in a sentence
 # A row for each city, with its costs to all cities; None or infinity forbids the leg.
@@ -60,6 +61,8 @@ def without_frames(value: Any, name: str = "", ids: Sequence[str] = ()) -> Any:
             ids = _ids_of(value["stops"])
         return {key: without_frames(each, key, ids) for key, each in value.items()}
     if isinstance(value, list | tuple):
+        if _PLAIN.issuperset(map(type, value)):  # as are rows of large matrices
+            return list(value)
         if name in COSTS and not ids:
             check_same(name, [_labels(each) for each in value if hasattr(each, "to_numpy")])
         return [without_frames(each, name, ids) for each in value]
