@@ -3,7 +3,6 @@
 import gc
 import os
 import signal
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -29,9 +28,7 @@ settings.load_profile("project")
 
 def pytest_configure(config: pytest.Config) -> None:
     """Prepare what child processes inherit: Ctrl-C, threads, certificates, the compiled search."""
-    # Many processes are started, each of which would compile what none before it kept.
-    sys.dont_write_bytecode = False
-    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # see tests/__init__.py
     # A shell starts background jobs, and nohup its command, with SIGINT ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     # Tests run side by side; torch's threads spin while they wait, and take the cores from others.

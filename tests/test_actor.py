@@ -9,6 +9,7 @@ from threading import Timer
 import numpy as np
 import pytest
 
+from models.data.matrices import planes
 from service.actor import OnnxActor, load_actors
 from service.errors import Cancelled
 from service.instance import Instance
@@ -224,6 +225,13 @@ def test_equal_costs_are_no_more_work_than_others(tmp_path: Path) -> None:
     tied = (np.full_like(costs, 7.0), np.stack((half, half)), np.stack((costs[0], half)))
     works = work(path, tmp_path, *(Instance(matrices=each) for each in (costs, *tied)))
     assert 0 < max(works) < 4 * works[0]
+
+
+def test_edges_that_cost_less_than_their_prices_are_joined() -> None:
+    actor = OnnxActor(RELEASED.with_name("pa-one-matrix.onnx"), threads=1)
+    instance = Instance(matrices=planes(50, np.random.default_rng([50, 8])))  # some do in repairs
+    tours = actor.tours(instance, from_angles(fan(100)), repairs=1)
+    np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(50), (200, 1)))
 
 
 def test_a_call_under_way_is_terminated_and_the_next_is_not(actor: OnnxActor) -> None:

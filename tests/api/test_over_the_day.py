@@ -73,7 +73,9 @@ def test_lengths_and_times_are_those_of_the_rush_hour(client: httpx.Client) -> N
 
 
 def test_slices_are_as_the_factors_that_they_came_from(client: httpx.Client) -> None:
-    first, second = (front_of(client, each)["front"] for each in (stops(), sliced()))
+    # Not closed, as a tour and the same one turned round have the same lengths and other times.
+    way = {"closed": False, "end": "b"}
+    first, second = (front_of(client, each)["front"] for each in (stops(**way), sliced(**way)))
     assert [tour["times"] for tour in first] == [tour["times"] for tour in second]
 
 

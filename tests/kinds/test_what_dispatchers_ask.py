@@ -104,23 +104,23 @@ ORDERS = {
     # On each route urgent stops come before normal ones; their own order is free.
     "vroom#1269": (
         fleet(URGENT, before=[{"first": ["vip", "urgent"], "then": ["normal"]}]),
-        ["depot", "urgent", "vip", "normal", "depot"],
+        [["urgent", "vip", "normal"], ["vip", "urgent", "normal"]],
     ),
     # One stop must come before another on the same vehicle.
     "vroom#1325": (
         fleet(
             URGENT, before=[{"first": ["vip"], "then": ["urgent"]}], together=[["vip", "urgent"]]
         ),
-        ["depot", "normal", "vip", "urgent", "depot"],
+        [["normal", "vip", "urgent"], ["vip", "urgent", "normal"]],
     ),
 }
 
 
 @pytest.mark.parametrize("thread", ORDERS)
 def test_stops_come_in_the_order_that_was_asked_for(thread: str) -> None:
-    request, expected = ORDERS[thread]
-    plan = planned(request)
-    assert [route["stops"] for route in plan["routes"]] == [expected]
+    request, shortest = ORDERS[thread]
+    [route] = planned(request)["routes"]
+    assert route["stops"][1:-1] in shortest
 
 
 BIKE = {"id": "bike", "start": "depot", "end": "depot"}

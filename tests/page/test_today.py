@@ -302,11 +302,12 @@ def test_a_day_is_replanned_from_what_is_done_by_now(window: Page) -> None:
 
 @needs_chromium
 def test_what_helps_a_day_that_has_no_plan_is_one_click(window: Page) -> None:
-    """The van that is left has no room for what the other one has on board."""
+    """The van that is left has no room for the other one's stops, all of them still to come."""
     vans = [{**VAN, "id": name, "capacity": [4], "reload": []} for name in ("Pekka", "Anna")]
-    open_files(
-        window, {"fleet.json": json.dumps({**FLEET, "stops": FLEET["stops"][:5], "vehicles": vans})}
-    )
+    depot, *orders = FLEET["stops"][:5]
+    later = [{**order, "window": [9 * HOUR, 14 * HOUR]} for order in orders]
+    asked = {**FLEET, "stops": [depot, *later], "vehicles": vans}
+    open_files(window, {"fleet.json": json.dumps(asked)})
     window.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(window)
     window.locator("#today > summary").click()

@@ -59,7 +59,7 @@ def features_seen(
     of_ends = [
         *(own, theirs, near.side_by_side(known.flatten(0, 1)).view(*scale.shape, -1)),
         *(scale.log()[..., None], on_paths[..., None]),
-        (on_paths * (across / unit) / scale).log1p()[..., None],
+        (on_paths * (across.clamp(min=0.0) / unit) / scale).log1p()[..., None],
         fragments.left[:, None].to(unit).rsqrt().expand_as(scale)[..., None],
         *(nearest, (count / own.shape[2])[..., None]),
     ]

@@ -115,6 +115,21 @@ def test_prices_change_the_cost_of_all_tours_of_a_row_by_the_same(n: int, seed: 
     assert torch.allclose(differences, differences[:, :1].expand_as(differences))
 
 
+def test_the_logits_of_edges_that_cost_less_than_nothing_are_finite() -> None:
+    """Prices may be too high, also for the edge that would close a path to a tour."""
+    actor = small_actor("pa-one-matrix")
+    assert isinstance(actor, OneMatrixActor)
+    tables = padded_matrices(matrices(12, 3).float() - 10.0).tables
+    costs = weighted_costs(tables, torch.tensor([[0.5, 0.5]]))
+    fragments = single_cities(costs)
+    while int(fragments.left) > 2:
+        candidates = cheapest_candidates(costs, fragments, actor.candidates)
+        logits = actor.edge_logits(costs, fragments, candidates)
+        assert logits.isfinite().all()
+        mates = mutual_best(fragments, candidates.positions, logits)
+        fragments = joined_at_cost(costs, fragments, mates).trimmed()
+
+
 def test_prices_of_symmetric_matrices_do_not_lean() -> None:
     cities = uniform_cities(1, 30, Generator().manual_seed(1), CPU).double()
     costs = padded_matrices(distance_matrices(cities)[0])
