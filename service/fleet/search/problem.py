@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.measures.table import Measure
+from service.fleet.rules import Over, Rules
 from service.fleet.search.day import FleetDay, day_of
 from service.fleet.search.extras import Extras, Waits, extras_of, waits_of
 from service.fleet.vehicles import Pace, VehicleType
