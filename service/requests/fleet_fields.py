@@ -315,7 +315,7 @@ Clock = Annotated[
 class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
-    It has exactly one of matrix, matrices, coordinates, from, slices and measure.
+    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints and measure.
     """
 
     model_config = one_of(
