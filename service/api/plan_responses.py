@@ -13,7 +13,8 @@ from service.api.responses import (
     ObjectiveName,
     PathItem,
 )
-from service.fleet.rules import Measure, Over, Rule
+from service.fleet.measures.table import MEASURES, Measure
+from service.fleet.rules import Over, Rule
 from service.requests.stop_fields import NamedStop
 
 
@@ -93,9 +94,8 @@ class PlanItem(BaseModel):
         " after the same stops as in the plan that is driven",
     )
     measures: dict[str, float] = Field(
-        description="what plans are compared by, as far as the request allows: vehicles, driving,"
-        " service, waiting, lateness, earliness, weighted_arrival, overtime, longest, shortest,"
-        " imbalance, unassigned, load_distance, overlap, changes, on_time, duration, duration_p90"
+        description="what plans are compared by, as far as the request allows:"
+        f" {', '.join(MEASURES)}"
     )
     routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
     unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")

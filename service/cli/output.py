@@ -26,11 +26,12 @@ from service.cli.data import csv_text
 from service.cli.inputs import Ids, ids_in
 from service.cli.terminal_chart import LABELS
 from service.errors.printable import printable
+from service.fleet.measures.table import MEASURES
 from service.objectives import OBJECTIVES
 
 Rows = list[tuple[object, ...]]
 FrontOfPlans = FleetFront | RobotFront
-_OF_SPREAD = ("on_time", "duration", "duration_p90")  # measures of plans whose times spread
+_COLUMNS = [name for name, each in MEASURES.items() if each.column]  # measures of plans in CSV
 _TERMINATED: Mapping[str | None, str] = {
     None: "still being planned",
     "converged": "nothing more was found",
@@ -112,7 +113,7 @@ def plans_as_rows(front: FrontOfPlans, kind: Kind, numbers: Iterable[int] | None
     standing = ("balance",) if flat else ()
     plans: Sequence[Any] = front.plans
     known = getattr(plans[0], "measures", {}) if plans else {}
-    spreading = [name for name in _OF_SPREAD if name in known]
+    spreading = [name for name in _COLUMNS if name in known]
     rows: Rows = [("plan", *standing, *names, *spreading, kind.mover, *of_routes, kind.visits)]
     for number in range(len(plans)) if numbers is None else numbers:
         plan = plans[number]

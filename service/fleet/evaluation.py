@@ -16,11 +16,23 @@ from service.fleet.measures.carried import load_distance, loads_on
 from service.fleet.measures.of_times import OF_TIMES, changes
 from service.fleet.measures.overlap import overlap
 from service.fleet.measures.punctuality import late_visits, longest_duration, punctuality
+from service.fleet.measures.table import MEASURES, Measure
 from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rounding import is_over
-from service.fleet.rules import Measure, Over, Rule, Rules
+from service.fleet.rules import Over, Rule, Rules
 from service.fleet.schedule import REMEMBERED, broken_waits, legs, schedule, trips_of, with_waits
-from service.fleet.times import Schedule
+
+_OF_ROUTE: Mapping[str, Callable[[Fleet, Route], float]] = {
+    each.__name__: each for each in (changes, overlap, load_distance)
+}
+# The length of a route in each measure that is no cost.
+_LENGTHS: Mapping[str, Callable[[Fleet, Route], float]] = {
+    **OF_TIMES,
+    **_OF_ROUTE,
+    "vehicles": lambda *_: 1.0,
+    "unassigned": lambda *_: 0.0,  # what is left out is on no route
+    "on_time": late_visits,
+}
 
 
 class Broken(NamedTuple):
@@ -38,24 +50,18 @@ def route_lengths(fleet: Fleet, route: Route) -> tuple[float, ...]:
     the prices of its vehicle. The imbalance of a plan is that of the lengths that routes have here.
     A percentile is that of the route alone.
     """
-    times = _times_of(fleet, route)
     pairs = enumerate(zip(fleet.rules.over, fleet.rules.layers, strict=True))
     first, *others = (
         longest_duration(fleet, (route,), percent)
         if (percent := fleet.rules.percent(m)) is not None
-        else _length(fleet, route, times, over, layer)
+        else _length(fleet, route, over, layer)
         for m, (over, layer) in pairs
     )
     vehicle = fleet.rules.vehicles[route.vehicle]
     first *= vehicle.per_distance
-    if times is not None and vehicle.per_time:
-        first += vehicle.per_time * times.duration
+    if vehicle.per_time:
+        first += vehicle.per_time * schedule(fleet, route).duration
     return (first, *others)
-
-
-def _times_of(fleet: Fleet, route: Route) -> Schedule | None:
-    """Return the times of a route, if the fleet has a clock."""
-    return None if fleet.rules.clock is None else schedule(fleet, route)
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, ...]:
@@ -76,8 +82,13 @@ def joined_lengths(
     paid = rules.over.index("unassigned") if "unassigned" in rules.over else 0
     lengths[paid] += lost_prizes(rules, plan)
     if "changes" in rules.over:
-        lengths[rules.over.index("changes")] += len(rules.promises - {*plan.visited()})
+        lengths[rules.over.index("changes")] += _dropped(rules, plan)
     return tuple(lengths)
+
+
+def _dropped(rules: Rules, plan: Plan) -> int:
+    """Return how many promised stops a plan leaves out."""
+    return len(rules.promises - {*plan.visited()})
 
 
 def routes_together(
@@ -121,68 +132,54 @@ def unassigned(rules: Rules, plan: Plan) -> list[int]:
 def measures(fleet: Fleet, plan: Plan) -> dict[str, float]:
     """Return those measures of a plan that the data of its fleet allow, by name.
 
-    - `vehicles`: the number of routes
+    Most are sums over its routes: see `_LENGTHS`. Others are:
+
     - `driving`, `service`, `waiting`: how long all vehicles do each, by the clock
-    - `lateness`: the sum of the times by which visits begin after they are due
-    - `earliness`: the sum of the times by which they begin before they are wanted
-    - `weighted_arrival`: the sum of the times from the begin of the first shift until each visit
-      begins, times its urgency
-    - `overtime`: the sum of the times by which routes end after their shifts
     - `longest`, `shortest`, `imbalance`: the longest and the shortest route, and their difference,
       by the clock; without a clock in the objective that is a maximum, or in the first one if
       `imbalance` is an objective
-    - `overlap`: how much neighbours count that do not ride with each other, from 0 to 1
-    - `changes`: the number of promised stops that are left out, or that another vehicle visits, or
-      later than with the tolerance
+    - `changes`: the sum over the routes, and the promised stops that are left out
     - `on_time`, `duration`, `duration_p90`: where times spread, as `punctuality` has them
     - `unassigned`: the prizes of the stops that are left out
-    - `load_distance`: the sum over all legs of the first costs times the load, in its first
-      dimension
     """
     rules, plan = fleet.rules, with_waits(fleet, plan)
     found: dict[str, float] = {"vehicles": len(plan.routes)}
     if rules.clock is not None:
-        found |= _times(fleet, plan, [schedule(fleet, route) for route in plan.routes])
-        found |= punctuality(fleet, plan)
+        found |= _times(fleet, plan) | _sums(fleet, plan, OF_TIMES) | punctuality(fleet, plan)
     if rules.limited is not None:
         lengths = [cost_length(fleet, route, rules.limited) for route in plan.routes]
         longest, shortest = max(lengths, default=0.0), min(lengths, default=0.0)
         found |= {"longest": longest, "shortest": shortest, "imbalance": longest - shortest}
-    if any(visit.prize is not None for visit in rules.visits):
+    if MEASURES["unassigned"].given(rules.visits, rules.vehicles):
         found["unassigned"] = lost_prizes(rules, plan)
-    if rules.promises:
-        kept = rules.promises & {*plan.visited()}
-        found["changes"] = len(rules.promises - kept) + sum(
-            changes(rules, route, _times_of(fleet, route)) for route in plan.routes
-        )
-    if "overlap" in rules.over:
-        found["overlap"] = sum(overlap(fleet, route) for route in plan.routes)
-    if rules.dimensions:
-        found["load_distance"] = sum(load_distance(fleet, route) for route in plan.routes)
+    found |= _sums(fleet, plan, _OF_ROUTE)
+    if "changes" in found:
+        found["changes"] += _dropped(rules, plan)
     return found
 
 
-def _times(fleet: Fleet, plan: Plan, schedules: list[Schedule]) -> dict[str, float]:
+def _sums(
+    fleet: Fleet, plan: Plan, of_route: Mapping[str, Callable[[Fleet, Route], float]]
+) -> dict[str, float]:
+    """Return the sums over all routes of those measures that the data allow, or that are asked."""
+    rules = fleet.rules
+    return {
+        name: sum(measured(fleet, route) for route in plan.routes)
+        for name, measured in of_route.items()
+        if name in rules.over or MEASURES[name].given(rules.visits, rules.vehicles)
+    }
+
+
+def _times(fleet: Fleet, plan: Plan) -> dict[str, float]:
     rules = fleet.rules
     assert rules.clock is not None
-    found = {
+    return {
         "driving": sum(sum(legs(fleet, route, rules.clock)) for route in plan.routes),
         "service": sum(
             rules.service(each.vehicle, stop) for each in plan.routes for stop in each.stops
         ),
-        "waiting": sum(times.waiting for times in schedules),
+        "waiting": sum(schedule(fleet, route).waiting for route in plan.routes),
     }
-    allowed = {
-        "lateness": any(visit.due < inf for visit in rules.visits),
-        "overtime": any(vehicle.max_overtime for vehicle in rules.vehicles),
-        "earliness": any(visit.wanted for visit in rules.visits),
-        "weighted_arrival": "weighted_arrival" in rules.over
-        or any(visit.urgency != 1 for visit in rules.visits),
-    }
-    for name in (name for name, is_allowed in allowed.items() if is_allowed):
-        columns = zip(plan.routes, schedules, strict=True)
-        found[name] = sum(OF_TIMES[name](rules, route, times) for route, times in columns)
-    return found
 
 
 def points_of(fleet: Fleet, plans: Sequence[Plan]) -> Array:
@@ -216,23 +213,12 @@ def routes_broken(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Broken]]:
         yield vehicle, Broken("before", detail)
 
 
-def _length(
-    fleet: Fleet, route: Route, times: Schedule | None, over: Over | Measure, layer: int
-) -> float:
-    """Return a length of a route, whose times are needed if the fleet has a clock."""
-    match over:
-        case "vehicles":
-            return 1.0
-        case "unassigned":
-            return 0.0
-        case "overtime" | "lateness" | "earliness" | "weighted_arrival" if times is not None:
-            return OF_TIMES[over](fleet.rules, route, times)
-        case "load_distance" | "overlap" | "on_time":
-            return _OF_ROUTE[over](fleet, route)
-        case "changes":
-            return changes(fleet.rules, route, times)
-        case "imbalance" if fleet.rules.limited is not None:
-            layer = fleet.rules.limited
+def _length(fleet: Fleet, route: Route, over: Over | Measure, layer: int) -> float:
+    """Return a length of a route."""
+    if over in _LENGTHS:
+        return _LENGTHS[over](fleet, route)
+    if over == "imbalance" and fleet.rules.limited is not None:
+        layer = fleet.rules.limited
     return cost_length(fleet, route, layer)
 
 
@@ -241,13 +227,6 @@ def cost_length(fleet: Fleet, route: Route, layer: int) -> float:
     if layer == fleet.rules.clock:
         return schedule(fleet, route).duration
     return sum(legs(fleet, route, layer))
-
-
-_OF_ROUTE: Mapping[str, Callable[[Fleet, Route], float]] = {
-    "load_distance": load_distance,
-    "overlap": overlap,
-    "on_time": late_visits,
-}
 
 
 def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from service.day.costs import CostsOfDay
 from service.fleet.costs import Day, allowed, checked
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.measures.table import MEASURES, OF_TIME, Measure
+from service.fleet.rules import Over, Rules
 from service.fleet.straight import Line
 from service.instance import SAMPLED, largest_costs, ordinary_cost
 
@@ -299,10 +300,10 @@ class Fleet:
     def scale(self) -> Array:
         """The unit of each of m objectives, shape (m,), 1 if that would be 0.
 
-        It is the largest leg, of lateness and earliness by the clock and of imbalance in the costs
-        by which routes are compared; otherwise one vehicle, one change, the overlap of a mean stop,
-        one late visit, the largest prize, the most overtime of a vehicle, the largest leg with the
-        largest capacity, or with the sum of all urgencies.
+        It is the largest leg, of times by the clock and of imbalance in the costs by which routes
+        are compared; of what is counted it is 1. Otherwise it is the overlap of a mean stop, the
+        largest prize, the most overtime of a vehicle, the largest leg with the largest capacity, or
+        with the sum of all urgencies.
         Times are those of the slowest vehicle, and the first unit is at the highest prices.
         """
         rules = self.rules
@@ -326,21 +327,19 @@ class Fleet:
     def _unit(self, over: Over | Measure, layer: int) -> float:
         legs, rules = self._slowest_legs, self.rules
         match over:
-            case "vehicles" | "changes" | "on_time":
-                return 1.0
+            case "sum" | "max":
+                return float(legs[layer])
             case "overlap":
                 return 1.0 / max(1, len(rules.clients))
             case "unassigned":
                 return max(visit.prize or 0.0 for visit in rules.visits)
             case "overtime":
                 return max(vehicle.max_overtime for vehicle in rules.vehicles)
-            case "lateness" | "earliness" | "imbalance":
-                return float(legs[rules.limited or 0])
             case "weighted_arrival":
                 return float(legs[rules.limited or 0]) * urgency_of(rules)
             case "load_distance":
                 return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
-        return float(legs[layer])
+        return float(legs[rules.limited or 0]) if MEASURES[over].unit in OF_TIME else 1.0
 
 
 def least_paths(legs: Rows, n: int, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:

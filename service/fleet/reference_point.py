@@ -4,18 +4,22 @@ from math import inf
 
 from service.fleet.fleet import Array, Fleet, urgency_of
 from service.fleet.measures.punctuality import deviations_of
+from service.fleet.measures.table import MEASURES, OF_TIME
 from service.fleet.rules import Rules
+
+_TIMED = {name for name, each in MEASURES.items() if each.unit in OF_TIME}
+_TIMED -= {"overtime", "weighted_arrival"}  # the most of either is known from other data
 
 
 def default_reference_point(fleet: Fleet) -> Array:
     """Return lengths above those of sensible plans under m objectives, shape (m,).
 
     They are the number of stops times the scale, plus what else can add to a length. In the first
-    objective these are all prizes and fixed costs. In objectives of the clock, in lateness and in
-    imbalance by the clock they are all services, and the time from the first shift or window to the
-    end of the last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of
-    weighted arrivals each may be as late. Of percentiles all legs are as long as on such a day. The
-    first one is at the highest prices, and visits take as long as by the slowest vehicles.
+    objective these are all prizes and fixed costs. In objectives of the clock, and in measures that
+    are times, they are all services, and the time from the first shift or window to the end of the
+    last, in which a vehicle may wait: once, or for each vehicle if times are summed. Of weighted
+    arrivals each may be as late. Of percentiles all legs are as long as on such a day. The first
+    one is at the highest prices, and visits take as long as by the slowest vehicles.
     """
     rules = fleet.rules
     point = rules.n * fleet.scale
@@ -29,9 +33,8 @@ def default_reference_point(fleet: Fleet) -> Array:
         if percent is not None:
             point[objective] *= 1 + deviations_of(percent) * (rules.spread or 0.0)
     for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
-        timed = {"lateness": True, "earliness": True, "imbalance": rules.clock is not None}
         costs = over in ("sum", "max") and layer == rules.clock
-        price = float(costs or timed.get(over, False))
+        price = float(costs or (over in _TIMED and rules.clock is not None))
         if objective == 0:
             price *= max(vehicle.per_distance for vehicle in rules.vehicles)
             price += max(vehicle.per_time for vehicle in rules.vehicles)

@@ -18,24 +18,11 @@ from service.fleet.checks import (
     check_visit,
 )
 from service.fleet.groups import NO_GROUPS, Groups, check_groups, check_waiting
+from service.fleet.measures.table import MEASURES, Measure
 from service.fleet.vehicles import ALWAYS, Pace, Shipment, Span, VehicleType, Visit
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
-Measure = Literal[
-    "vehicles",
-    "unassigned",
-    "overtime",
-    "lateness",
-    "imbalance",
-    "load_distance",
-    "earliness",
-    "weighted_arrival",
-    "overlap",
-    "changes",
-    "on_time",
-]
-_OF_BEGINS = ("earliness", "weighted_arrival")  # measures of when each visit begins
 Leave = Literal["late", "early"]
 # The rules that a route can break by itself.
 Rule = Literal[
@@ -230,8 +217,9 @@ class Rules:
     @cached_property
     def of_begins(self) -> tuple[Over | Measure, ...]:
         """The objectives that depend on when each visit begins, not only on late ones."""
-        measures = _OF_BEGINS if self.tolerance is None else (*_OF_BEGINS, "changes")
-        return tuple(over for over in self.over if over in measures)
+        names = [name for name, each in MEASURES.items() if each.of_begins]
+        names += ["changes"] if self.tolerance is not None else []
+        return tuple(over for over in self.over if over in names)
 
     def percent(self, objective: int) -> int | None:
         """Return on how many days of a hundred a length is not exceeded; None for one day."""
@@ -374,19 +362,10 @@ def _check_objectives(rules: Rules) -> None:
 
 def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
     """Raise a refusal unless the data have what a measure is of."""
-    needed = {
-        "unassigned": ("no-prizes", any(visit.prize is not None for visit in rules.visits)),
-        "overtime": ("no-overtime", any(vehicle.max_overtime for vehicle in rules.vehicles)),
-        "lateness": ("no-due", any(visit.due < inf for visit in rules.visits)),
-        "earliness": ("no-due-from", any(visit.wanted for visit in rules.visits)),
-        "load_distance": ("no-loads", rules.dimensions > 0),
-        "changes": ("no-promises", bool(rules.promises)),
-        "on_time": ("no-window-or-due", any(visit.is_timed for visit in rules.visits)),
-    }
-    code, is_given = needed.get(measure, ("", True))
-    if not is_given:
-        raise invalid(part, code, measure=measure)
-    if measure == "weighted_arrival" and rules.clock is None:
+    row = MEASURES[measure]
+    if row.lacking and not row.given(rules.visits, rules.vehicles):
+        raise invalid(part, row.lacking, measure=measure)
+    if row.unit == "clock" and not row.lacking and rules.clock is None:
         raise invalid(part, "untimed")
     if measure == "on_time" and rules.spread is None:
         raise invalid(part, "measure-without-spread")

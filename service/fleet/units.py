@@ -7,6 +7,7 @@ import numpy as np
 
 from service.errors import InvalidInstance
 from service.fleet.fleet import Array, Fleet
+from service.fleet.measures.table import MEASURES, OF_TIME
 from service.fleet.vehicles import Span
 
 _TINY = 2.0**-900  # a shorter longest leg is multiplied: its square would be 0
@@ -88,13 +89,9 @@ class Units:
     def points(self, points: Array) -> Array:
         """Return points, shape (..., m), in these units; infinite where these are too small."""
         rules = self.fleet.rules
-        numbers = dict.fromkeys(("vehicles", "overlap", "changes", "on_time"))
-        numbers |= {"unassigned": 0, "load_distance": 0}
-        timed = dict.fromkeys(
-            ("overtime", "lateness", "imbalance", "earliness", "weighted_arrival"), rules.limited
-        )
+        of_units = {"prizes": 0, "load": 0, **dict.fromkeys(OF_TIME, rules.limited)}
         layers = [
-            {**numbers, **timed}.get(over, layer)
+            of_units.get(MEASURES[over].unit) if over in MEASURES else layer
             for over, layer in zip(rules.over, rules.layers, strict=True)
         ]
         shifts = [0 if layer is None else self.shifts[layer] for layer in layers]

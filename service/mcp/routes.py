@@ -8,12 +8,7 @@ from paretour import FleetFront, FleetPlan, FleetRoute, FrontOfAnyKind, Objectiv
 from paretour.kinds import kind_of
 
 from service.amounts.said import amount, clock_time
-
-# Measures of plans that are times by the clock; others are counts, prizes or lengths.
-_TIMES = (
-    *("driving", "service", "waiting", "lateness", "earliness", "overtime", "longest"),
-    *("shortest", "duration", "duration_p90"),
-)
+from service.fleet.measures.table import MEASURES, OF_TIME
 
 
 @dataclass(frozen=True)
@@ -53,13 +48,13 @@ def measures_of(front: FrontOfAnyKind, number: int) -> dict[str, Any]:
 
 def _measure(name: str, value: float, clock: Objective | None) -> str | float:
     """Return a measure in words: times as "2:10 h", shares as "12 %", changes as "3 stops"."""
-    if clock is not None and name in (*_TIMES, "imbalance"):
+    row = MEASURES.get(name)  # None for what only a later service has
+    unit = row and (row.of_plan or row.unit)
+    if clock is not None and unit in OF_TIME and name != "weighted_arrival":  # times an urgency
         return amount(value, clock.unit)
-    if name == "overlap":
-        return f"{100 * value:.3g} % of neighbours ride with somebody else"
-    if name == "on_time":
-        return f"{100 * value:.3g} % of visits"
-    if name == "changes":
+    if row is not None and unit == "%":
+        return f"{100 * value:.3g} % {row.said}"
+    if unit == "stops":
         return "1 stop" if value == 1 else f"{value:.7g} stops"
     return float(f"{value:.7g}")
 

@@ -313,21 +313,19 @@ class _Search:
         """Return the least length of the route in an objective, shape (p, s)."""
         rules = self._fleet.rules
         match over:
+            case "sum" | "max":
+                return self._least_costs(places, known, layer)
+            case "imbalance":
+                return self._least_costs(places, known, rules.limited)
             case "vehicles":
                 return np.ones(known.end.shape)
-            case (
-                "unassigned" | "earliness" | "weighted_arrival" | "overlap" | "changes" | "on_time"
-            ):
-                return np.zeros(known.end.shape)
             case "lateness":
                 return known.lateness
             case "overtime":
                 return np.maximum(known.end - rules.vehicles[places.vehicle].shift[1], 0.0)
-            case "load_distance" if self._fleet.day is not None:
-                return np.zeros(known.end.shape)
-            case "load_distance":
+            case "load_distance" if self._fleet.day is None:
                 return self._at_any_time(places, known, load_distance)
-        return self._least_costs(places, known, rules.limited if over == "imbalance" else layer)
+        return np.zeros(known.end.shape)  # there may be none of it
 
     def _least_costs(self, places: Places, known: Bounds, layer: int | None) -> Array:
         """Return the least length of the route in some costs, shape (p, s)."""

@@ -218,6 +218,11 @@ class FleetRequest(SearchFields):
         for index, each in enumerate(self.before):
             if each.vehicles == "any":
                 raise invalid(f"before/{index}/vehicles", "waits-over-the-day")
+        by_pair = any(item.breakpoints for item in self._costs.values())
+        for index, vehicle in enumerate(self.vehicles):
+            if by_pair and vehicle.speed_factor < 1:
+                came = vehicle.speed_factor
+                raise invalid(f"vehicles/{index}/speed_factor", "slower-by-breakpoints", came=came)
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
         """Return the groups of stops.
@@ -303,7 +308,7 @@ class FleetRequest(SearchFields):
         """Return whether two objectives have the same costs between the stops."""
         a, b = (self.objectives[index] for index in (first, second))
         fixed = ("matrix", "matrices", "coordinates", "measure", "speed")
-        names = (*fixed, "over_the_day", "slices", "traffic")
+        names = (*fixed, "over_the_day", "slices", "breakpoints", "traffic")
         return all(getattr(a, name) == getattr(b, name) for name in names)
 
     def _sources(

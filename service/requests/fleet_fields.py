@@ -7,7 +7,8 @@ from typing import Annotated
 from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
-from service.fleet.rules import Measure, Over
+from service.fleet.measures.table import Measure, joined_texts
+from service.fleet.rules import Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 from service.requests.day_fields import OF_SOURCES, SOURCES
 from service.requests.fields import (
@@ -314,7 +315,7 @@ Clock = Annotated[
 class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
-    It has exactly one of matrix, matrices, coordinates, from, slices and measure.
+    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints and measure.
     """
 
     model_config = one_of(
@@ -326,16 +327,7 @@ class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
     of_plan: Measure | None = Field(
         default=None,
         alias="measure",
-        description="in place of a source of costs, not for the first objective: the number of"
-        " vehicles that are used, the prizes of the stops that are left out, the overtime beyond"
-        " shifts, the lateness after stops are due, the earliness before they are, the weighted"
-        " arrival, which is the time until each visit begins times its urgency, each summed up over"
-        " the plan; the imbalance, by which the longest route is longer than the shortest; the load"
-        " distance, the first costs of each leg times the load; the overlap, from 0 to 1, which is"
-        " the share of neighbours that do not ride with each other, weighted by nearness; or the"
-        " changes: how many stops of the plan in `promised` are left out, or visited by another"
-        " vehicle or later than with its tolerance; or, where times have a `spread`, on_time: how"
-        " many visits are late on an average day",
+        description=f"in place of a source of costs, not for the first objective: {joined_texts()}",
     )
     over: Over = Field(
         default="sum",

@@ -9,8 +9,9 @@ import numpy as np
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.fleet.fleet import LAYERS, Fleet
+from service.fleet.measures.table import Measure
 from service.fleet.plans import Route
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import VehicleType
 from service.front import PlanOptions
 from service.objectives import Objective

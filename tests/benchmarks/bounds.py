@@ -25,9 +25,10 @@ from paretour.choice import knee
 from service.errors import Refusal
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
+from service.fleet.measures.table import Measure
 from service.fleet.planner import plan_fleet
 from service.fleet.plans import FleetFront, Plan, Route, kept_share
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import ALWAYS, VehicleType, Visit
 from service.watch import Progress, Watch
 from tests.benchmarks.cells import of

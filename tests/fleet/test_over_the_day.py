@@ -70,7 +70,7 @@ def test_a_route_leaves_when_it_takes_the_least_time_and_nothing_is_later_for_it
             least = min(badness(fleet, route, each) for each in every)
             if fleet.rules.leave == "late":
                 assert badness(fleet, route, again)[:2] <= tuple(x + 1e-6 for x in least[:2])
-                assert overtime(fleet.rules, route, times) <= least[1] + 1e-6
+                assert overtime(fleet, route) <= least[1] + 1e-6
                 assert times.duration <= least[2] + 1e-6
             other = 1 - fleet.rules.clock
             expected = other_length(fleet, route, list(times.leaves), other)

@@ -5,7 +5,7 @@ import random
 from collections.abc import Callable
 from typing import Any, get_args
 
-from service.fleet.rules import Measure
+from service.fleet.measures.table import Measure
 from service.requests.task import TaskSource
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
 

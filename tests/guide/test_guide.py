@@ -7,17 +7,19 @@ import shutil
 import subprocess
 import tomllib
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from export import __main__ as export
 from models import drl_moa, expert, train
 from service.errors import PROBLEMS
+from service.fleet.measures.table import TRADED, Measure
 from service.settings import Settings
 from tests.guide.codes import codes, faults, remedies
 from tests.guide.figures import figures
-from tests.guide.kinds import TABLE, kinds_file
 from tests.guide.members import JSON, json_file, type_files
+from tests.guide.page_tables import page_tables
 from tests.guide.pages import (
     GUIDE,
     PAGES,
@@ -275,10 +277,17 @@ def test_the_table_of_codes_is_that_of_the_service() -> None:
 
 
 def test_the_client_and_the_page_have_what_the_service_has() -> None:
-    for path, types in type_files().items():
-        assert path.read_text() == types, "run python -m tests.guide"
+    for path, module in {**type_files(), **page_tables()}.items():
+        assert path.read_text() == module, "run python -m tests.guide"
     assert JSON.read_text() == json_file(), "run python -m tests.guide"
-    assert TABLE.read_text() == kinds_file(), "run python -m tests.guide"
+
+
+def test_every_measure_is_an_objective_in_the_guide() -> None:
+    rows = re.findall(
+        r"^\| `(\w+)` \| costs against ", (GUIDE / "plan-a-fleet.md").read_text(), re.M
+    )
+    assert rows == list(TRADED)
+    assert set(rows) == set(get_args(Measure))
 
 
 def test_every_setting_is_described() -> None:

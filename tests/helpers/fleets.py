@@ -11,8 +11,9 @@ import numpy as np
 from service.fleet.evaluation import plan_lengths, points_of, violations
 from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.groups import Groups
+from service.fleet.measures.table import Measure
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import ALWAYS, Break, Shipment, VehicleType, Visit
 from service.pareto import hypervolume, nondominated
 

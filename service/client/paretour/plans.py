@@ -121,9 +121,8 @@ class FleetPlan(_Plan):
 
     Attributes:
         unassigned: The ids of the stops that it leaves out.
-        measures: What plans are compared by, as far as the request allows: vehicles, driving,
-            service, waiting, lateness, earliness, weighted_arrival, overtime, longest, shortest,
-            imbalance, unassigned, load_distance, overlap, changes, on_time, duration, duration_p90.
+        measures: What plans are compared by, by name, as far as the request allows: `vehicles`,
+            `driving` and others, which the reference at `/docs` lists.
         left_out: For each stop that it leaves out, what it would cost to serve it, or why none can.
         kept: If it was replanned, the share of the stops left that the same vehicles visit after
             the same stops.

@@ -17,7 +17,7 @@ import numpy as np
 from service.fleet.fleet import Array, Fleet
 from service.fleet.measures.punctuality import deviations_of
 from service.fleet.necessary import fewest_vehicles, least_longest
-from service.fleet.search.problem import Direction
+from service.fleet.search.problem import WEIGHTED, Direction
 from service.objectives import OBJECTIVES
 
 _FIRST_SHARE = 0.25  # of all rounds, for each objective alone
@@ -331,7 +331,7 @@ class Directions:
     ) -> Direction:
         """Return a direction with weights, shape (m,), and limits and bounds."""
         costs = np.zeros(OBJECTIVES)
-        by_measure = dict.fromkeys(self._over, 0.0)
+        by_measure = dict.fromkeys(WEIGHTED, 0.0)
         longest, most, routes = inf, inf, 2**31
         penalty = most_penalty = mean = deviation = 0.0
         for index, (over, layer) in enumerate(zip(self._over, self._rules.layers, strict=True)):
@@ -359,14 +359,6 @@ class Directions:
             vehicle=by_measure.get("vehicles", 0.0),
             fixed=float(weights[0]),
             prize=float(weights[paid]),
-            overtime=by_measure.get("overtime", 0.0),
-            lateness=by_measure.get("lateness", 0.0),
-            load_distance=by_measure.get("load_distance", 0.0),
-            earliness=by_measure.get("earliness", 0.0),
-            arrival=by_measure.get("weighted_arrival", 0.0),
-            overlap=by_measure.get("overlap", 0.0),
-            changes=by_measure.get("changes", 0.0),
-            late=by_measure.get("on_time", 0.0),
             mean=mean,
             deviation=deviation,
             variance=0.0,
@@ -381,4 +373,5 @@ class Directions:
             routes=routes,
             bounds=bounds,
             strict=_STRICT * unit / self._scale,
+            **{name: by_measure[name] for name in WEIGHTED},
         )

@@ -1,6 +1,6 @@
 """A fleet as the arrays that the search reads, and what a direction of the search asks for."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple, get_args
 
 import numpy as np
@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.loads import loads_of
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.measures.table import Measure
+from service.fleet.rules import Over, Rules
 from service.fleet.search.day import FleetDay, day_of
 from service.fleet.search.extras import Extras, Waits, extras_of, waits_of
 from service.fleet.vehicles import Pace, VehicleType
@@ -19,14 +20,25 @@ Indices = NDArray[np.int64]
 Nodes = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 
-MEASURES: tuple[str, ...] = (*get_args(Over), *get_args(Measure))
+_NUMBERED: tuple[str, ...] = (*get_args(Over), *get_args(Measure))
 SUM, MAX, VEHICLES, UNASSIGNED, IMBALANCE, OF_PROMISES = map(
-    MEASURES.index, ("sum", "max", "vehicles", "unassigned", "imbalance", "changes")
+    _NUMBERED.index, ("sum", "max", "vehicles", "unassigned", "imbalance", "changes")
 )
 # The columns of the values of a route.
 FIRST, SECOND, OVERTIME, LATENESS, LOADED, RELEASED, EARLINESS, ARRIVAL = range(8)
 OVERLAP, CHANGES, WEIGHED, LATE, MEAN, VARIANCE, MOST = range(8, 15)
 COLUMNS = 15
+# The columns of measures with a weight in directions; from EARLINESS on, see weighed.py.
+WEIGHTED: Mapping[str, int] = {
+    "overtime": OVERTIME,
+    "lateness": LATENESS,
+    "load_distance": LOADED,
+    "earliness": EARLINESS,
+    "weighted_arrival": ARRIVAL,
+    "overlap": OVERLAP,
+    "changes": CHANGES,
+    "on_time": LATE,
+}
 _NEAR = 100  # stops that are near a stop, at most
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
@@ -102,7 +114,7 @@ class Problem(NamedTuple):
     priced: bool  # whether the first length is at prices
     per_distance: Array  # (v,), the price of a unit of the first costs
     per_time: Array  # (v,), and of the time of a route
-    over: Indices  # (m,), by MEASURES
+    over: Indices  # (m,), by _NUMBERED
     column: Indices  # (m,), of the values of a route
     grouped: bool  # whether stops ride together, or must not
     mates: Nodes  # (n, x), the stops that ride with each; -1 after the last
@@ -123,7 +135,7 @@ def problem_of(fleet: Fleet) -> Problem:
     """Return the arrays of a fleet."""
     rules, loads = fleet.rules, loads_of(fleet.rules)
     visits, vehicles, windows = rules.visits, rules.vehicles, _windows(rules)
-    weighs = bool(rules.of_begins or rules.of_days or {"overlap", "changes"} & {*rules.over})
+    weighs = rules.of_days or any(WEIGHTED.get(over, FIRST) >= EARLINESS for over in rules.over)
     opens, closes = windows[:, 0, 0], windows[:, -1, 1]
     clients = np.array(rules.clients, np.int32)
     delivery, pickup = _shipped(rules)
@@ -199,7 +211,7 @@ def problem_of(fleet: Fleet) -> Problem:
         priced=rules.priced,
         per_distance=_floats([vehicle.per_distance for vehicle in vehicles]),
         per_time=_floats([vehicle.per_time for vehicle in vehicles]),
-        over=np.array([MEASURES.index(over) for over in rules.over]),
+        over=np.array([_NUMBERED.index(over) for over in rules.over]),
         column=np.array([_column(rules, index) for index in range(len(rules.over))]),
         grouped=bool(rules.groups.mates or rules.groups.rivals),
         mates=_mates(rules),
@@ -320,22 +332,12 @@ def _floats(values: list[float]) -> Array:
 def _column(rules: Rules, objective: int) -> int:
     """Return the column of the values of a route that an objective is of."""
     over = rules.over[objective]
-    columns = {
-        "overtime": OVERTIME,
-        "lateness": LATENESS,
-        "load_distance": LOADED,
-        "earliness": EARLINESS,
-        "weighted_arrival": ARRIVAL,
-        "overlap": OVERLAP,
-        "changes": CHANGES,
-        "on_time": LATE,
-    }
     if over == "max" and rules.percent(objective) is not None:
         return MOST
     if over == "imbalance":
         assert rules.limited is not None
         return rules.limited
-    return columns.get(over, rules.layers[objective])
+    return WEIGHTED.get(over, rules.layers[objective])
 
 
 def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
@@ -354,9 +356,9 @@ def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
 class Direction(NamedTuple):
     """What the search minimises: a weighted sum over routes, with limits on routes and plans.
 
-    The weighted sum is that of legs or durations, vehicles, fixed costs, overtime, lateness, load
-    times distance and the measures in weighed.py, and of the prizes of stops outside. What exceeds
-    a limit is multiplied by `penalty`. A plan also pays for what its lengths exceed bounds by.
+    The weighted sum is that of legs or durations, vehicles, fixed costs and the measures in
+    `WEIGHTED`, whose weights have their names, and of the prizes of stops outside. What exceeds a
+    limit is multiplied by `penalty`. A plan also pays for what its lengths exceed bounds by.
     """
 
     costs: tuple[float, float]  # without prices
@@ -367,10 +369,10 @@ class Direction(NamedTuple):
     lateness: float
     load_distance: float
     earliness: float
-    arrival: float
+    weighted_arrival: float
     overlap: float
     changes: float
-    late: float
+    on_time: float
     mean: float  # of the time of all routes, where that spreads
     deviation: float
     variance: float  # in place of the deviation, which is no sum over routes

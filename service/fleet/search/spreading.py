@@ -120,7 +120,7 @@ def spread_cost(
     direction: Direction, late: float, mean: float, variance: float, most: float
 ) -> float:
     """Return what it costs that a route is late, takes long and differs from day to day."""
-    cost = direction.late * late + direction.mean * mean + direction.variance * variance
+    cost = direction.on_time * late + direction.mean * mean + direction.variance * variance
     return cost + direction.most_penalty * max(0.0, most - direction.most)
 
 

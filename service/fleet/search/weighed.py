@@ -41,7 +41,7 @@ def weigh(state: State, slot: int) -> None:
         plan.value[slot, CHANGES] = _other_vehicles(problem, plan, slot)
     plan.value[slot, WEIGHED] = (
         direction.earliness * plan.value[slot, EARLINESS]
-        + direction.arrival * plan.value[slot, ARRIVAL]
+        + direction.weighted_arrival * plan.value[slot, ARRIVAL]
         + direction.overlap * plan.value[slot, OVERLAP]
         + direction.changes * plan.value[slot, CHANGES]
     )
@@ -219,4 +219,8 @@ def _begins_changed(state: State, slot: int, stop: int, before: int) -> float:
         here, node = node, plan.next[before] if node == stop else plan.next[node]
         if node == end:
             break
-    return direction.earliness * early + direction.arrival * arrival + direction.changes * changes
+    return (
+        direction.earliness * early
+        + direction.weighted_arrival * arrival
+        + direction.changes * changes
+    )

@@ -1,8 +1,9 @@
 /** Names and units of the objectives: two, three or four. */
 
 import { SECONDS } from "./durations.js";
+import { MEASURES } from "./measures_table.js";
 
-const TIMES = ["driving", "service", "waiting", "lateness", "earliness", "weighted_arrival", "overtime", "longest", "shortest", "imbalance", "duration", "duration_p90"]; // measures of plans that are times
+const TIMES = ["clock", "routes"]; // units of measures that may be times
 const THINGS = ["people", "pedestrians", "accidents", "vehicles", "stops", "orders", "parcels", "customers", "visits", "turns", "crossings"];
 
 const SHORT = 16; // letters
@@ -52,7 +53,7 @@ export const isPlural = ({ name, unit }) => namesThings({ name, unit }) || (!uni
 export const isLongest = ({ over, measure }) => over === "max" || measure === "longest";
 
 /** Whether this is a time in a known unit. */
-export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || TIMES.includes(measure));
+export const isTime = ({ measure, unit }) => SECONDS.has(unit) && (!measure || TIMES.includes(MEASURES[measure]?.unit));
 
 /** Whether this is a distance in metres, of which many are kilometres. */
 export const isMetres = ({ unit }) => unit === "m";
@@ -60,10 +61,11 @@ export const isMetres = ({ unit }) => unit === "m";
 /** The units of loads that are carried so far, or for so long. */
 export const [LOAD_KM, LOAD_HOURS] = ["load-km", "load-hours"];
 
-/** How many of what the service counts in are one of the unit. Of `on_time` a measure is a share, an objective are late visits. */
-export const perUnit = ({ measure, unit }) => (measure === "overlap" || (measure === "on_time" && unit === "%") ? PER_CENT : (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1);
+/** How many of what the service counts in are one of the unit. Some are a share beside a plan, and are counted as an objective. */
+export const perUnit = ({ measure, unit }) => (isShare(measure, unit) ? PER_CENT : (measure === "load_distance" && { [LOAD_KM]: 1000, [LOAD_HOURS]: 3600 }[unit]) || 1);
 
 const PER_CENT = 0.01; // of a share
+const isShare = (measure, unit) => MEASURES[measure]?.unit === "%" || (unit === "%" && MEASURES[measure]?.ofPlan === "%");
 
 /** The unit, if it is short enough to stand beside a number. */
 export const shortUnit = ({ unit }) => (unit && unit.length < SHORT ? unit : "");

@@ -1,5 +1,6 @@
 /** Find what a fleet trades for its first objective, and what its times are measured by. */
 
+import { CHOICES } from "../common/measures_table.js";
 import { SPEED } from "../inputs/objective_fields.js";
 import { clockUnit } from "./units.js";
 
@@ -9,15 +10,7 @@ const STRAIGHT = { from: "great_circle" };
 export const AGAINST = {
   max: { title: "Longest route", name: "longest route" },
   sum: { title: "Total of other costs", name: "other costs" },
-  vehicles: { title: "Vehicles used", name: "vehicles" },
-  unassigned: { title: "Orders left out", name: "orders left out", stops: "prize" },
-  overtime: { title: "Overtime", name: "overtime", vehicles: "max_overtime" },
-  lateness: { title: "Lateness", name: "lateness", stops: "due" },
-  earliness: { title: "Earliness", name: "earliness", stops: "due" },
-  weighted_arrival: { title: "Customer wait, by urgency", name: "customer wait", stops: "urgency" },
-  imbalance: { title: "Longest minus shortest route", name: "imbalance" },
-  load_distance: { title: "Load carried", name: "load carried", vehicles: "capacity" },
-  overlap: { title: "Overlap of routes", name: "overlap of routes" },
+  ...CHOICES,
 };
 const COSTS = ["max", "sum"];
 

@@ -1,9 +1,7 @@
 /** The units of a fleet's times, and of objectives that are measures of plans. */
 
+import { MEASURES } from "../common/measures_table.js";
 import { LOAD_HOURS, LOAD_KM, isUnnamed, namesIn } from "../common/objectives.js";
-
-/** The units of measures that are the same for all requests. */
-export const PLAIN = { overlap: "%", changes: "stops" };
 
 /** The unit of the clock of a request: that of an objective, or of times that are not an objective; "" if it is not known. */
 export function clockUnit({ clock, objectives }) {
@@ -15,13 +13,19 @@ export function clockUnit({ clock, objectives }) {
 export const unitOf = ({ unit, from, speed }) => unit ?? (from ? (speed != null || from === "road_time" ? "s" : "m") : "");
 
 /** The unit by which routes are compared: that of the clock, or of the objective that is a maximum, or of the first. */
-export function unitOfRoutes(request) {
+function unitOfRoutes(request) {
   const compared = request.objectives?.find(({ over }) => over === "max") ?? request.objectives?.[0];
   return request.clock || !compared ? clockUnit(request) : unitOf(compared);
 }
 
+/** The unit of a measure of plans, by that of its row in the table of measures. */
+export function unitOfMeasure(unit, objectives, request) {
+  const units = { clock: clockUnit(request), routes: unitOfRoutes(request), prizes: objectives[0].unit, load: loadUnit(objectives), "%": "%", stops: "stops" };
+  return units[unit] ?? "";
+}
+
 /** The unit of what is carried: the load times the first costs, which are how far or for how long. */
-export function loadUnit(objectives) {
+function loadUnit(objectives) {
   const { name, unit } = objectives.find(({ measure }) => !measure) ?? objectives[0];
   return { m: LOAD_KM, s: LOAD_HOURS }[unit] ?? `load × ${unit || name}`;
 }
@@ -35,8 +39,6 @@ export function namesShown({ objectives: named, scale }, before, instance) {
 
 /** These objectives with units for those that are measures of plans of a request, or cost layers of its map. */
 export function withUnits(objectives, request) {
-  const time = clockUnit(request ?? {});
-  const units = { lateness: time, earliness: time, weighted_arrival: time, overtime: time, unassigned: objectives[0].unit, imbalance: unitOfRoutes(request ?? {}), load_distance: loadUnit(objectives), ...PLAIN };
-  const unit = ({ name, measure }) => (measure ? (units[measure] ?? "") : request?.grid ? `${name} × m` : "");
+  const unit = ({ name, measure }) => (measure ? unitOfMeasure(MEASURES[measure]?.unit, objectives, request ?? {}) : request?.grid ? `${name} × m` : "");
   return objectives.map((each) => (each.unit ? each : { ...each, unit: unit(each) }));
 }

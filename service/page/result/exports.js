@@ -1,11 +1,12 @@
 /** Write a request as a curl command, a front as CSV, and one tour or plan alone as JSON. */
 
 import { kindNamed } from "../common/kinds.js";
+import { MEASURES } from "../common/measures_table.js";
 import { unnamed } from "../common/objectives.js";
 import { moversOf } from "../fleet/routes_of_plan.js";
 import { hoursOfPlan } from "../fleet/timetable.js";
 
-const OF_DAYS = [["on_time", "share of visits on time"], ["duration", "mean time in all"], ["duration_p90", "p90 time in all"]];
+const COLUMNS = Object.entries(MEASURES).filter(([, { column }]) => column);
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {
@@ -52,7 +53,7 @@ export function csv({ kind, front }, { objectives, asked }, selected) {
 function csvOfPlans(plans, titles, ofRoutes, { one, stops, through }, selected) {
   const shifts = plans.some(({ routes }) => routes.some(({ shift }) => shift !== undefined));
   const timed = plans.some(({ clock }) => clock);
-  const spreading = OF_DAYS.filter(([measure]) => measure in (plans[0]?.measures ?? {}));
+  const spreading = COLUMNS.filter(([measure]) => measure in (plans[0]?.measures ?? {}));
   const rows = plans.flatMap(({ balance, lengths, measures, routes, names, lanes, clock }, plan) =>
     routes.map((route, at) => {
       const visits = lanes[at]?.visits;
@@ -63,7 +64,7 @@ function csvOfPlans(plans, titles, ofRoutes, { one, stops, through }, selected) 
     }),
   );
   const flat = titles.length === 2 ? ["balance"] : [];
-  const head = ["plan", ...flat, ...titles, ...spreading.map(([, title]) => title), one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, ...(timed ? ["leaves", "back"] : []), stops.toLowerCase(), "selected"];
+  const head = ["plan", ...flat, ...titles, ...spreading.map(([, { column }]) => column), one.toLowerCase(), ...(shifts ? ["shift"] : []), ...ofRoutes, ...(timed ? ["leaves", "back"] : []), stops.toLowerCase(), "selected"];
   return [head, ...rows].map(line).join("");
 }
 

@@ -1,6 +1,7 @@
 /** Say below the name of an objective what its number counts, where a reader could take it for something else. */
 
 import { amount } from "../common/amounts.js";
+import { MEASURES } from "../common/measures_table.js";
 import { isLongest, isTime, shortUnit } from "../common/objectives.js";
 import { knownFleet } from "../fleet/known_fleet.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
@@ -8,13 +9,6 @@ import { isOnTheWay, visitTimes } from "../fleet/visit_times.js";
 
 const OWN = "added up from stop to stop, in the unit of your numbers";
 const NEAR = 0.01; // the share by which the parts of a route may miss its length
-const MEASURED = {
-  load_distance: "each load times how far it is carried, added up",
-  overlap: "how many neighbours ride with different vehicles, the nearest counting most",
-  changes: "visited by another vehicle, or later, than in the plan before",
-  on_time: "begun after their window or when they are due, on an average day",
-  weighted_arrival: "how long each stop waits for its visit, times its urgency, added up",
-};
 const PARTS = [["driving", "driving"], ["service", "at stops"], ["waiting", "waiting"], ["breaks", "in breaks"]];
 
 /**
@@ -45,7 +39,7 @@ function prizesIn(objectives, { measures }) {
 
 /** A unit that is too long to stand beside a number, or what a number without one is. */
 function unitOf(objective) {
-  if (objective.measure) return MEASURED[objective.measure] ?? "";
+  if (objective.measure) return MEASURES[objective.measure]?.note ?? "";
   if (objective.unit?.startsWith(`${objective.name} ×`)) return "what each metre costs, added up along the way";
   return shortUnit(objective) ? "" : objective.unit || OWN;
 }

@@ -9,10 +9,11 @@ from dataclasses import replace
 from math import inf
 
 from service.errors import invalid
+from service.fleet.measures.table import Measure
 from service.fleet.plans import Route
 from service.fleet.promises import begin_of
 from service.fleet.rounding import is_over
-from service.fleet.rules import Measure, Over, Rules
+from service.fleet.rules import Over, Rules
 from service.fleet.vehicles import VehicleType, Visit
 from service.objectives import MOST_OBJECTIVES, Objective
 from service.requests.replan.fleet_fields import ChangesItem
