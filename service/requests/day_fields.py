@@ -22,7 +22,7 @@ from service.requests.fields import (
     one_of,
     optional,
 )
-from service.requests.spread_fields import SpreadFields
+from service.requests.spread_fields import DaysFields, SpreadFields
 from service.requests.stop_fields import OF_A_SPEED, NamedStop, ObjectiveItem
 from service.requests.stops import (
     FixedSource,
@@ -131,6 +131,8 @@ OF_SOURCES: Mapping[str, JsonValue] = {
     "slices": {"properties": {"over_the_day": ABSENT}},
 }
 
+OF_DAYS: JsonValue = {"properties": {"over_the_day": ABSENT, "spread": ABSENT}}
+
 
 class TimedObjectiveItem(ObjectiveItem):
     """An objective, whose costs may change over the day."""
@@ -215,19 +217,8 @@ class TimedObjectiveItem(ObjectiveItem):
         return Slices(np.array(begins), np.stack(matrices))
 
 
-class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
-    """An objective, whose costs may change over the day, or spread from day to day.
-
-    It has exactly one source of costs: matrix, coordinates, from, slices or days.
-    """
-
-    model_config = one_of(
-        *(*SOURCES, "days"),
-        **OF_SOURCES,
-        days={"properties": {"over_the_day": ABSENT, "spread": ABSENT}},
-    )
-
-    choices: ClassVar[str] = "matrix, coordinates, from, slices and days"
+class SampledObjectiveItem(DaysFields, TimedObjectiveItem):
+    """An objective, whose costs may be those of several days."""
 
     @property
     def sources(self) -> list[str]:
@@ -239,6 +230,17 @@ class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
         if self.sources == ["days"]:
             return Matrix(self.costs_of_days(part, len(stops)).mean(axis=0))
         return super().fixed_source(part, stops)
+
+
+class DayObjectiveItem(SampledObjectiveItem, SpreadFields):
+    """An objective, whose costs may change over the day, or spread from day to day.
+
+    It has exactly one source of costs: matrix, coordinates, from, slices or days.
+    """
+
+    model_config = one_of(*SOURCES, "days", **OF_SOURCES, days=OF_DAYS)
+
+    choices: ClassVar[str] = "matrix, coordinates, from, slices and days"
 
     def spread_of(self, part: str, n: int) -> Spread | None:
         """Return how the costs between n stops spread; None if they do not.

@@ -34,7 +34,7 @@ from service.requests.replan.fields import NewStop
 from service.requests.replan.fleet_costs import sources_of_rest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.vehicles import changed_fleet, vehicles_of_rest
-from service.requests.replan.way import ReplanSource, StoredFront
+from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
 from service.requests.stops import Labels, Stops, locations_of
 from service.requests.task import Task, UnmeasuredFleet, types_by_id
 from service.requests.validation import parse_json, too_many_cities
@@ -55,6 +55,8 @@ def rest_of_fleet(
         Refusal: The request is over a limit, or the front cannot be replanned so.
     """
     assert task.labels is not None
+    if fleet.rules.sampled:
+        raise not_replannable(source.front.id, "its times are those of several days")
     request = parse_json(ReplanFleetRequest, source.body)
     check_limit("routes", limits.fleet_stops, len(request.routes))
     rest = _Rest(request, source.front, fleet, task.labels)
