@@ -121,7 +121,8 @@ def test_each_given_day_is_driven() -> None:
             assert said.get("on_time") == (pytest.approx(kept / timed) if timed else None)
             assert said["duration"] == pytest.approx(np.mean(durations))
             nine_in_ten = next(
-                most for most in durations
+                most
+                for most in durations
                 if 10 * sum(other <= most for other in durations) >= 9 * len(days)
             )
             assert said["duration_p90"] == pytest.approx(nine_in_ten)
