@@ -25,12 +25,6 @@ class StopRequest(TypedDict, total=False):
     service: float
 
 
-class MatrixRequest(TypedDict, total=False):
-    """The costs of one day."""
-
-    matrix: Required[Costs]
-
-
 # A slice of the day, and the costs in it.
 SliceRequest = TypedDict(
     "SliceRequest",
@@ -49,13 +43,16 @@ class TrafficRequest(TypedDict, total=False):
     at: Required[ArrayLike]
 
 
+class MatrixRequest(TypedDict, total=False):
+    """The costs of one day."""
+
+    matrix: Required[Costs]
+
+
 # An objective, whose costs may change over the day, or spread from day to day.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
-        "spread": float | Costs | None,
-        "days": Sequence[MatrixRequest],
-        "percentile": int | None,
         "name": Required[str],
         "unit": str | None,
         "matrix": Costs,
@@ -65,6 +62,9 @@ ObjectiveRequest = TypedDict(
         "over_the_day": ArrayLike,
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
+        "days": Sequence[MatrixRequest],
+        "spread": float | Costs | None,
+        "percentile": int | None,
     },
     total=False,
 )
@@ -134,10 +134,11 @@ class VehicleRequest(TypedDict, total=False):
 
 
 class ProfileMatrixRequest(TypedDict, total=False):
-    """The costs of the legs to vehicles of a profile."""
+    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of the day."""
 
     profile: Required[str]
-    matrix: Required[Costs]
+    matrix: Costs
+    slices: Sequence[SliceRequest]
 
 
 Measure = Literal[
@@ -169,6 +170,7 @@ FleetObjectiveRequest = TypedDict(
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
         "matrices": Sequence[ProfileMatrixRequest],
+        "days": Sequence[MatrixRequest],
         "spread": float | None,
         "measure": Measure | None,
         "over": Literal["sum", "max"],
@@ -215,6 +217,7 @@ ClockRequest = TypedDict(
         "slices": Sequence[SliceRequest],
         "traffic": TrafficRequest | None,
         "matrices": Sequence[ProfileMatrixRequest],
+        "days": Sequence[MatrixRequest],
         "spread": float | None,
     },
     total=False,
