@@ -134,7 +134,7 @@ class VehicleRequest(TypedDict, total=False):
 
 
 class ProfileMatrixRequest(TypedDict, total=False):
-    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of the day."""
+    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of a day."""
 
     profile: Required[str]
     matrix: Costs
