@@ -41,7 +41,7 @@ Profile = str | None  # of a vehicle; without one it drives as the costs say for
 
 
 class ProfileMatrixItem(StrictModel):
-    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of the day.
+    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of a day.
 
     Where others have slices, a matrix holds all day.
     """

@@ -364,6 +364,34 @@ def test_who_must_be_early_is_first_where_times_spread_also_while_it_is_replanne
     assert plan["lengths"][0] == plan["measures"]["duration_p90"]
 
 
+DAYS = (0.5, 1, 1, 1.5)  # how slow all roads are on each of four days
+
+
+def test_the_days_that_are_given_stay_while_a_fleet_is_replanned() -> None:
+    """vroom#1280 on days that differ: on the slow one the stop in the east is missed."""
+    stops = {"west": {"at": WEST, "window": [0, 100]}, "east": {"at": EAST, "window": [0, 14]}}
+    request = fleet(stops, leave="early", against={"measure": "on_time"})
+    time = request["objectives"][0]
+    costs = np.array(time.pop("matrix"))
+    time["days"] = [{"matrix": (slow * costs).tolist()} for slow in DAYS]
+    [plan] = front_of(request)
+    assert plan["routes"][0]["stops"][1:3] == ["east", "west"]
+    assert plan["lengths"] == [40, 0.25]
+    assert plan["measures"]["on_time"] == 1 - 0.25 / 2
+    assert (plan["measures"]["duration"], plan["measures"]["duration_p90"]) == (40, 60)
+    _, source = begun_with("east", request)
+    # A leg that has changed is the same on all days, and so are those of a new stop, in the east.
+    changes = json.loads(source.body)
+    changes["costs"] = [{"objective": "time", "from": "west", "to": "depot", "cost": 12}]
+    new = {"id": "new", "costs": [{"to": [10, 20, 0, 0], "from": [10, 20, 0, 0]}]}
+    for added, most in ([], 1.5 * 20 + 12), ([new], 20 + 12):
+        body = json.dumps({**changes, "add": added}).encode()
+        rest = parse_replan(replace(source, body=body), LIMITS, {})
+        document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+        [after, *_] = json.loads(document.json(id="", status="done"))["front"]
+        assert after["measures"]["duration_p90"] == most
+
+
 def begun_with(stop: str, request: Json, **way: Any) -> tuple[int, ReplanSource]:
     """Return the number of a route that has visited a stop, and a request to replan the rest.
 

@@ -31,10 +31,10 @@ from service.requests.replan.changes import (
 from service.requests.replan.costs import AllStops, all_stops
 from service.requests.replan.day import Way, day_of, removed_stops
 from service.requests.replan.fields import NewStop
-from service.requests.replan.fleet_costs import sources_of_rest
+from service.requests.replan.fleet_costs import sources_of_rest, spreads_of_rest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.vehicles import changed_fleet, vehicles_of_rest
-from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
+from service.requests.replan.way import ReplanSource, StoredFront
 from service.requests.stops import Labels, Stops, locations_of
 from service.requests.task import Task, UnmeasuredFleet, types_by_id
 from service.requests.validation import parse_json, too_many_cities
@@ -55,8 +55,6 @@ def rest_of_fleet(
         Refusal: The request is over a limit, or the front cannot be replanned so.
     """
     assert task.labels is not None
-    if fleet.rules.sampled:
-        raise not_replannable(source.front.id, "its times are those of several days")
     request = parse_json(ReplanFleetRequest, source.body)
     check_limit("routes", limits.fleet_stops, len(request.routes))
     rest = _Rest(request, source.front, fleet, task.labels)
@@ -156,12 +154,14 @@ class _Rest:
             leave=self._rules.leave,
             groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
             spread=self._rules.spread,
+            sampled=self._rules.sampled,
             percents=self._rules.percents,
         )
         changed = self._request.costs, self._all
         chosen = np.array(list(self._place), np.int64)
         sources = sources_of_rest(self._fleet, self._known.objectives, *changed, chosen)
-        stops = Stops(locations_of(self.labels.stops), sources)
+        spreads = spreads_of_rest(self._fleet, sources, chosen)
+        stops = Stops(locations_of(self.labels.stops), sources, spreads=spreads)
         return UnmeasuredFleet(
             rules,
             self.names,
