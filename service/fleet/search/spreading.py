@@ -1,8 +1,8 @@
 """Measure how a route turns out from day to day: how surely it is on time, and how long it takes.
 
 As in punctuality.py, when a visit begins is taken to be normal, unless the times of several days
-are known: then a route is driven on each. What a route costs, `VARIANCE` is for its days the
-deviation, since the days on which routes take long are often the same.
+are known: then a route is driven on each of them. `VARIANCE` of a route is then its deviation: the
+sum over the routes is the most that the deviation of the plan may be.
 """
 
 import math
