@@ -37,7 +37,8 @@ def allowed(day: Day, forbidden: NDArray[np.bool_]) -> Day:
         matrices = np.where(still, 0.0, np.where(forbidden, inf, costs.matrices))
         if not (matrices >= 0).all():
             raise ValueError("costs must be numbers and not negative")
-        return replace(costs, matrices=matrices)
+        pairs = None if costs.pairs is None else costs.pairs.without(still | forbidden)
+        return replace(costs, matrices=matrices, pairs=pairs)
 
     first, second = day
     return of_one(first), of_one(second)

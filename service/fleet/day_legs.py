@@ -28,11 +28,6 @@ class DayLeg:
         self._seconds = seconds[[0, *(differs + 1)]]
         self._is_still = not self._seconds.any()
 
-    @classmethod
-    def of(cls, costs: CostsOfDay, a: int, b: int, speed: float = 1.0) -> "DayLeg":
-        """Return the leg between two stops, as a vehicle of a speed drives it."""
-        return cls(costs.begins[1:], costs.factors * costs.matrices[costs.layers, a, b] / speed)
-
     @cached_property
     def _shares(self) -> Array:
         """The shares of the way driven until each of the begins, shape (s - 1,)."""
@@ -103,6 +98,50 @@ class DayLeg:
             left -= (time - begins) / seconds
             time = begins
         return time - left * float(self._seconds[0])
+
+
+class LegByBreakpoints:
+    """The way between two stops by breakpoints.
+
+    Args:
+        times: When they begin, shape (k,), ascending.
+        seconds: How long the way takes then, shape (k,). Who leaves later never arrives earlier.
+    """
+
+    def __init__(self, times: Array, seconds: Array) -> None:
+        self._leaves, self._seconds = times, seconds
+        self.changes = np.maximum.accumulate(times + seconds)
+        """The arrivals at which it becomes slower or faster to arrive later."""
+
+    def arrivals(self, times: Array) -> Array:
+        """Return when who leaves at these times arrives."""
+        found: Array = times + np.interp(times, self._leaves, self._seconds)
+        return found
+
+    def departures(self, arrivals: Array) -> Array:
+        """Return when who arrives at these times has left at the latest."""
+        first, last = self.changes[[0, -1]]
+        found: Array = np.interp(arrivals, self.changes, self._leaves)
+        found += np.minimum(arrivals - first, 0.0) + np.maximum(arrivals - last, 0.0)
+        return found
+
+    def arrival(self, time: float) -> float:
+        """Return when who leaves at a time arrives."""
+        return time + float(np.interp(time, self._leaves, self._seconds))
+
+
+Leg = DayLeg | LegByBreakpoints
+
+
+def leg_of(costs: CostsOfDay, a: int, b: int, speed: float = 1.0) -> Leg:
+    """Return the leg between two stops, as a vehicle of a speed drives it."""
+    if costs.pairs is not None and costs.pairs.has(a, b):
+        times, seconds = costs.pairs.of(a, b)
+        return LegByBreakpoints(times, seconds / speed)
+    seconds = costs.factors * costs.matrices[costs.layers, a, b] / speed
+    if np.isinf(seconds).any():  # there is no way
+        return DayLeg(np.empty(0), seconds[:1])
+    return DayLeg(costs.begins[1:], seconds)
 
 
 STILL = DayLeg(np.empty(0), np.zeros(1))  # between a stop and a break there

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.fleet.breaks import Placed, Stay, with_breaks
-from service.fleet.day_legs import STILL, Array, DayLeg
+from service.fleet.day_legs import STILL, Array, Leg
 from service.fleet.rounding import ROUNDING, excess, is_over
 from service.fleet.times import Schedule
 from service.fleet.vehicles import Break, VehicleType
@@ -40,7 +40,7 @@ class _Chain(NamedTuple):
     """
 
     stays: Sequence[Stay]
-    legs: Sequence[DayLeg]
+    legs: Sequence[Leg]
     begin: float
     leaves_by: float
     last: float
@@ -48,7 +48,7 @@ class _Chain(NamedTuple):
 
 
 def times_over_the_day(
-    legs: Sequence[DayLeg],
+    legs: Sequence[Leg],
     stays: Sequence[Stay],
     begin: float,
     vehicle: VehicleType,

@@ -8,7 +8,7 @@ from math import inf
 from typing import NamedTuple
 
 from service.fleet.breaks import Stay, place_breaks, with_breaks
-from service.fleet.day_legs import DayLeg
+from service.fleet.day_legs import Leg, leg_of
 from service.fleet.day_schedule import times_over_the_day
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
@@ -260,17 +260,17 @@ def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
     return [costs.at(leaves, *leg) for leaves, leg in between]
 
 
-def _legs_of_day(fleet: Fleet, route: Route) -> list[DayLeg]:
+def _legs_of_day(fleet: Fleet, route: Route) -> list[Leg]:
     path, vehicle = path_of(fleet.rules, route), fleet.rules.vehicles[route.vehicle]
     pace = vehicle.speed_factor, vehicle.profile
     return [_leg_of_day(fleet, pace, a, b) for a, b in pairwise(path)]
 
 
 @lru_cache(4 * REMEMBERED)
-def _leg_of_day(fleet: Fleet, pace: tuple[float, int], a: int, b: int) -> DayLeg:
+def _leg_of_day(fleet: Fleet, pace: tuple[float, int], a: int, b: int) -> Leg:
     speed, profile = pace
     assert fleet.rules.clock is not None
-    return DayLeg.of(fleet.days[profile][fleet.rules.clock], a, b, speed)
+    return leg_of(fleet.days[profile][fleet.rules.clock], a, b, speed)
 
 
 class Wait(NamedTuple):

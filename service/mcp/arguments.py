@@ -21,12 +21,12 @@ _MOST_TEXT = 2**20  # characters of a file
 _RARE = {
     "FrontRequest": "size reference_point seed preferences repairs arrivals bound actor clock"
     " initial_tours augment geometry",
-    "DayObjectiveItem": "over_the_day slices traffic days",
+    "DayObjectiveItem": "over_the_day slices breakpoints traffic days",
     "FleetRequest": "size reference_point seed geometry",
     "FleetStopItem": "windows release",
     "VehicleItem": "shifts longest fixed max_trips initial_load breaks",
-    "FleetObjectiveItem": "slices traffic",
-    "ClockItem": "matrix coordinates slices traffic",
+    "FleetObjectiveItem": "slices breakpoints traffic",
+    "ClockItem": "matrix coordinates slices breakpoints traffic",
     "ReplanRequest": "size reference_point seed preferences repairs arrivals bound actor objectives"
     " geometry pose grid blocked freed cost_layer cost_layers paths",
     "ReplanFleetRequest": "size reference_point seed geometry add",

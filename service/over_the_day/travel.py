@@ -1,17 +1,11 @@
-"""Drive tours through a day: exact lengths, times and best departures.
-
-Within a slice of the day a vehicle drives a leg at the speed of that slice, and where a slice ends
-on the way, the rest at the next one's (Ichoua, Gendreau and Potvin, 2003). So who leaves later
-never arrives earlier. Under other objectives a leg costs what it does in the slice in which it
-begins.
-"""
+"""Drive tours through a day: exact lengths, times and best departures."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.day.driving import arrived, left_at, slice_at, slices_of
+from service.day.driving import arrived, cost_of, has_knots, left_at, slice_at, slices_of
 from service.jit import compiled, inlined
 from service.over_the_day.day import Day
 
@@ -26,16 +20,16 @@ EQUAL = 1e-12  # seconds with a smaller relative difference count as equal
 class Traffic(NamedTuple):
     """A day with one set of slices for all m objectives, for compiled code.
 
-    `begins`: when each slice begins, shape (s,); the first is minus infinity, and one more at the
-    end is infinity. `factors` and `layers`: shape (s, m); in slice s a leg costs
-    factors[s, o] * matrices[layers[s, o], i, j]. `service`: shape (n,). `closed`: whether tours
-    return.
+    The first members are those of `Slices`. `service`: shape (n,). `closed`: whether tours return.
     """
 
     begins: Array
     factors: Array
     layers: NDArray[np.int64]
     matrices: Array
+    tables: NDArray[np.int64]
+    spans: NDArray[np.int64]
+    knots: Array
     service: Array
     clock: int
     closed: bool
@@ -65,12 +59,14 @@ class Moment(NamedTuple):
 
 def traffic_of(day: Day) -> Traffic:
     """Return the day with common slices. O(k n^2) for k matrices."""
-    begins, factors, layers, matrices = slices_of(day.costs)
+    slices = slices_of(day.costs)
+    forbidden: NDArray[np.bool_] = np.isinf(slices.matrices.max(axis=0))
+    matrices = _penalised(slices.matrices)
     return Traffic(
-        begins=begins,
-        factors=factors,
-        layers=layers,
-        matrices=_penalised(matrices),
+        *slices._replace(
+            matrices=matrices,
+            spans=np.where(forbidden[..., np.newaxis], 0, slices.spans),
+        ),
         service=day.service,
         clock=day.clock,
         closed=day.ends.closed,
@@ -89,9 +85,7 @@ def driven(traffic: Traffic, i: int, j: int, at: Moment, weights: Array) -> Mome
     cost = at.cost
     for objective in range(len(weights)):
         if objective != traffic.clock:
-            layer = traffic.layers[at.slice, objective]
-            factor = traffic.factors[at.slice, objective] * weights[objective]
-            cost += factor * traffic.matrices[layer, i, j]
+            cost += weights[objective] * cost_of(traffic, objective, i, j, at.time, at.slice)
     time, known = arrived(traffic, i, j, at.time, at.slice, 1.0)
     return Moment(time, known, cost)
 
@@ -134,13 +128,16 @@ def best_departure(traffic: Traffic, tour: Cities, earliest: float, latest: floa
     """Return the departure in a range, as early as may be, after which a tour takes least time.
 
     The seconds are a piecewise linear function of the departure. They can be least only at an end
-    of the range, or where a visit begins or ends just as a slice begins. O(s n^2) for s slices; of
-    very many such departures, the first ones are tried.
+    of the range, or where a visit begins or ends just as a slice begins, or a leg at one of its
+    breakpoints. O(s n^2) for s slices or breakpoints of each leg; of very many such departures, the
+    first ones are tried.
     """
     best, least = earliest, seconds_of(traffic, tour, earliest)
     if latest == earliest:
         return best
     best, least = sooner(traffic, tour, latest, best, least)
+    if traffic.tables[traffic.clock] >= 0:
+        return _best_by_knots(traffic, tour, earliest, latest, (best, least))
     tries = 0
     for known in range(1, len(traffic.factors)):
         for event in range(2 * len(tour) + (1 if traffic.closed else 0)):
@@ -152,6 +149,33 @@ def best_departure(traffic: Traffic, tour: Cities, earliest: float, latest: floa
             tries += 1
             if departure <= latest:
                 best, least = sooner(traffic, tour, departure, best, least)
+    return best
+
+
+@compiled
+def _best_by_knots(
+    traffic: Traffic, tour: Cities, earliest: float, latest: float, known: tuple[float, float]
+) -> float:
+    """Return the best departure of those after which a leg begins at a breakpoint, and of a known.
+
+    The known one is given with the seconds that the tour takes after it.
+    """
+    best, least = known
+    tries, n = 0, len(tour)
+    first, last = begun(traffic, earliest), begun(traffic, latest)
+    for place in range(n if traffic.closed else n - 1):
+        i, j = tour[place], tour[(place + 1) % n]
+        first, last = served(traffic, i, first), served(traffic, i, last)
+        if has_knots(traffic, traffic.clock, i, j):
+            table = traffic.tables[traffic.clock]
+            for knot in range(traffic.spans[table, i, j, 0], traffic.spans[table, i, j, 1]):
+                time = traffic.knots[knot, 0]
+                if first.time < time < last.time and tries < MOST_TRIES:
+                    tries += 1
+                    departure = departure_for(traffic, tour, place, time - traffic.service[i])
+                    best, least = sooner(traffic, tour, departure, best, least)
+        first = driven(traffic, i, j, first, traffic.begins[:0])
+        last = driven(traffic, i, j, last, traffic.begins[:0])
     return best
 
 
@@ -192,11 +216,10 @@ def best_departure_near(
 
 
 @inlined
-def add_costs(traffic: Traffic, i: int, j: int, known: int, lengths: Array) -> None:
-    """Add the costs of a leg that begins in a slice to lengths, shape (m,)."""
+def add_costs(traffic: Traffic, i: int, j: int, at: Moment, lengths: Array) -> None:
+    """Add the costs of a leg that begins at a moment to lengths, shape (m,)."""
     for objective in range(len(lengths)):
-        layer, factor = traffic.layers[known, objective], traffic.factors[known, objective]
-        lengths[objective] += factor * traffic.matrices[layer, i, j]
+        lengths[objective] += cost_of(traffic, objective, i, j, at.time, at.slice)
 
 
 @compiled
@@ -209,7 +232,7 @@ def sum_lengths(traffic: Traffic, tour: Cities, departure: float, lengths: Array
         at = served(traffic, tour[place], at)
         if place + 1 < n or traffic.closed:
             i, j = tour[place], tour[(place + 1) % n]
-            add_costs(traffic, i, j, at.slice, lengths)
+            add_costs(traffic, i, j, at, lengths)
             at = driven(traffic, i, j, at, traffic.begins[:0])
     lengths[traffic.clock] = at.time - departure
 
@@ -232,6 +255,6 @@ def write_reached(traffic: Traffic, tours: Cities, departures: Array, reached: A
             for objective in range(lengths.shape[1]):
                 lengths[place + 1, objective] = lengths[place, objective]
             if place + 1 < n or traffic.closed:
-                add_costs(traffic, i, j, at.slice, lengths[place + 1])
+                add_costs(traffic, i, j, at, lengths[place + 1])
                 at = driven(traffic, i, j, at, traffic.begins[:0])
             lengths[place + 1, traffic.clock] = at.time - departure

@@ -12,6 +12,8 @@ from service.errors.faults import show
 from service.objectives import Objective
 from service.reliability.spread import Spread
 from service.requests.arrays import check_costs, cost_matrix
+from service.requests.breakpoint_fields import LATEST as _LATEST
+from service.requests.breakpoint_fields import Rows, TimeOfDay, read_breakpoints
 from service.requests.fields import (
     ABSENT,
     NO_WAY,
@@ -38,10 +40,8 @@ from service.requests.stops import (
 
 _YEARS = (1970, 2999)  # that Valhalla reads
 _MOST_TIMES = 2**23  # of travel, in all slices of one objective
-_LATEST = 864_000  # ten days
 _MOST_SLICES = 100  # every quarter of an hour, and a few more
 _LEAST_FACTOR, _MOST_FACTOR = 0.01, 100.0
-TimeOfDay = Annotated[float, Field(ge=0, le=_LATEST, allow_inf_nan=False)]
 Factor = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
@@ -124,7 +124,7 @@ class StopItem(NamedStop):
 
 
 # The members of which an objective has exactly one, and what others of them go with.
-SOURCES = ("matrix", "coordinates", "from", "slices")
+SOURCES = ("matrix", "coordinates", "from", "slices", "breakpoints")
 OF_SOURCES: Mapping[str, JsonValue] = {
     "speed": OF_A_SPEED,
     "traffic": {
@@ -132,6 +132,7 @@ OF_SOURCES: Mapping[str, JsonValue] = {
         "properties": {"from": {"const": "road_time"}, "over_the_day": ABSENT},
     },
     "slices": {"properties": {"over_the_day": ABSENT}},
+    "breakpoints": {"properties": {"over_the_day": ABSENT}},
 }
 
 OF_DAYS: JsonValue = {"properties": {"over_the_day": ABSENT, "spread": ABSENT}}
@@ -154,22 +155,30 @@ class TimedObjectiveItem(ObjectiveItem):
         description="in place of one matrix: one for each slice of the day, which the next one"
         " ends; the first one holds before it too",
     )
+    breakpoints: Rows = Field(
+        default_factory=list,
+        description="in place of a matrix, of times of travel: for each stop (row) and each other"
+        f" (column) pairs of a second of the day and the seconds on the way from then on, {NO_WAY}."
+        " Between two of them the seconds change evenly, and before the first and after the last"
+        " they stay. Who leaves later must not arrive earlier",
+    )
 
     traffic: TrafficItem | None = optional(
         "with `from` road_time: the historical traffic of the operator's routing engine"
     )
 
-    choices: ClassVar[str] = "matrix, coordinates, from and slices"
+    choices: ClassVar[str] = "matrix, coordinates, from, slices and breakpoints"
 
     @property
     def sources(self) -> list[str]:
         """The names of the members that are sources of costs."""
-        return [*super().sources, *(["slices"] if self.slices else [])]
+        own = {"slices": self.slices, "breakpoints": self.breakpoints}
+        return [*super().sources, *(name for name, given in own.items() if given)]
 
     @property
     def changes(self) -> bool:
         """Whether its costs change over the day."""
-        return bool(self.over_the_day or self.slices or self.traffic)
+        return bool(self.over_the_day or self.slices or self.breakpoints or self.traffic)
 
     def source(self, part: str, stops: Sequence[Stop]) -> Source:
         """Return the source of the costs between these stops, over the day.
@@ -178,8 +187,8 @@ class TimedObjectiveItem(ObjectiveItem):
             Refusal: There is not exactly one source, it does not fit the stops, or times or factors
                 are out of order or range.
         """
-        if self.sources == ["slices"]:
-            return self._slices(part, len(stops))
+        if self.sources in (["slices"], ["breakpoints"]):
+            return self._given(part, self.sources[0], len(stops))
         base = self.fixed_source(part, stops)
         if self.traffic is None or not isinstance(base, Measured):
             return self.factored(part, base)
@@ -203,10 +212,13 @@ class TimedObjectiveItem(ObjectiveItem):
                 raise invalid(f"{part}/over_the_day/{k}/1", "not-between", **bounds, came=factor)
         return OverTheDay(base, np.array(begins, np.float64), np.array(factors, np.float64))
 
-    def _slices(self, part: str, n: int) -> Slices:
+    def _given(self, part: str, source: str, n: int) -> Source:
+        """Return the costs in slices or by breakpoints."""
         for name in ("over_the_day", "traffic"):
             if getattr(self, name):
-                raise invalid(f"{part}/{name}", "not-beside", member="slices")
+                raise invalid(f"{part}/{name}", "not-beside", member=source)
+        if source == "breakpoints":
+            return read_breakpoints(f"{part}/breakpoints", self.breakpoints, n)
         return read_slices(self.slices, f"{part}/slices", n)
 
 
@@ -228,12 +240,12 @@ class SampledObjectiveItem(DaysFields, TimedObjectiveItem):
 class DayObjectiveItem(SampledObjectiveItem, SpreadFields):
     """An objective, whose costs may change over the day, or spread from day to day.
 
-    It has exactly one source of costs: matrix, coordinates, from, slices or days.
+    It has exactly one source of costs: matrix, coordinates, from, slices, breakpoints or days.
     """
 
     model_config = one_of(*SOURCES, "days", **OF_SOURCES, days=OF_DAYS)
 
-    choices: ClassVar[str] = "matrix, coordinates, from, slices and days"
+    choices: ClassVar[str] = "matrix, coordinates, from, slices, breakpoints and days"
 
     def spread_of(self, part: str, n: int) -> Spread | None:
         """Return how the costs between n stops spread; None if they do not.

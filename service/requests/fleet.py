@@ -189,7 +189,7 @@ class FleetRequest(SearchFields):
         return next((pair for pair in self._costs.items() if pair[1].name == self.clock), None)
 
     def _check_spread(self) -> None:
-        """Raise a refusal of an objective that spreads, though its costs are not the clock's."""
+        """Raise a refusal of costs that spread, but are not the clock's or change over the day."""
         names = [item.name for item in self.objectives]
         named = names.index(self.clock) if self.clock in names else None
         for index, item in enumerate(self.objectives):
@@ -197,6 +197,9 @@ class FleetRequest(SearchFields):
                 raise invalid(f"objectives/{index}/spread", "spread-of-clock")
             if item.days and (named is None or not self._same_costs(named, index)):
                 raise invalid(f"objectives/{index}/days", "spread-of-clock")
+        changes = any(item.changes for item in self._costs.values())
+        if changes and self._times and self._times[1].days:
+            raise invalid(f"{self._times[0]}/days", "spread-over-the-day")
 
     @property
     def _percents(self) -> tuple[int | None, ...]:
@@ -219,8 +222,6 @@ class FleetRequest(SearchFields):
             return
         if self.clock is None:
             raise invalid("clock", "no-clock-of-day")
-        if self._times and self._times[1].days:
-            raise invalid(f"{self._times[0]}/days", "spread-over-the-day")
         named = self._named_clock
         if named is not None:
             names = [item.name for item in self.objectives]
@@ -228,6 +229,11 @@ class FleetRequest(SearchFields):
         for index, each in enumerate(self.before):
             if each.vehicles == "any":
                 raise invalid(f"before/{index}/vehicles", "waits-over-the-day")
+        by_pair = any(item.breakpoints for item in self._costs.values())
+        for index, vehicle in enumerate(self.vehicles):
+            if by_pair and vehicle.speed_factor < 1:
+                came = vehicle.speed_factor
+                raise invalid(f"vehicles/{index}/speed_factor", "slower-by-breakpoints", came=came)
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
         """Return the groups of stops.
@@ -314,7 +320,7 @@ class FleetRequest(SearchFields):
         """Return whether two objectives have the same costs between the stops."""
         a, b = (self.objectives[index] for index in (first, second))
         fixed = ("matrix", "matrices", "coordinates", "measure", "speed")
-        names = (*fixed, "over_the_day", "slices", "traffic", "days")
+        names = (*fixed, "over_the_day", "slices", "breakpoints", "traffic", "days")
         return all(getattr(a, name) == getattr(b, name) for name in names)
 
     def _sources(

@@ -306,7 +306,7 @@ class TimesItem(SampledObjectiveItem, SpreadOfTimes, ProfileCostsItem):
 
     model_config = one_of(*SOURCES, "matrices", "days", **OF_SOURCES, days=OF_DAYS)
 
-    choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices and days"
+    choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices, breakpoints and days"
 
     def sampled(self, part: str, n: int) -> Spread | None:
         """Return the costs of several days; None if there are none.
@@ -324,7 +324,7 @@ class TimesItem(SampledObjectiveItem, SpreadOfTimes, ProfileCostsItem):
 class ClockItem(TimesItem):
     """The source of travel times that are not an objective, maybe over the day.
 
-    It has exactly one of matrix, matrices, coordinates, from, slices and days.
+    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints and days.
     """
 
     name: Text = Field(default="time", description="of the times, which are not an objective")
@@ -339,7 +339,8 @@ Clock = Annotated[
 class FleetObjectiveItem(TimesItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
-    It has exactly one of matrix, matrices, coordinates, from, slices, days and measure.
+    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints, days and
+    measure.
     """
 
     model_config = one_of(

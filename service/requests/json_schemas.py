@@ -23,7 +23,7 @@ from service.requests.stops import ROAD_MEASURES
 
 Schema = dict[str, Any]
 RULES = ("allOf", "dependentSchemas")  # the parts of a schema about which members go together
-_SOURCES = ("matrix", "coordinates", "from", "slices", "days", "speed", "traffic")
+_SOURCES = ("matrix", "coordinates", "from", "slices", "breakpoints", "days", "speed", "traffic")
 _SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
 
 

@@ -79,7 +79,7 @@ class ProfileMatrixItem(StrictModel):
 class ProfileCostsItem(TimedObjectiveItem):
     """A source of costs that may differ between the profiles of vehicles.
 
-    It has exactly one of matrix, matrices, coordinates, from and slices.
+    It has exactly one of matrix, matrices, coordinates, from, slices and breakpoints.
     """
 
     model_config = one_of(*SOURCES, "matrices", **OF_SOURCES)
@@ -92,7 +92,7 @@ class ProfileCostsItem(TimedObjectiveItem):
         " trucks",
     )
 
-    choices: ClassVar[str] = "matrix, matrices, coordinates, from and slices"
+    choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices and breakpoints"
 
     @property
     def sources(self) -> list[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
+from service.day.breakpoints import Breakpoints
 from service.day.costs import CostsOfDay
 from service.errors import CityNames
 from service.instance import CLOSED, Instance, Kind, RouteEnds
@@ -166,7 +167,7 @@ class Traffic:
         return [time.isoformat(timespec="minutes") for time in each]
 
 
-Source = FixedSource | OverTheDay | Slices | Traffic
+Source = FixedSource | OverTheDay | Slices | Breakpoints | Traffic
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,7 +229,7 @@ class Stops:
     @property
     def changes(self) -> bool:
         """Whether some costs change over the day."""
-        return any(isinstance(source, OverTheDay | Slices | Traffic) for source in self.sources)
+        return not all(isinstance(source, FixedSource) for source in self.sources)
 
     @property
     def measured(self) -> bool:
@@ -328,12 +329,12 @@ def kind_of(sources: Sequence[Source]) -> Kind:
 def with_base(source: Source, change: Callable[[FixedSource], FixedSource]) -> Source:
     """Return a source that is changed; of one that changes over the day, what the factors are of.
 
-    Slices and traffic stay as they are.
+    Slices, breakpoints and traffic stay as they are.
     """
     match source:
         case OverTheDay(base):
             return replace(source, base=change(base))
-        case Slices() | Traffic():
+        case Slices() | Breakpoints() | Traffic():
             return source
     return change(source)
 
@@ -375,6 +376,8 @@ def _over_the_day(source: Source, locations: Array) -> CostsOfDay:
             return CostsOfDay(begins, factors, layers, _costs(base, locations)[np.newaxis])
         case Slices(begins, costs):
             return CostsOfDay(begins, np.ones(len(begins)), np.arange(len(begins)), costs)
+        case Breakpoints():
+            return CostsOfDay.by_pair(source)
     return CostsOfDay.constant(_costs(source, locations))
 
 
@@ -393,5 +396,5 @@ def _costs(source: Source, locations: Array) -> Array:
             return changed_costs(_costs(base, locations), source.steps, source.costs)
         case Measured(measure):
             raise ValueError(f"{measure} must be measured before, by a routing engine")
-        case OverTheDay() | Slices() | Traffic():
+        case OverTheDay() | Slices() | Breakpoints() | Traffic():
             raise ValueError("costs that change over the day are not one matrix")

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.coverage.coverage import Coverage, Robot
+from service.day.breakpoints import Breakpoints
 from service.fleet.groups import Groups
 from service.fleet.plans import Route
 from service.fleet.rules import Rules
@@ -48,7 +49,7 @@ _TYPES: Mapping[str, type[Any]] = {
     for each in (
         *(Task, PlanOptions, EarlierTours, Labels),
         *(Stops, Matrix, Plane, Measured, Changed),
-        *(OverTheDay, Slices, Traffic, Hours, Spread),
+        *(OverTheDay, Slices, Breakpoints, Traffic, Hours, Spread),
         *(Coverage, SharedCoverage, UnmeasuredFleet, Rules, Groups, Objective),
     )
 }

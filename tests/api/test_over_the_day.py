@@ -1,6 +1,7 @@
 """Fronts over the day, over HTTP."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import httpx
@@ -42,6 +43,17 @@ def sliced(**more: Any) -> dict[str, Any]:
     ]
     request = stops(**more)
     request["objectives"][0] = {"name": "time", "unit": "s", "slices": slices}
+    return request
+
+
+def by_breakpoints(**more: Any) -> dict[str, Any]:
+    """Return the request whose times rise from 7 o'clock on, until at 8 they are doubled."""
+    of_pairs = [
+        [[[7 * HOUR, cost], [8 * HOUR, 2 * cost]] if cost else None for cost in row]
+        for row in TIMES
+    ]
+    request = stops(**more)
+    request["objectives"][0] = {"name": "time", "unit": "s", "breakpoints": of_pairs}
     return request
 
 
@@ -159,6 +171,101 @@ def test_slices_are_checked_like_matrices(client: httpx.Client) -> None:
     request["objectives"][0]["slices"][2]["from"] = 1
     answer = client.post("/front", json=request)
     refused(answer, "/objectives/0/slices/2/from")
+
+
+def test_by_breakpoints_a_leg_takes_what_lies_between_them(client: httpx.Client) -> None:
+    best = front_of(client, by_breakpoints(departure=6.5 * HOUR))["front"][0]
+    time, reached = 6.5 * HOUR, []
+    order = [*best["tour"], 0]
+    for before, stop in zip([None, *order], order, strict=False):
+        if before is not None:
+            time += TIMES[before][stop] * (1 + min(1.0, max(0.0, time / HOUR - 7)))
+        reached.append(time)
+        time += 60 if stop else 0
+    assert best["times"] == pytest.approx(reached)
+    assert best["lengths"][0] == pytest.approx(reached[-1] - 6.5 * HOUR)
+
+
+@pytest.mark.parametrize(
+    ("where", "given", "pointer"),
+    [
+        ((), [[None]], ""),
+        ((1,), [None], "/1"),
+        ((1, 0), [], "/1/0"),
+        ((1, 0), [[0, 1]] * 2, "/1/0/1/0"),
+        ((1, 0), [[60, 1], [30, 1]], "/1/0/1/0"),
+        ((1, 0), [[0, 100], [30, 69]], "/1/0/1/1"),
+        ((1, 0), [[0, 1, 2]], "/1/0/0"),
+        ((1, 0), [[-1, 1]], "/1/0/0/0"),
+        ((1, 0), [[9e5, 1]], "/1/0/0/0"),
+        ((1, 0), [[0, None]], "/1/0/0/1"),
+        ((1, 0), [[k, 1] for k in range(1001)], "/1/0"),
+    ],
+)
+def test_what_are_no_breakpoints_is_refused(
+    client: httpx.Client, where: tuple[int, ...], given: Any, pointer: str
+) -> None:
+    request = by_breakpoints()
+    if not where:
+        request["objectives"][0]["breakpoints"] = given
+    else:
+        rows: Any = request["objectives"][0]["breakpoints"]
+        for index in where[:-1]:
+            rows = rows[index]
+        rows[where[-1]] = given
+    answer = client.post("/front", json=request)
+    refused(answer, f"/objectives/0/breakpoints{pointer}")
+
+
+def test_a_pair_without_breakpoints_is_never_driven(client: httpx.Client) -> None:
+    request = by_breakpoints()
+    request["objectives"][0]["breakpoints"][0][3] = None
+    found = front_of(client, request)
+    assert all(tour["stops"][1] != "c" for tour in found["front"])
+    rest = {
+        "done": ["depot"],
+        "now": 6 * HOUR,
+        "costs": [{"objective": "time", "from": "depot", "to": "a", "cost": None}],
+    }
+    answer = client.post(f"/front/{found['id']}/replan", json=rest)
+    assert answer.status_code == 200, answer.text
+    assert all(tour["stops"][1] == "b" for tour in answer.json()["front"])
+    request["objectives"][0]["breakpoints"] = [[None] * 4] * 4
+    answer = client.post("/front", json=request)
+    assert answer.status_code == 422
+
+
+def test_fleets_are_driven_by_breakpoints_and_no_vehicle_slower_than_these(
+    client: httpx.Client,
+) -> None:
+    request = by_breakpoints()
+    fleet = {
+        "stops": request["stops"],
+        "vehicles": [
+            {
+                "id": "van",
+                "count": 2,
+                "start": "depot",
+                "end": "depot",
+                "shift": [7.5 * HOUR, 12 * HOUR],
+            }
+        ],
+        "objectives": [request["objectives"][0], {"name": "vans", "measure": "vehicles"}],
+        "clock": "time",
+        "time_limit": 0.2,
+    }
+    answer = client.post("/fleet", json=fleet)
+    assert answer.status_code == 200, answer.text
+    for plan in answer.json()["front"]:
+        for route in plan["routes"]:
+            path = [0, *(["depot", *"abc"].index(stop) for stop in route["stops"]), 0]
+            time = route["arrivals"][0]
+            for before, stop in pairwise(path):
+                time += TIMES[before][stop] * (1 + min(1.0, max(0.0, time / HOUR - 7)))
+                time += 60 if stop else 0
+            assert route["arrivals"][-1] == pytest.approx(time)
+    fleet["vehicles"][0]["speed_factor"] = 0.9  # type: ignore[index]
+    refused(client.post("/fleet", json=fleet), "/vehicles/0/speed_factor")
 
 
 def test_a_leg_that_one_slice_forbids_is_never_driven(client: httpx.Client) -> None:

@@ -192,6 +192,9 @@ def day(rng: random.Random) -> TaskSource:
         times = sorted(number() for _ in range(rng.randint(1, 4)))
         if rng.random() < 0.4:
             return {"name": name, "slices": [{"from": t, "matrix": matrix()} for t in times]}
+        if rng.random() < 0.4:
+            pairs = [[[[time, number(99)] for time in times] for _ in range(n)] for _ in range(n)]
+            return {"name": name, "breakpoints": pairs}
         factors = [[time, rng.choice([0.01, 0.5, 1, 2, 100, number(3)])] for time in times]
         return {"name": name, "matrix": matrix(), "over_the_day": factors}
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from service.day.costs import CostsOfDay
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Route, path_of
-from tests.helpers.days import cost_at, slice_of
+from tests.helpers.days import cost_at, knots_of, random_breakpoints, slice_of
 from tests.helpers.fleets import bounded_fleet, mixed_fleet, random_fleet, shipping_fleet
 
 _LATEST = 130  # departures
@@ -35,7 +35,10 @@ def day_fleet(seed: int) -> Fleet:
         each for each in drawn if each.rules.clock is not None and len(each.rules.clients) <= _MOST
     )
     random = np.random.default_rng(seed)
-    first, second = (_costs(random, costs) for costs in fleet.costs)
+    # Vehicles that are slower than breakpoints say could arrive earlier if they leave later.
+    slow = any(each.speed_factor < 1 for each in fleet.rules.vehicles)
+    drawn_costs = _costs if slow or random.random() < 0.5 else _costs_by_pair
+    first, second = (drawn_costs(random, costs) for costs in fleet.costs)
     return Fleet.over_the_day(fleet.rules, first, second)
 
 
@@ -79,6 +82,11 @@ def _costs(random: np.random.Generator, matrix: NDArray[np.float64]) -> CostsOfD
     )
 
 
+def _costs_by_pair(random: np.random.Generator, matrix: NDArray[np.float64]) -> CostsOfDay:
+    pairs = np.isfinite(matrix) & ~np.eye(len(matrix), dtype=np.bool_)
+    return CostsOfDay.by_pair(random_breakpoints(random, pairs))
+
+
 def driven(fleet: Fleet, route: Route, departure: float) -> Driven | None:
     """Return the times of a route of one window a stop that leaves at a time; None if it is late.
 
@@ -107,6 +115,8 @@ def driven(fleet: Fleet, route: Route, departure: float) -> Driven | None:
 
 def _arrival(costs: CostsOfDay, a: int, b: int, time: float, speed: float) -> float:
     """Return when a leg ends: it is driven at the speed of each slice until that ends."""
+    if knots_of(costs, a, b):
+        return time + cost_at(costs, time, a, b) / speed
     left = 1.0
     for known in range(slice_of(costs, time), len(costs.begins)):
         seconds = costs.factors[known] * costs.matrices[costs.layers[known], a, b] / speed

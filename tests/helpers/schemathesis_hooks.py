@@ -139,8 +139,9 @@ def _make_plannable(body: dict[str, Any]) -> None:
         body.pop(name, None)
     for objective in body["objectives"]:
         objective.pop("over_the_day", None)
-        if objective.pop("slices", None) is not None:
-            objective["matrix"] = None
+        for name in ("slices", "breakpoints"):
+            if objective.pop(name, None) is not None:
+                objective["matrix"] = None
     fit = {
         "matrix": [[1.0] * n] * n,
         "coordinates": [[0.0, 1.0]] * n,

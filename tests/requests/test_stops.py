@@ -199,12 +199,13 @@ def test_an_id_stands_where_an_index_may() -> None:
         (
             {"objectives": [WAY, {"name": "risk"}]},
             "/objectives/1",
-            "objectives/1 must have one of matrix, coordinates, from, slices and days, got none",
+            "objectives/1 must have one of matrix, coordinates, from, slices, breakpoints and days,"
+            " got none",
         ),
         (
             {"objectives": [WAY, {**RISK, "coordinates": POINTS}]},
             "/objectives/1",
-            "must have one of matrix, coordinates, from, slices and days, got matrix and",
+            "must have one of matrix, coordinates, from, slices, breakpoints and days, got matrix",
         ),
         (
             {"objectives": [WAY, {**RISK, "matrix": COSTS[:3]}]},

@@ -25,6 +25,14 @@ STOPS = [{"id": name, "location": [24.9 + i / 100, 60.1]} for i, name in enumera
 OBJECTIVES = [{"name": "t", "unit": "s", "from": "road_time"}, {"name": "r", "matrix": COSTS}]
 RUSH = [{**OBJECTIVES[0], "over_the_day": [[0, 1], [9, 2]]}]
 SLICED = [{"name": "s", "slices": [{"from": 0, "matrix": COSTS}, {"from": 5, "matrix": COSTS}]}]
+BY_PAIR = [
+    {
+        "name": "b",
+        "breakpoints": [
+            [[[k, 9 - k] for k in range(i + j)] or None for i in range(3)] for j in range(3)
+        ],
+    }
+]
 SPREAD = [
     {**OBJECTIVES[0], "spread": COSTS, "percentile": 90},
     {"name": "d", "days": [{"matrix": COSTS}, {"matrix": COSTS}], "percentile": 75},
@@ -45,7 +53,7 @@ REQUESTS: list[tuple[TaskKind, dict[str, Any]]] = [
     ("front", {"coordinates": np.eye(4).tolist(), "initial_tours": [[0, 2, 1, 3]]}),
     ("front", {"matrices": [COSTS, COSTS], "preferences": [10, 80], "reference_point": [99, 99]}),
     ("front", {"stops": STOPS, "objectives": OBJECTIVES, **ROUTE}),
-    ("front", {"stops": SERVED, "objectives": RUSH + SLICED, **DAY}),
+    ("front", {"stops": SERVED, "objectives": RUSH + SLICED + BY_PAIR, **DAY}),
     ("front", {"stops": STOPS, "objectives": SPREAD}),
     ("coverage", {**GRID, **PLACES, "closed": False, "end": 1}),
     ("coverage", {**GRID, **LAID_OUT}),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.day.costs import CostsOfDay
-from service.day.driving import arrived, slices_of
+from service.day.driving import arrived, cost_of, slices_of
 from service.fleet.fleet import Fleet
 from service.jit import by_reference, inlined
 
@@ -28,18 +28,24 @@ class FleetDay(NamedTuple):
         layers: As in `Slices`.
         matrices: As in `Slices`, shape (k, p n, n): the rows of one profile of vehicles after those
             of another. A forbidden leg costs a finite sum that no plan may cost.
+        tables: As in `Slices`.
+        spans: As in `Slices`, shape (t, p n, n, 2).
+        knots: As in `Slices`.
         clock: The number of the costs that are time.
         paces: By what each type of vehicles multiplies them, shape (v,).
         rows: The first row of each type of vehicles in the matrices, shape (v,).
         departures: Scratch space, shape (2, k): the departures of some routes that are alike.
         times: When these are at a place on the way, shape (2, k).
-        changes: When a leg becomes slower or faster, shape (2 s,).
+        changes: When a leg becomes slower or faster, shape (2 s,), or more for its breakpoints.
     """
 
     begins: Array
     factors: Array
     layers: Indices
     matrices: Array
+    tables: Indices
+    spans: Indices
+    knots: Array
     clock: int
     paces: Array
     rows: Indices
@@ -64,15 +70,24 @@ def day_of(fleet: Fleet, forbidden: float) -> FleetDay | None:
         rows=fleet.rules.n * np.array([vehicle.profile for vehicle in fleet.rules.vehicles]),
         departures=np.zeros((2, knots)),
         times=np.zeros((2, knots)),
-        changes=np.zeros(2 * len(slices.factors)),
+        changes=np.zeros(max(2 * len(slices.factors), np.diff(slices.spans).max(initial=0))),
     )
 
 
 def _stacked(costs: Sequence[CostsOfDay]) -> CostsOfDay:
-    """Return costs whose matrices have the rows of each profile, given those of all profiles."""
-    if len(costs) == 1:
-        return costs[0]
-    return replace(costs[0], matrices=np.concatenate([each.matrices for each in costs], axis=1))
+    """Return costs whose matrices have the rows of each profile, given those of all profiles.
+
+    If they have breakpoints, these are the same for all profiles.
+    """
+    first, *others = costs
+    if not others:
+        return first
+    pairs = first.pairs
+    if pairs is not None:
+        spans = [pairs.spans, *(each.pairs.spans for each in others if each.pairs is not None)]
+        pairs = replace(pairs, spans=np.concatenate(spans))
+    matrices = np.concatenate([each.matrices for each in costs], axis=1)
+    return replace(first, matrices=matrices, pairs=pairs)
 
 
 class Moment(NamedTuple):
@@ -112,8 +127,10 @@ def driven(day: FleetDay, between: tuple[int, int], kind: int, time: float, know
     if a < 0 or b < 0:
         return Moment(time, known, 0.0, 0.0)
     other, row = 1 - day.clock, day.rows[kind] + a
-    cost = day.factors[known, other] * day.matrices[day.layers[known, other], row, b]
     arrival, later = arrived(day, row, b, time, known, day.paces[kind])
+    if day.tables[other] == day.tables[day.clock] >= 0 and day.paces[kind] == 1.0:
+        return Moment(arrival, later, arrival - time, arrival - time)
+    cost = cost_of(day, other, row, b, time, known)
     if day.clock == 0:
         return Moment(arrival, later, arrival - time, cost)
     return Moment(arrival, later, cost, arrival - time)

@@ -7,7 +7,7 @@ late, the rows end.
 
 import numpy as np
 
-from service.day.driving import arrived, left_at
+from service.day.driving import arrived, has_knots, left_at
 from service.fleet.search.day import FleetDay, slice_of
 from service.fleet.search.problem import RELEASED, Problem
 from service.fleet.search.working_plan import WorkingPlan, service_at
@@ -119,10 +119,17 @@ def _list_changes(
 ) -> int:
     """Write when to leave for a leg so that a slice begins then or at the arrival, ascending.
 
-    Return the number of these times up to some time after the last that matters.
+    Of a leg with breakpoints, write these. Return the number of these times up to some time after
+    the last that matters.
     """
     a, b = between
     found = 0
+    if has_knots(day, day.clock, day.rows[kind] + a, b):
+        span = day.spans[day.tables[day.clock], day.rows[kind] + a, b]
+        while found < span[1] - span[0] and day.knots[span[0] + found, 0] < last:
+            day.changes[found] = day.knots[span[0] + found, 0]
+            found += 1
+        return found
     for later in range(known + 1, len(day.factors)):
         begins = day.begins[later]
         leaves = left_at(day, day.rows[kind] + a, b, begins, day.paces[kind])

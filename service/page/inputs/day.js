@@ -35,7 +35,7 @@ export function leaving({ departure: _, ...others }, times) {
 export function clockIn({ objectives, clock }) {
   if (typeof clock === "object" && clock) return OWN;
   if (clock != null) return objectives.findIndex(({ name }) => name === clock);
-  const changing = objectives.findIndex(({ over_the_day: factors, slices, traffic }) => factors?.length || slices?.length || traffic);
+  const changing = objectives.findIndex(({ over_the_day: factors, slices, breakpoints, traffic }) => [factors, slices, breakpoints].some((each) => each?.length) || traffic);
   return changing < 0 ? objectives.findIndex((each) => unitOf(each) === "s") : changing;
 }
 
@@ -45,10 +45,10 @@ export function hoursIn(asked) {
   return slices?.length ? relative(slices) : (factors ?? []);
 }
 
-/** Where the times at each hour come from, if they are not typed: "slices" of a file, or "traffic" that a routing engine knows; else null. */
+/** Where the times at each hour come from, if they are not typed: "slices" or breakpoints of a file, or "traffic" that a routing engine knows; else null. */
 export function hoursFrom(asked) {
-  const { slices, traffic } = clockOf(asked);
-  return slices?.length ? "slices" : traffic ? "traffic" : null;
+  const { slices, breakpoints, traffic } = clockOf(asked);
+  return slices?.length || breakpoints?.length ? "slices" : traffic ? "traffic" : null;
 }
 
 /** What measures the times of travel. */

@@ -52,11 +52,12 @@ export class ObjectiveFields {
   #changed(axis, member, value) {
     if (member === "speed") return { speed: speedIn(value) };
     if (member !== "source") return { [member]: value || undefined };
-    const { matrix, coordinates, slices } = this.#own[axis];
-    if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates, slices };
+    const { matrix, coordinates, slices, breakpoints } = this.#own[axis];
+    if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates, slices, breakpoints };
     // A unit that was typed for another source would be wrong; the service knows that of the source.
-    const others = { unit: undefined, matrix: undefined, coordinates: undefined, slices: undefined, traffic: undefined };
-    return value === TIMED ? { from: "great_circle", speed: SPEED, ...others } : { from: value, speed: undefined, ...others };
+    const others = ["unit", "matrix", "coordinates", "slices", "breakpoints", "traffic"];
+    const left = Object.fromEntries(others.map((other) => [other, undefined]));
+    return value === TIMED ? { from: "great_circle", speed: SPEED, ...left } : { from: value, speed: undefined, ...left };
   }
 }
 
@@ -105,9 +106,9 @@ function labelled(title, input, label = title) {
 
 const input = (axis, member, value) => marked(Object.assign(document.createElement("input"), { value, autocomplete: "off" }), axis, member);
 
-function source(axis, { from, speed, matrix, coordinates, slices }) {
+function source(axis, { from, speed, matrix, coordinates, slices, breakpoints }) {
   const made = marked(document.createElement("select"), axis, "source");
-  if (matrix || coordinates || slices) made.append(new Option(coordinates ? "A plane from the file" : "Costs from the file", OWN));
+  if (matrix || coordinates || slices || breakpoints) made.append(new Option(coordinates ? "A plane from the file" : "Costs from the file", OWN));
   made.append(...Object.entries(SOURCES).map(([name, title]) => greyed(new Option(title, name))));
   made.value = from === "great_circle" && speed != null ? TIMED : (from ?? OWN);
   return made;

@@ -6,10 +6,10 @@ import { EARTH, mapsOf } from "./places.js";
 /** Whether all costs and times of a request are known for a stop at any place. */
 export const isMeasured = (asked) => Boolean(asked.objectives?.every(({ from, measure }) => from || measure)) && !hasOwnTimes(asked);
 
-const hasOwnTimes = ({ clock }) => Boolean(clock?.matrix || clock?.coordinates);
+const hasOwnTimes = ({ clock }) => Boolean(clock?.matrix || clock?.coordinates || clock?.breakpoints);
 
 /** Whether some costs or times of a request are those of a matrix, and not measured between places. */
-export const isPriced = ({ objectives, clock }) => Boolean(objectives?.some(({ matrix, slices }) => matrix || slices) || clock?.matrix);
+export const isPriced = ({ objectives, clock }) => Boolean(objectives?.some(({ matrix, slices, breakpoints }) => matrix || slices || breakpoints) || clock?.matrix);
 
 /** The same request with other stops; objectives and a clock keep the rows and columns of `kept`. */
 function withStops(asked, stops, kept) {
@@ -19,9 +19,11 @@ function withStops(asked, stops, kept) {
 }
 
 function costsOf(objective, kept) {
-  const { matrix, coordinates, slices } = objective;
+  const { matrix, coordinates, slices, breakpoints } = objective;
+  const between = (rows) => kept.map((from) => kept.map((to) => rows[from][to]));
   if (slices) return { ...objective, slices: slices.map((each) => costsOf(each, kept)) };
-  if (matrix) return { ...objective, matrix: kept.map((from) => kept.map((to) => matrix[from][to])) };
+  if (breakpoints) return { ...objective, breakpoints: between(breakpoints) };
+  if (matrix) return { ...objective, matrix: between(matrix) };
   if (coordinates) return { ...objective, coordinates: kept.map((row) => coordinates[row]) };
   return objective;
 }

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from service.day.breakpoints import Breakpoints
 from service.errors import CityNames, invalid
 from service.errors.faults import show
 from service.requests.arrays import costs_array
@@ -118,6 +119,8 @@ def between(source: Source, chosen: NDArray[np.int64]) -> Source:
     """Return the source of the costs between some of the stops, in this order."""
     if isinstance(source, Slices):
         return Slices(source.begins, source.costs[:, chosen[:, np.newaxis], chosen])
+    if isinstance(source, Breakpoints):
+        return source.among(chosen)
     return with_base(source, lambda base: _between(base, chosen))
 
 
@@ -143,7 +146,7 @@ def _extended_over_the_day(source: Source, m: int, name: str, stops: AllStops) -
         for part, item in stops.new.items():
             _check_given(Measured("road_time"), part, item, m, name)
         return source
-    if isinstance(source, Slices) and stops.new:
+    if isinstance(source, Slices | Breakpoints) and stops.new:
         raise invalid(next(iter(stops.new)), "slices-need-objectives", objective=name)
     return with_base(source, lambda base: _extended(base, m, name, stops))
 
@@ -233,15 +236,17 @@ def _changes(
 def _changed_over_the_day(
     source: Source, name: str, entries: Mapping[tuple[int, int], float]
 ) -> Source:
-    """Return a source with changed costs: in all slices, or before the factors of the day.
+    """Return a source with changed costs: all day, or before the factors of the day.
 
     Raises:
         Refusal: The costs are those of traffic.
     """
     if isinstance(source, Traffic):
         raise invalid("costs", "costs-of-traffic", objective=name)
+    steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))
+    if isinstance(source, Breakpoints):
+        return source.changed(steps, costs)
     if isinstance(source, Slices):
-        steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))
         matrices = [changed_costs(matrix, steps, costs) for matrix in source.costs]
         return Slices(source.begins, np.stack(matrices))
     return with_base(source, lambda base: _changed(base, entries))

@@ -6,8 +6,9 @@ from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
+from service.requests.breakpoint_fields import TimeOfDay
 from service.requests.coverage import Cell, RobotPose
-from service.requests.day_fields import DayObjectiveItem, TimeOfDay
+from service.requests.day_fields import DayObjectiveItem
 from service.requests.fields import (
     GEOMETRY,
     Cost,
