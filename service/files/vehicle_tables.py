@@ -85,7 +85,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     paid = plane is None and columns.find("per_hour") is not None
     clock = waits or have_times(stops, vehicles) or paid
     add_profiles(columns, vehicles, located=plane is None)
-    _add_limits(columns, vehicles, clock)
+    _add_limits(columns, vehicles, clock=clock, located=plane is None)
     add_times(columns, vehicles, clock)
     _add_costs(columns, vehicles, located=plane is None)
     columns.report()
@@ -220,15 +220,19 @@ def _name_servers(stops: list[Stop], names: Mapping[str, str]) -> None:
             stop["vehicle"] = names.get(name, name)
 
 
-def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
-    """Add the limit on routes: on their time if there is a clock, else on their length."""
-    used, left_out = "longest_time", "longest_distance"
+def _add_limits(columns: Columns, vehicles: list[Vehicle], *, clock: bool, located: bool) -> None:
+    """Add the limits on routes: on their time if there is a clock, and on their length.
+
+    In a plane with times the length is a time.
+    """
     if not clock:
-        used, left_out = left_out, used
-    columns.leave_out(left_out, " with times" if clock else " without times")
-    read = partial(seconds_in if clock else _metres, columns)
-    for row, limit in columns.values(used, read, 0.0):
+        columns.leave_out("longest_time", " without times")
+    elif not located:
+        columns.leave_out("longest_distance", " with times in a plane")
+    for row, limit in columns.values("longest_time", partial(seconds_in, columns), 0.0):
         vehicles[row]["longest"] = limit
+    for row, limit in columns.values("longest_distance", partial(_metres, columns), 0.0):
+        vehicles[row]["max_distance" if clock else "longest"] = limit
 
 
 def _metres(columns: Columns, row: int, at: int) -> float:

@@ -22,6 +22,13 @@ def checked(costs: Array) -> Array:
     return checked
 
 
+def on_days(times: Array, n: int) -> Array:
+    """Return the times of the legs on each of d days, shape (d, n, n), with a diagonal of 0."""
+    if times.ndim != 3 or times.shape[1:] != (n, n):
+        raise ValueError(f"the times of days must have shape (d, {n}, {n}), got {times.shape}")
+    return np.where(np.eye(n, dtype=np.bool_), 0.0, times)
+
+
 def allowed(day: Day, forbidden: NDArray[np.bool_]) -> Day:
     """Return costs without the cost of a leg from a stop to itself, and some legs forbidden."""
     still = np.eye(len(forbidden), dtype=np.bool_)

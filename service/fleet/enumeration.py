@@ -18,7 +18,7 @@ import numpy as np
 
 from service.fleet.evaluation import first_broken, route_lengths, violations
 from service.fleet.fleet import Fleet
-from service.fleet.measures.punctuality import duration_of
+from service.fleet.measures.punctuality import Normal, duration_of
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
 from service.pareto import nondominated
@@ -46,7 +46,14 @@ Partials = Mapping[Stops, list[_Partial]]
 
 
 def is_enumerable(rules: Rules) -> bool:
-    """Return whether a fleet has few stops and vehicles."""
+    """Return whether a fleet has few stops and vehicles.
+
+    It is not, if a percentile of all routes together is of several days: too few partial plans are
+    better than others on all days.
+    """
+    pairs = zip(rules.over, rules.percents, strict=False)
+    if rules.sampled and any(over == "sum" and percent is not None for over, percent in pairs):
+        return False
     stops = len(rules.clients)
     vehicles = sum(min(vehicle.count, stops) for vehicle in rules.vehicles)
     most = _MOST_WAITING if rules.groups.waiting else MOST_STOPS
@@ -155,7 +162,9 @@ def _values(fleet: Fleet, route: Route) -> Iterator[float]:
         zip(fleet.rules.over, route_lengths(fleet, route), strict=True)
     ):
         if over == "sum" and fleet.rules.percent(m) is not None:
-            yield from duration_of(fleet, route)
+            duration = duration_of(fleet, route)
+            assert isinstance(duration, Normal)
+            yield from duration
             continue
         yield length
         if over == "imbalance":

@@ -1,6 +1,6 @@
 """A fleet: its rules, the costs between its stops, and the units of its objectives."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import inf
@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.day.costs import CostsOfDay
-from service.fleet.costs import Day, allowed, checked
+from service.fleet.costs import Day, allowed, checked, on_days
 from service.fleet.measures.table import MEASURES, OF_TIME, Measure
+from service.fleet.paths import least_paths
 from service.fleet.rules import Over, Rules
 from service.fleet.straight import Line
 from service.instance import SAMPLED, largest_costs, ordinary_cost
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Rows = Callable[[int], Array]  # returns what the legs from a stop cost, shape (n,)
 LAYERS = 2  # costs of a leg
 _BLOCK = 2**15  # costs that are worked out at once
 
@@ -39,6 +39,8 @@ class Fleet:
             `costs` are then the least of them.
         days: Both costs over the day by each profile, if some change; none if not. All profiles
             have the same slices, and the matrices are then the means.
+        sampled: The clock's times of the legs on each of several days, shape (d, n, n), by all
+            profiles; None if they are not given. The matrices have their means.
     """
 
     rules: Rules
@@ -46,14 +48,21 @@ class Fleet:
     lines: tuple[Line, ...] = ()
     profiles: tuple[Array, ...] = ()
     days: tuple[Day, ...] = ()
+    sampled: Array | None = None
 
     @classmethod
     def of_profiles(
-        cls, rules: Rules, profiles: Sequence[Array], days: Sequence[Day] = ()
+        cls,
+        rules: Rules,
+        profiles: Sequence[Array],
+        days: Sequence[Day] = (),
+        sampled: Array | None = None,
     ) -> "Fleet":
         """Return a fleet whose types of vehicles drive by profiles, whose costs these are."""
         several = tuple(profiles) if len(profiles) > 1 else ()
-        return cls(rules=rules, costs=profiles[0], profiles=several, days=tuple(days))
+        return cls(
+            rules=rules, costs=profiles[0], profiles=several, days=tuple(days), sampled=sampled
+        )
 
     @classmethod
     def of_lines(cls, rules: Rules, lines: Sequence[Line]) -> "Fleet":
@@ -86,6 +95,8 @@ class Fleet:
             pairs = zip(self.days, profiles, strict=True)
             days = tuple(allowed(day, np.isinf(means[0])) for day, means in pairs)
             object.__setattr__(self, "days", days)
+        if self.sampled is not None:
+            object.__setattr__(self, "sampled", on_days(self.sampled, self.rules.n))
 
     def under(self, rules: Rules) -> "Fleet":
         """Return the fleet under other rules."""
@@ -98,7 +109,8 @@ class Fleet:
         rows = stops[:, np.newaxis]
         costs = [each[:, rows, stops] for each in self._by_profile]
         days = [(first.among(stops), second.among(stops)) for first, second in self.days]
-        return Fleet.of_profiles(rules, costs, days)
+        sampled = None if self.sampled is None else self.sampled[:, rows, stops]
+        return Fleet.of_profiles(rules, costs, days, sampled)
 
     def scaled(self, rules: Rules, shifts: Indices) -> "Fleet":
         """Return a fleet whose costs are multiplied by powers of two, shape (2,)."""
@@ -111,7 +123,8 @@ class Fleet:
         days = [
             (first.scaled(by[0], times), second.scaled(by[1], times)) for first, second in self.days
         ]
-        return Fleet.of_profiles(rules, costs, days)
+        sampled = None if self.sampled is None else np.ldexp(self.sampled, times)
+        return Fleet.of_profiles(rules, costs, days, sampled)
 
     @property
     def _by_profile(self) -> tuple[Array, ...]:
@@ -340,29 +353,6 @@ class Fleet:
             case "load_distance":
                 return float(legs[0]) * max(each.capacity[0] for each in rules.vehicles)
         return float(legs[rules.limited or 0]) if MEASURES[over].unit in OF_TIME else 1.0
-
-
-def least_paths(legs: Rows, n: int, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:
-    """Return the least cost of a path from any of the starts to each stop, shape (n,). O(n^2).
-
-    This is Dijkstra's algorithm over arrays.
-
-    Args:
-        legs: Returns the costs of the legs from a stop; infinite for forbidden legs.
-        n: The number of stops.
-        starts: The stops where paths may start.
-        combine: How the costs of legs make the cost of a path: np.add, or np.maximum.
-    """
-    least = np.full(n, inf)
-    least[list(starts)] = 0.0
-    left = np.ones(n, np.bool_)
-    for _ in range(n):
-        nearest = int(np.where(left, least, inf).argmin())
-        if not left[nearest] or least[nearest] == inf:
-            break
-        left[nearest] = False
-        least = np.minimum(least, combine(least[nearest], legs(nearest)))
-    return least
 
 
 def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:

@@ -9,7 +9,7 @@ from operator import le
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import CityNames, NoTour, Obstacle, Refusal
+from service.errors import CityNames, Fault, NoTour, Obstacle, Refusal
 from service.fleet.costs import Day
 from service.fleet.evaluation import first_broken
 from service.fleet.fleet import LAYERS, Array, Fleet
@@ -29,10 +29,11 @@ def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> 
 
     Raises:
         NoTour: A necessary condition fails for some stops.
-        Refusal: A condition fails for all stops together. If none fails, a plan may still not
-            exist.
+        Refusal: There is no vehicle, or a condition fails for all stops together. If none fails, a
+            plan may still not exist.
     """
     rules = fleet.rules
+    check_left(rules)
     _refuse(_unserved(rules))
     _refuse(_too_heavy(rules))
     _check_totals(rules)
@@ -40,6 +41,12 @@ def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> 
     _refuse(_shipped_too_late(rules))
     _refuse(_waiting_too_long(rules))
     _refuse(_unreachable(fleet, ended))
+
+
+def check_left(rules: Rules) -> None:
+    """Raise a refusal if there is no vehicle: while a fleet is replanned, all may be away."""
+    if not any(vehicle.count for vehicle in rules.vehicles):
+        raise Refusal("no-plan", errors=[Fault("no-vehicle-left")])
 
 
 def _refuse(obstacles: Iterator[Obstacle]) -> None:

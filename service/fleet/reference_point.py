@@ -2,6 +2,8 @@
 
 from math import inf
 
+import numpy as np
+
 from service.fleet.fleet import Array, Fleet, urgency_of
 from service.fleet.measures.punctuality import deviations_of
 from service.fleet.measures.table import MEASURES, OF_TIME
@@ -31,7 +33,7 @@ def default_reference_point(fleet: Fleet) -> Array:
     services = slowest * sum(visit.longest_service for visit in rules.visits)
     for objective, percent in enumerate(rules.percents):
         if percent is not None:
-            point[objective] *= 1 + deviations_of(percent) * (rules.spread or 0.0)
+            point[objective] *= _longer(fleet, percent)
     for objective, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
         costs = over in ("sum", "max") and layer == rules.clock
         price = float(costs or (over in _TIMED and rules.clock is not None))
@@ -45,6 +47,17 @@ def default_reference_point(fleet: Fleet) -> Array:
         elif over == "weighted_arrival":
             point[objective] += (services + _waiting(rules)) * urgency_of(rules)
     return point
+
+
+def _longer(fleet: Fleet, percent: int) -> float:
+    """Return how many times as long as its mean a leg is on all but few of a hundred days.
+
+    Of several days it is that of the day on which all legs together are longest.
+    """
+    if fleet.sampled is None:
+        return 1 + deviations_of(percent) * (fleet.rules.spread or 0.0)
+    daily = fleet.sampled.sum(axis=(1, 2), where=np.isfinite(fleet.sampled))
+    return float(daily.max() / daily.mean()) if daily.any() else 1.0
 
 
 def _waiting(rules: Rules) -> float:

@@ -65,8 +65,9 @@ class Rules:
             without a change; None for any time.
         leave: Whether a vehicle leaves as late as makes nothing later, or as early as it may.
         groups: The groups of stops that share a vehicle, or must not, or have an order.
-        spread: The standard deviation of the time of each leg, as a share of it; None if times are
-            the same every day. No rule reads it: plans are kept on an average day.
+        spread: The standard deviation of the time of each leg, as a share of it; None if that is
+            not given. No rule reads it: plans are kept on an average day.
+        sampled: Whether the times of the legs on several days are given instead.
         percents: The length in an objective is what so many days of a hundred do not exceed; None
             for that of a day as planned, and without any for all.
 
@@ -85,6 +86,7 @@ class Rules:
     leave: Leave = "late"
     groups: Groups = NO_GROUPS
     spread: float | None = None
+    sampled: bool = False
     percents: tuple[int | None, ...] = ()
 
     def __post_init__(self) -> None:
@@ -102,40 +104,42 @@ class Rules:
                 check_depot(visit, f"stops/{index}")
             check_visit(visit, f"stops/{index}", basis)
         check_shipments(self.shipments, self.visits, self.depots)
-        check_percents(
-            self.percents, self._of_clock, self.vehicles, spreads=self.spread is not None
-        )
+        check_percents(self.percents, self._of_clock, self.vehicles, spreads=self.spreads)
         check_groups(self.groups, self.depots, self.shipped)
         others = {
             "shipments": bool(self.shipments),
             "reload": self.reloads,
             "breaks": any(vehicle.breaks for vehicle in self.vehicles),
-            "spread": self.spread is not None,
+            "spread": self.spreads,
         }
         check_waiting(self.groups, timed=self.clock is not None, others=others)
 
     @property
-    def _costly_layers(self) -> set[int]:
-        """The numbers of the costs that objectives are of."""
-        pairs = zip(self.over, self.layers, strict=True)
-        return {layer for over, layer in pairs if over in ("sum", "max")}
+    def _costly(self) -> list[bool]:
+        """Whether each objective is of costs."""
+        return [over in ("sum", "max") for over in self.over]
 
     @property
     def _of_clock(self) -> list[bool]:
         """Whether each objective is the time of routes."""
-        pairs = zip(self.over, self.layers, strict=True)
-        return [over in ("sum", "max") and layer == self.clock for over, layer in pairs]
+        pairs = zip(self._costly, self.layers, strict=True)
+        return [costly and layer == self.clock for costly, layer in pairs]
 
     def _basis(self) -> Basis:
         return Basis(
             timed=self.clock is not None,
             summed=self.over[0] != "max",
             limited=self.limited is not None,
-            far=self.clock != 0 or 1 in self._costly_layers,
+            far=self.clock != 0 or (1, True) in zip(self.layers, self._costly, strict=True),
             ships=bool(self.shipments),
             takes=self.takes,
             dimensions=self.dimensions,
         )
+
+    @property
+    def spreads(self) -> bool:
+        """Whether times differ from day to day."""
+        return self.spread is not None or self.sampled
 
     @property
     def n(self) -> int:
@@ -367,7 +371,7 @@ def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
         raise invalid(part, row.lacking, measure=measure)
     if row.unit == "clock" and not row.lacking and rules.clock is None:
         raise invalid(part, "untimed")
-    if measure == "on_time" and rules.spread is None:
+    if measure == "on_time" and not rules.spreads:
         raise invalid(part, "measure-without-spread")
     for index, vehicle in enumerate(rules.vehicles):
         if vehicle.breaks and measure in (*rules.of_begins, "on_time"):

@@ -7,6 +7,7 @@ from pydantic_core import to_json
 
 from service.errors import Refusal
 from service.fleet.evaluation import unassigned
+from service.fleet.necessary import check_left
 from service.fleet.plans import Plan
 from service.kinds.kind import Actors
 from service.kinds.parsing import stored_task
@@ -35,6 +36,7 @@ def answer_offers(asked: OffersTask, _limits: Limits, _actors: Actors) -> bytes:
     watch: Watch[None] = Watch()
     subject = asked.task.subject
     assert isinstance(subject, UnmeasuredFleet)
+    check_left(subject.rules)
     ended = watch.lasting(asked.seconds).ended
     found = find_offers(subject.fleet(), Plan(subject.driven), asked.order, asked.slots, ended)
     timings = {**asked.task.timings, "offers": 1000 * watch.spent}

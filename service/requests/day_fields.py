@@ -24,7 +24,7 @@ from service.requests.fields import (
     one_of,
     optional,
 )
-from service.requests.spread_fields import SpreadFields
+from service.requests.spread_fields import DaysFields, SpreadFields
 from service.requests.stop_fields import OF_A_SPEED, NamedStop, ObjectiveItem
 from service.requests.stops import (
     FixedSource,
@@ -55,6 +55,9 @@ class SliceItem(StrictModel):
     )
 
 
+SliceItems = Annotated[list[SliceItem], Field(max_length=_MOST_SLICES, fail_fast=True)]
+
+
 class TrafficItem(StrictModel):
     """Which times of travel a routing engine is asked for."""
 
@@ -78,7 +81,7 @@ class TrafficItem(StrictModel):
         for k, seconds in enumerate(self.begins):
             if seconds % 60:
                 raise invalid(f"{part}/at/{k}", "not-a-minute", came=seconds)
-        check_traffic(part, len(self.begins), n)
+        check_slices(f"{part}/at", len(self.begins), n)
         return Traffic(self._date(f"{part}/date"), tuple(self.begins))
 
     def _date(self, part: str) -> str:
@@ -92,11 +95,11 @@ class TrafficItem(StrictModel):
         return found.isoformat()
 
 
-def check_traffic(part: str, times: int, n: int, profiles: int = 1) -> None:
-    """Raise a refusal of too many times of travel between n stops, by some profiles."""
+def check_slices(part: str, times: int, n: int, profiles: int = 1) -> None:
+    """Raise a refusal of too many slices of the day between n stops, by some profiles."""
     most = max(1, _MOST_TIMES // (profiles * n**2))
     if times > most:
-        raise invalid(f"{part}/at", "too-many-times", limit=most, stops=n, came=times)
+        raise invalid(part, "too-many-times", limit=most, stops=n, came=times)
 
 
 class DepartureRange(StrictModel):
@@ -132,6 +135,8 @@ OF_SOURCES: Mapping[str, JsonValue] = {
     "breakpoints": {"properties": {"over_the_day": ABSENT}},
 }
 
+OF_DAYS: JsonValue = {"properties": {"over_the_day": ABSENT, "spread": ABSENT}}
+
 
 class TimedObjectiveItem(ObjectiveItem):
     """An objective, whose costs may change over the day."""
@@ -145,7 +150,7 @@ class TimedObjectiveItem(ObjectiveItem):
             " those of the source times the factor; the first one holds before it too",
         )
     )
-    slices: Annotated[list[SliceItem], Field(max_length=_MOST_SLICES, fail_fast=True)] = Field(
+    slices: SliceItems = Field(
         default_factory=list,
         description="in place of one matrix: one for each slice of the day, which the next one"
         " ends; the first one holds before it too",
@@ -214,35 +219,11 @@ class TimedObjectiveItem(ObjectiveItem):
                 raise invalid(f"{part}/{name}", "not-beside", member=source)
         if source == "breakpoints":
             return read_breakpoints(f"{part}/breakpoints", self.breakpoints, n)
-        return self._slices(part, n)
-
-    def _slices(self, part: str, n: int) -> Slices:
-        begins = [item.begins for item in self.slices]
-        _check_times(f"{part}/slices", [f"{k}/from" for k in range(len(begins))], begins)
-        matrices = []
-        for k, item in enumerate(self.slices):
-            where = f"{part}/slices/{k}/matrix"
-            if len(item.matrix) != n:
-                raise invalid(where, "row-each", stops=n, came=len(item.matrix))
-            matrix = cost_matrix(item.matrix, where)
-            check_costs(matrix, where)
-            matrices.append(matrix)
-        return Slices(np.array(begins), np.stack(matrices))
+        return read_slices(self.slices, f"{part}/slices", n)
 
 
-class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
-    """An objective, whose costs may change over the day, or spread from day to day.
-
-    It has exactly one source of costs: matrix, coordinates, from, slices, breakpoints or days.
-    """
-
-    model_config = one_of(
-        *(*SOURCES, "days"),
-        **OF_SOURCES,
-        days={"properties": {"over_the_day": ABSENT, "spread": ABSENT}},
-    )
-
-    choices: ClassVar[str] = "matrix, coordinates, from, slices, breakpoints and days"
+class SampledObjectiveItem(DaysFields, TimedObjectiveItem):
+    """An objective, whose costs may be those of several days."""
 
     @property
     def sources(self) -> list[str]:
@@ -255,6 +236,17 @@ class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
             return Matrix(self.costs_of_days(part, len(stops)).mean(axis=0))
         return super().fixed_source(part, stops)
 
+
+class DayObjectiveItem(SampledObjectiveItem, SpreadFields):
+    """An objective, whose costs may change over the day, or spread from day to day.
+
+    It has exactly one source of costs: matrix, coordinates, from, slices, breakpoints or days.
+    """
+
+    model_config = one_of(*SOURCES, "days", **OF_SOURCES, days=OF_DAYS)
+
+    choices: ClassVar[str] = "matrix, coordinates, from, slices, breakpoints and days"
+
     def spread_of(self, part: str, n: int) -> Spread | None:
         """Return how the costs between n stops spread; None if they do not.
 
@@ -264,6 +256,25 @@ class DayObjectiveItem(TimedObjectiveItem, SpreadFields):
         if self.changes and (self.days or self.spread is not None):
             raise invalid(f"{part}/{'days' if self.days else 'spread'}", "spread-over-the-day")
         return super().spread_of(part, n)
+
+
+def read_slices(items: Sequence[SliceItem], part: str, n: int) -> Slices:
+    """Return the costs between n stops in slices of the day.
+
+    Raises:
+        Refusal: They are not in order, or a matrix is not of these stops.
+    """
+    begins = [item.begins for item in items]
+    _check_times(part, [f"{k}/from" for k in range(len(begins))], begins)
+    matrices = []
+    for k, item in enumerate(items):
+        where = f"{part}/{k}/matrix"
+        if len(item.matrix) != n:
+            raise invalid(where, "row-each", stops=n, came=len(item.matrix))
+        matrix = cost_matrix(item.matrix, where)
+        check_costs(matrix, where)
+        matrices.append(matrix)
+    return Slices(np.array(begins), np.stack(matrices))
 
 
 class DayFields(StrictModel):

@@ -47,6 +47,9 @@ Pair = Annotated[list[Each], Field(min_length=2, max_length=2, fail_fast=True)]
 OneEach = Annotated[  # for each objective
     list[Each], Field(min_length=OBJECTIVES, max_length=MOST_OBJECTIVES, fail_fast=True)
 ]
+OneEachOfCosts = Annotated[  # for each objective that has costs
+    list[Each], Field(min_length=1, max_length=MOST_OBJECTIVES, fail_fast=True)
+]
 OneForBoth = Annotated[  # the same where there are two
     list[Each], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
 ]

@@ -30,13 +30,13 @@ from service.requests.fleet_fields import (
     FleetObjectiveItem,
     FleetStopItem,
     ShipmentItem,
+    TimesItem,
     VehicleItem,
 )
 from service.requests.group_fields import ApartItem, BeforeItem, References
 from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
 from service.requests.profile_fields import (
     Profile,
-    ProfileCostsItem,
     check_profiles,
     check_road_profiles,
 )
@@ -138,9 +138,11 @@ class FleetRequest(SearchFields):
         types = types_by_id(names)
         visits = tuple(item.visit(f"stops/{i}", types) for i, item in enumerate(self.stops))
         costs, layers = self._layers()
+        self._check_spread()
         self._check_day()
         profiles = [item.profile for item in self.vehicles]
         check_profiles(profiles, self._costs)
+        sampled = self._times and self._times[1].sampled(self._times[0], len(ids))
         rules = Rules(
             visits=plan.visits(visits, self.slack) if plan else visits,
             vehicles=vehicles,
@@ -154,20 +156,23 @@ class FleetRequest(SearchFields):
             tolerance=self._tolerance,
             leave=self.leave,
             groups=self._groups(ids),
-            spread=self._spread,
+            spread=self._times and self._times[1].spread,
+            sampled=sampled is not None,
             percents=self._percents,
         )
         kinds = tuple(dict.fromkeys(profiles))
-        stops = Stops(locations_of(labels.stops), self._sources(costs, labels.stops, kinds))
+        sources = self._sources(costs, labels.stops, kinds)
+        spreads = (sampled,) if sampled else ()
+        stops = Stops(locations_of(labels.stops), sources, spreads=spreads)
         driven = plan.routes if plan else ()
         clock = self._named_clock
         return UnmeasuredFleet(rules, names, stops, driven, clock=clock, profiles=kinds)
 
     @property
-    def _costs(self) -> dict[str, ProfileCostsItem]:
+    def _costs(self) -> dict[str, TimesItem]:
         """The items that are sources of costs, by their part of the request."""
         objectives = enumerate(self.objectives)
-        found: dict[str, ProfileCostsItem] = {
+        found: dict[str, TimesItem] = {
             f"objectives/{m}": item for m, item in objectives if item.of_plan is None
         }
         return {**found, "clock": self.clock} if isinstance(self.clock, ClockItem) else found
@@ -177,18 +182,24 @@ class FleetRequest(SearchFields):
         check_road_profiles([i.profile for i in self.vehicles], self._costs.values(), known)
 
     @property
-    def _spread(self) -> float | None:
-        """How the times of legs spread, as a share of them; None if they do not.
-
-        Raises:
-            Refusal: An objective spreads that is not the clock.
-        """
-        for index, item in enumerate(self.objectives):
-            if item.spread is not None and (item.of_plan is not None or item.name != self.clock):
-                raise invalid(f"objectives/{index}/spread", "spread-of-clock")
+    def _times(self) -> tuple[str, TimesItem] | None:
+        """The item that has the clock's times, after its part of the request; None for none."""
         if isinstance(self.clock, ClockItem):
-            return self.clock.spread
-        return next((item.spread for item in self.objectives if item.name == self.clock), None)
+            return "clock", self.clock
+        return next((pair for pair in self._costs.items() if pair[1].name == self.clock), None)
+
+    def _check_spread(self) -> None:
+        """Raise a refusal of costs that spread, but are not the clock's or change over the day."""
+        names = [item.name for item in self.objectives]
+        named = names.index(self.clock) if self.clock in names else None
+        for index, item in enumerate(self.objectives):
+            if item.spread is not None and (item.of_plan is not None or index != named):
+                raise invalid(f"objectives/{index}/spread", "spread-of-clock")
+            if item.days and (named is None or not self._same_costs(named, index)):
+                raise invalid(f"objectives/{index}/days", "spread-of-clock")
+        changes = any(item.changes for item in self._costs.values())
+        if changes and self._times and self._times[1].days:
+            raise invalid(f"{self._times[0]}/days", "spread-over-the-day")
 
     @property
     def _percents(self) -> tuple[int | None, ...]:
@@ -284,9 +295,10 @@ class FleetRequest(SearchFields):
             Refusal: An objective has both costs and a measure, or there are too many costs.
         """
         # Objectives that share costs also share the clock, so only those that must do, or that ask
-        # for percentiles of its times.
+        # for percentiles of its times, or have its days.
         costly = sum(item.of_plan is None for item in self.objectives)
-        shared = costly > LAYERS or bool(self._percents)
+        sampled = any(item.days for item in self.objectives)
+        shared = costly > LAYERS or bool(self._percents) or sampled
         costs: list[int] = []
         layers: list[int] = []
         for index, item in enumerate(self.objectives):
@@ -308,7 +320,7 @@ class FleetRequest(SearchFields):
         """Return whether two objectives have the same costs between the stops."""
         a, b = (self.objectives[index] for index in (first, second))
         fixed = ("matrix", "matrices", "coordinates", "measure", "speed")
-        names = (*fixed, "over_the_day", "slices", "breakpoints", "traffic")
+        names = (*fixed, "over_the_day", "slices", "breakpoints", "traffic", "days")
         return all(getattr(a, name) == getattr(b, name) for name in names)
 
     def _sources(
@@ -318,7 +330,7 @@ class FleetRequest(SearchFields):
 
         If there is only one, the second are the same.
         """
-        items: dict[str, ProfileCostsItem] = {
+        items: dict[str, TimesItem] = {
             f"objectives/{each}": self.objectives[each] for each in costs
         }
         if isinstance(self.clock, ClockItem):

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import inf
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Discriminator, Field, Tag
 
@@ -10,7 +10,8 @@ from service.errors import invalid
 from service.fleet.measures.table import Measure, joined_texts
 from service.fleet.rules import Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
-from service.requests.day_fields import OF_SOURCES, SOURCES
+from service.reliability.spread import Spread
+from service.requests.day_fields import OF_DAYS, OF_SOURCES, SOURCES, SampledObjectiveItem
 from service.requests.fields import (
     ABSENT,
     AsInteger,
@@ -300,8 +301,31 @@ class VehicleItem(StrictModel):
         ]
 
 
-class ClockItem(SpreadOfTimes, ProfileCostsItem):
-    """The source of travel times that are not an objective, maybe over the day."""
+class TimesItem(SampledObjectiveItem, SpreadOfTimes, ProfileCostsItem):
+    """A source of costs by profile, which may spread from day to day if they are times."""
+
+    model_config = one_of(*SOURCES, "matrices", "days", **OF_SOURCES, days=OF_DAYS)
+
+    choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices, breakpoints and days"
+
+    def sampled(self, part: str, n: int) -> Spread | None:
+        """Return the costs of several days; None if there are none.
+
+        Raises:
+            Refusal: They are given beside a spread, or are too few, or not of n stops.
+        """
+        if not self.days:
+            return None
+        if self.spread is not None:
+            raise invalid(f"{part}/spread", "not-beside", member="days")
+        return Spread(days=self.costs_of_days(part, n))
+
+
+class ClockItem(TimesItem):
+    """The source of travel times that are not an objective, maybe over the day.
+
+    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints and days.
+    """
 
     name: Text = Field(default="time", description="of the times, which are not an objective")
 
@@ -312,15 +336,17 @@ Clock = Annotated[
 ]
 
 
-class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
+class FleetObjectiveItem(TimesItem):
     """An objective by its name: costs with their source, or another measure of plans.
 
-    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints and measure.
+    It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints, days and
+    measure.
     """
 
     model_config = one_of(
-        *(*SOURCES, "matrices", "measure"),
+        *(*SOURCES, "matrices", "days", "measure"),
         **OF_SOURCES,
+        days=OF_DAYS,
         measure={"properties": {"over": ABSENT, "over_the_day": ABSENT}},
     )
 
@@ -336,8 +362,9 @@ class FleetObjectiveItem(SpreadOfTimes, ProfileCostsItem):
         " default, or the longest route; max for one objective at most",
     )
     percentile: Percentile | None = optional(
-        "of the clock's times, if they have a `spread`: the length of a plan is what so many days"
-        " of a hundred do not exceed, such as 90; by default it is that of a day as planned"
+        "of the clock's times, if they have a `spread` or `days`: the length of a plan is what so"
+        " many days of a hundred do not exceed, such as 90; by default it is that of a day as"
+        " planned"
     )
 
 

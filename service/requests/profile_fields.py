@@ -5,12 +5,21 @@ from dataclasses import replace
 from functools import partial
 from typing import Annotated, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import invalid
 from service.errors.faults import show
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.day_fields import OF_SOURCES, SOURCES, TimedObjectiveItem, check_traffic
+from service.requests.day_fields import (
+    OF_SOURCES,
+    SOURCES,
+    SliceItems,
+    TimedObjectiveItem,
+    check_slices,
+    read_slices,
+)
 from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, one_of
 from service.requests.stop_fields import check_rows, check_unique
 from service.requests.stops import (
@@ -18,6 +27,7 @@ from service.requests.stops import (
     FixedSource,
     Matrix,
     Measured,
+    Slices,
     Source,
     Stop,
     Traffic,
@@ -25,17 +35,45 @@ from service.requests.stops import (
 )
 from service.requests.validation import nearest
 
+Array = NDArray[np.float64]
 MOST_PROFILES = 10
 Profile = str | None  # of a vehicle; without one it drives as the costs say for all
 
 
 class ProfileMatrixItem(StrictModel):
-    """The costs of the legs to vehicles of a profile."""
+    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of a day.
+
+    Where others have slices, a matrix holds all day.
+    """
+
+    model_config = one_of("matrix", "slices")
 
     profile: Text = Field(description="the `profile` of these vehicles")
     matrix: CostRows = Field(
-        description=f"the costs from each stop (row) to each (column), {NO_WAY}"
+        default_factory=list,
+        description=f"the costs from each stop (row) to each (column), {NO_WAY}",
     )
+    slices: SliceItems = Field(
+        default_factory=list,
+        description="in place of one matrix: one for each slice of the day, as of an objective; of"
+        " all profiles that have some they begin at the same times",
+    )
+
+    def source(self, part: str, n: int) -> Matrix | Slices:
+        """Return the source of the costs between n stops.
+
+        Raises:
+            Refusal: There is not exactly one source, or it does not fit the stops.
+        """
+        if bool(self.matrix) == bool(self.slices):
+            given = "both" if self.matrix else "none"
+            raise invalid(part, "one-form", forms="matrix and slices", given=given)
+        if self.slices:
+            return read_slices(self.slices, f"{part}/slices", n)
+        check_rows(f"{part}/matrix", n, len(self.matrix))
+        matrix = cost_matrix(self.matrix, f"{part}/matrix")
+        check_costs(matrix, f"{part}/matrix")
+        return Matrix(matrix)
 
 
 class ProfileCostsItem(TimedObjectiveItem):
@@ -62,6 +100,11 @@ class ProfileCostsItem(TimedObjectiveItem):
         return [*super().sources, *(["matrices"] if self.matrices else [])]
 
     @property
+    def changes(self) -> bool:
+        """Whether its costs change over the day."""
+        return super().changes or any(each.slices for each in self.matrices)
+
+    @property
     def by_road(self) -> bool:
         """Whether its costs are by road, so that each profile has its own."""
         return "measure" in self.model_fields_set and self.measure in ROAD_MEASURES
@@ -75,16 +118,40 @@ class ProfileCostsItem(TimedObjectiveItem):
             Refusal: As of `source`; or matrices do not fit the stops.
         """
         if self.sources == ["matrices"]:
-            own: dict[Profile, Source] = {
-                each.profile: self.factored(part, _matrix(each, f"{part}/matrices/{k}", len(stops)))
-                for k, each in enumerate(self.matrices)
-            }
+            own = self._sources_of_own(part, len(stops))
             return [own[profile] for profile in profiles]
         source = self.source(part, stops)
         if isinstance(source, Traffic):
-            check_traffic(f"{part}/traffic", len(source.begins), len(stops), len(profiles))
+            check_slices(f"{part}/traffic/at", len(source.begins), len(stops), len(profiles))
             return [replace(source, profile=profile) for profile in profiles]
         return [with_base(source, partial(_by_profile, profile=profile)) for profile in profiles]
+
+    def _sources_of_own(self, part: str, n: int) -> dict[Profile, Source]:
+        """Return the source of the costs between n stops that each profile has for itself."""
+        items = enumerate(self.matrices)
+        own = {each.profile: each.source(f"{part}/matrices/{k}", n) for k, each in items}
+        sliced = next((each for each in own.values() if isinstance(each, Slices)), None)
+        if sliced is None:
+            return {
+                profile: self.factored(part, each)
+                for profile, each in own.items()
+                if isinstance(each, Matrix)
+            }
+        for name in ("over_the_day", "traffic"):
+            if getattr(self, name):
+                raise invalid(f"{part}/{name}", "not-beside", member="slices")
+        for k, each in enumerate(own.values()):
+            if isinstance(each, Slices) and not np.array_equal(each.begins, sliced.begins):
+                raise invalid(f"{part}/matrices/{k}/slices", "other-slices")
+        check_slices(f"{part}/matrices", len(sliced.begins), n, len(own))
+        return {profile: _all_day(each, sliced.begins) for profile, each in own.items()}
+
+
+def _all_day(source: Matrix | Slices, begins: Array) -> Slices:
+    """Return costs in each slice of the day: of a matrix, the same in all."""
+    if isinstance(source, Slices):
+        return source
+    return Slices(begins, np.repeat(source.costs[np.newaxis], len(begins), axis=0))
 
 
 def _by_profile(base: FixedSource, profile: Profile) -> FixedSource:
@@ -92,13 +159,6 @@ def _by_profile(base: FixedSource, profile: Profile) -> FixedSource:
     if isinstance(base, Measured) and base.measure in ROAD_MEASURES:
         return replace(base, profile=profile)
     return base
-
-
-def _matrix(item: ProfileMatrixItem, part: str, n: int) -> Matrix:
-    check_rows(f"{part}/matrix", n, len(item.matrix))
-    matrix = cost_matrix(item.matrix, f"{part}/matrix")
-    check_costs(matrix, f"{part}/matrix")
-    return Matrix(matrix)
 
 
 def check_profiles(profiles: Sequence[Profile], items: Mapping[str, ProfileCostsItem]) -> None:

@@ -24,8 +24,36 @@ _SpreadOf = Annotated[
 ]
 
 
-class SpreadOfTimes(StrictModel):
-    """How the times of legs spread from day to day."""
+class MatrixItem(StrictModel):
+    """The costs of one day."""
+
+    matrix: CostRows = Field(description="the costs from each stop (row) to each (column)")
+
+
+class DaysFields(StrictModel):
+    """The costs of several days."""
+
+    days: Annotated[list[MatrixItem], Field(max_length=_MOST_DAYS, fail_fast=True)] = Field(
+        default_factory=list,
+        description="in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of"
+        " each leg, and a tour or a plan is measured on each day",
+    )
+
+    def costs_of_days(self, part: str, n: int) -> Array:
+        """Return the costs of each day, shape (d, n, n).
+
+        Raises:
+            Refusal: There are too few days, or a matrix is not of these stops.
+        """
+        if len(self.days) < _LEAST_DAYS:
+            came = len(self.days)
+            raise invalid(f"{part}/days", "too-few-days", least=_LEAST_DAYS, came=came)
+        days = enumerate(self.days)
+        return np.stack([_matrix(each.matrix, f"{part}/days/{d}/matrix", n) for d, each in days])
+
+
+class SpreadOfTimes(DaysFields):
+    """How the times of a fleet's legs spread from day to day."""
 
     spread: _Factor | None = optional(
         "of the clock's times: the standard deviation of each leg, as a share of it; each plan then"
@@ -33,23 +61,12 @@ class SpreadOfTimes(StrictModel):
     )
 
 
-class MatrixItem(StrictModel):
-    """The costs of one day."""
-
-    matrix: CostRows = Field(description="the costs from each stop (row) to each (column)")
-
-
-class SpreadFields(StrictModel):
+class SpreadFields(DaysFields):
     """The fields of an objective whose costs spread from day to day."""
 
     spread: _SpreadOf | None = optional(
         "how far the costs of each leg deviate from their mean, independently of other legs: as a"
         " share of the cost, or as a matrix of standard deviations in the objective's unit"
-    )
-    days: Annotated[list[MatrixItem], Field(max_length=_MOST_DAYS, fail_fast=True)] = Field(
-        default_factory=list,
-        description="in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of"
-        " each leg, and a tour is measured on each day",
     )
     percentile: Percentile | None = optional(
         "the length of a tour is what so many days of a hundred do not exceed, such as 90; by"
@@ -74,18 +91,6 @@ class SpreadFields(StrictModel):
             deviations = _matrix(self.spread, f"{part}/spread", n)
             return Spread(deviations=deviations, percent=self.percentile)
         return Spread(factor=self.spread, percent=self.percentile)
-
-    def costs_of_days(self, part: str, n: int) -> Array:
-        """Return the costs of each day, shape (d, n, n).
-
-        Raises:
-            Refusal: There are too few days, or a matrix is not of these stops.
-        """
-        if len(self.days) < _LEAST_DAYS:
-            came = len(self.days)
-            raise invalid(f"{part}/days", "too-few-days", least=_LEAST_DAYS, came=came)
-        days = enumerate(self.days)
-        return np.stack([_matrix(each.matrix, f"{part}/days/{d}/matrix", n) for d, each in days])
 
 
 def read_spreads(

@@ -126,7 +126,9 @@ class UnmeasuredFleet:
         if self.stops.changes:
             return Fleet.over_the_day(self.rules, *costs_of_day(self.stops))
         costs = cost_matrices(self.stops)
-        return Fleet.of_profiles(self.rules, np.split(costs, len(costs) // LAYERS))
+        sampled = next((each.days for each in self.stops.spreads if each), None)
+        profiles = np.split(costs, len(costs) // LAYERS)
+        return Fleet.of_profiles(self.rules, profiles, sampled=sampled)
 
 
 def _objective(members: dict[str, Any], over: Over | Measure) -> dict[str, Any]:

@@ -212,6 +212,29 @@ def test_each_change_that_would_help_gives_a_plan(
             assert left_out <= (1 if "out" not in each.code else 12)
 
 
+def test_where_all_vehicles_are_out_of_service_more_of_them_help(
+    client: httpx.Client, front: dict[str, Any]
+) -> None:
+    plan = full_plan(front)
+    routes = front["front"][plan]["routes"]
+    ways = [{"route": i, "done": each["stops"][1:2]} for i, each in enumerate(routes)]
+    out = {"plan": plan, "routes": [{**way, "broken_down": True} for way in ways]}
+    tries = (replan(client, front, **out).json() for _ in range(9))
+    refusal = next(found for each in tries if (found := Refused(each)).remedies)
+    assert [each["code"] for each in refusal.errors] == ["no-vehicle-left"]
+    assert [each.code for each in refusal.remedies] == ["send-more"]
+    [remedy] = refusal.remedies
+    answer = replan(client, front, **remedy.applied_to(out))
+    assert answer.status_code == 200, answer.text
+    left = {f"order-{i}" for i in range(1, 13)} - {way["done"][0] for way in ways}
+    for each in answer.json()["front"]:
+        assert {stop for route in each["routes"] for stop in visits_of(route)} == left
+    order = {"order": NEW, "slots": [[NOW, 30000]], "now": NOW, **out}
+    offered = client.post(f"/front/{front['id']}/offers", json=order)
+    assert offered.status_code == 422
+    assert offered.json()["errors"][0]["code"] == "no-vehicle-left"
+
+
 NEW = {"id": "new", "location": [24.95, 60.17]}
 REFUSED = [
     ({"now": None}, "/now"),

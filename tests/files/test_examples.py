@@ -233,7 +233,7 @@ OTHERS = {
     ),
     "two-demands.csv fleet-shifts.csv": fleet(
         "depot a b",
-        "vehicle left-out",
+        "vehicle",
         vehicles=[
             {
                 **BIKE,

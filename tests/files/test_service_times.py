@@ -1,9 +1,12 @@
 """How long stops take, as people write it in tables: names of columns, units, and plain numbers."""
 
 import pytest
+from pydantic_core import to_json
 
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
+from service.kinds.parsing import parse_task
+from service.requests.task import TaskSource
 from tests.helpers.serving import LIMITS
 
 BRIEF = "is in seconds, {} at most. For minutes, write 5 min or name it"
@@ -88,6 +91,22 @@ def test_durations_of_vehicles_without_a_unit_are_noted(
     found = read_files([NamedFile("stops.csv", stops), NamedFile("vans.csv", vans)], Bounds())
     assert found.request["vehicles"][0][member] == seconds
     assert f"'{heading}' is in seconds, {cell} at most" in str(found.notes)
+
+
+def test_hours_and_a_range_both_bound_a_route_except_in_a_plane() -> None:
+    vans = NamedFile("vans.csv", b"vehicle,shift,max time [h],max km\nvan,8-12,3,80\nbike,8-12,,\n")
+    stops = b"id,lat,lon,demand\ndepot,60.17,24.94,\na,60.18,24.95,1\n"
+    found = read_files([NamedFile("stops.csv", stops), vans], Bounds())
+    van, bike = found.request["vehicles"]
+    assert (van["longest"], van["max_distance"]) == (10800, 80_000)
+    assert not {"longest", "max_distance"} & bike.keys()
+    parse_task(TaskSource(found.kind, to_json(found.request)), LIMITS, {})
+    plane = b"id,x,y,demand,service\ndepot,0,0,,\na,3,4,1,2\n"
+    vans = NamedFile("vans.csv", b"vehicle,max time,max distance\nvan,9,80\n")
+    found = read_files([NamedFile("stops.csv", plane), vans], Bounds())
+    [van] = found.request["vehicles"]
+    assert (van["longest"], van.get("max_distance")) == (9, None)
+    assert "'max distance' with times in a plane" in str(found.notes)
 
 
 def test_service_in_a_plane_has_the_unit_of_its_distances() -> None:

@@ -1,4 +1,4 @@
-"""How surely plans are on time, against 10,000 days that other code drives."""
+"""How surely plans are on time, against 10,000 or a few given days that other code drives."""
 
 from dataclasses import replace
 from itertools import permutations
@@ -8,13 +8,13 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from service.fleet.evaluation import measures, plan_lengths, route_violations
+from service.fleet.evaluation import measures, plan_lengths, route_violations, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
 from service.fleet.schedule import schedule
 from service.fleet.vehicles import VehicleType, Visit
-from tests.helpers.fleets import random_fleet
+from tests.helpers.fleets import every_plan, random_fleet, sampled_fleet
 
 DAYS = 10_000
 SPREAD = 0.3
@@ -78,6 +78,56 @@ def test_simulated_days_are_as_the_measures_say() -> None:
     assert len(misses) > 50
     assert len(misses) > 50
     assert np.sqrt(np.mean(np.square(misses))) < 0.01
+
+
+def on_a_day(fleet: Fleet, route: Route, day: np.ndarray) -> tuple[int, int, float]:
+    """Return the visits of a route with a latest time, those in time, and how long it takes."""
+    rules, times = fleet.rules, schedule(fleet, route)
+    vehicle = rules.vehicles[route.vehicle]
+    planned = iter(times.arrivals if vehicle.start is None else times.arrivals[1:])
+    now = left = times.arrivals[0]
+    timed = kept = 0
+    stops = [stop for stop in (vehicle.start, *route.stops, vehicle.end) if stop is not None]
+    for at, stop in zip([None, *stops], [*stops, None], strict=True):
+        if at is not None and stop is not None:
+            now += day[at, stop] / vehicle.speed_factor
+        if stop is None or (at is None and vehicle.start is not None):
+            continue
+        arrival, visit = next(planned), rules.visits[stop]
+        if stop in rules.depots:
+            continue
+        opens, closes = next(w for w in visit.windows if arrival <= w[1] * (1 + 1e-12))
+        latest = min(closes, visit.due)
+        timed += latest < inf
+        kept += latest < inf and now <= latest * (1 + 1e-12)
+        now = max(now, opens) + rules.service(route.vehicle, stop)
+    return timed, kept, now - left
+
+
+def test_each_given_day_is_driven() -> None:
+    several = 0
+    for seed in range(40):
+        fleet = sampled_fleet(seed)
+        assert fleet.sampled is not None
+        if fleet.rules.reloads:
+            continue
+        plans = [plan for plan in every_plan(fleet.rules) if not violations(fleet, plan)]
+        for plan in plans[:: max(1, len(plans) // 5)]:
+            days = [[on_a_day(fleet, each, day) for each in plan.routes] for day in fleet.sampled]
+            durations = sorted(sum(taken for *_, taken in day) for day in days)
+            timed = sum(route[0] for day in days for route in day)
+            kept = sum(route[1] for day in days for route in day)
+            said = measures(fleet, plan)
+            assert said.get("on_time") == (pytest.approx(kept / timed) if timed else None)
+            assert said["duration"] == pytest.approx(np.mean(durations))
+            nine_in_ten = next(
+                most
+                for most in durations
+                if 10 * sum(other <= most for other in durations) >= 9 * len(days)
+            )
+            assert said["duration_p90"] == pytest.approx(nine_in_ten)
+            several += len(plan.routes) > 1 and 0 < kept < timed
+    assert several > 20
 
 
 def fleet_of(*visits: Visit, spread: float | None = 0.5) -> Fleet:

@@ -21,6 +21,7 @@ from tests.helpers.fleets import (
     exact_front,
     mixed_fleet,
     random_fleet,
+    sampled_fleet,
     shipping_fleet,
     spreading_fleet,
     taking_fleet,
@@ -41,7 +42,7 @@ def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
     "fleet_of",
     [
         *(random_fleet, bounded_fleet, mixed_fleet, shipping_fleet),
-        *(tidy_fleet, varied_fleet, taking_fleet, spreading_fleet, waiting_fleet),
+        *(tidy_fleet, varied_fleet, taking_fleet, spreading_fleet, sampled_fleet, waiting_fleet),
     ],
 )
 def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(

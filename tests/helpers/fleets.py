@@ -317,6 +317,16 @@ def spreading_fleet(seed: int) -> Fleet:
     return Fleet(rules=changed, costs=fleet.costs if rules.clock == 0 else fleet.costs[::-1])
 
 
+def sampled_fleet(seed: int) -> Fleet:
+    """Return one of these with the times of two to seven days, some of which are slow."""
+    fleet, random = spreading_fleet(seed), np.random.default_rng([seed, 4])
+    days, n = int(random.integers(2, 8)), fleet.rules.n
+    slow = random.choice([0.5, 1.0, 2.0], (days, 1, 1))
+    times = np.round(slow * fleet.costs[0]) + random.integers(0, 5, (days, n, n))
+    rules = dataclasses.replace(fleet.rules, spread=None, sampled=True)
+    return Fleet(rules=rules, costs=np.stack((times.mean(axis=0), fleet.costs[1])), sampled=times)
+
+
 def _bounded(seed: int, over: Objectives, layers: tuple[int, ...], least: int = 2) -> Fleet:
     random = np.random.default_rng(seed)
     n = int(random.integers(least, least + 2))

@@ -89,6 +89,19 @@ def test_during_the_day_vans_bring_what_they_carry_and_nothing_new() -> None:
     assert any("route" in choice for offer in visited for choice in offer.get("choices", ()))
 
 
+def test_slots_are_offered_once_no_visit_waits_for_another() -> None:
+    waits = [{"first": ["order-1"], "then": ["order-7"], "vehicles": "any"}]
+    front = as_stored(stored_fleet({**fleet_request(), "before": waits}))
+    with pytest.raises(Refusal) as refused:
+        ask(front, every=HOURS)
+    [fault] = refused.value.errors
+    assert (fault.pointer, fault.code) == ("/order", "offered-beside-waits")
+    routes = json.loads(front.found.split()[0])["routes"]
+    begun = {"now": routes[0]["arrivals"][1] + 600, "plan": 0}
+    begun["routes"] = [{"route": 0, "done": ["order-1"]}, {"route": 1, "done": []}]
+    assert ask(front, every=HOURS, **begun)["offers"]
+
+
 def test_an_order_that_no_vehicle_can_bring_has_reasons() -> None:
     night, morning = ask(slots=[[0, HOUR], [NINE, 12 * HOUR]])["offers"]
     assert not night["possible"]

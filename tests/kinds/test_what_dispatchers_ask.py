@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from service.errors import Refusal
@@ -261,7 +262,8 @@ def test_a_dear_vehicle_stays_where_one_under_way_can_serve() -> None:
     assert plan["lengths"][0] == 2 * 2 * FAR
 
 
-PROFILED = by_profile({**fleet(SIDES), "vehicles": [{"id": "a"}, {"id": "b"}]}, car=1, truck=2)
+VANS = [{"id": "a"}, {"id": "b"}]
+PROFILED = by_profile({**fleet(SIDES), "vehicles": VANS}, car=1, truck=2)
 WRONG_PROFILES = [
     ("vehicles/1/profile", None, "profile-needed"),
     ("vehicles/1/profile", "trick", "not-a-profile"),
@@ -360,6 +362,34 @@ def test_who_must_be_early_is_first_where_times_spread_also_while_it_is_replanne
     document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
     [plan, *_] = json.loads(document.json(id="", status="done"))["front"]
     assert plan["lengths"][0] == plan["measures"]["duration_p90"]
+
+
+DAYS = (0.5, 1, 1, 1.5)  # how slow all roads are on each of four days
+
+
+def test_the_days_that_are_given_stay_while_a_fleet_is_replanned() -> None:
+    """vroom#1280 on days that differ: on the slow one the stop in the east is missed."""
+    stops = {"west": {"at": WEST, "window": [0, 100]}, "east": {"at": EAST, "window": [0, 14]}}
+    request = fleet(stops, leave="early", against={"measure": "on_time"})
+    time = request["objectives"][0]
+    costs = np.array(time.pop("matrix"))
+    time["days"] = [{"matrix": (slow * costs).tolist()} for slow in DAYS]
+    [plan] = front_of(request)
+    assert plan["routes"][0]["stops"][1:3] == ["east", "west"]
+    assert plan["lengths"] == [40, 0.25]
+    assert plan["measures"]["on_time"] == 1 - 0.25 / 2
+    assert (plan["measures"]["duration"], plan["measures"]["duration_p90"]) == (40, 60)
+    _, source = begun_with("east", request)
+    # A leg that has changed is the same on all days, and so are those of a new stop, in the east.
+    changes = json.loads(source.body)
+    changes["costs"] = [{"objective": "time", "from": "west", "to": "depot", "cost": 12}]
+    new = {"id": "new", "costs": [{"to": [10, 20, 0, 0], "from": [10, 20, 0, 0]}]}
+    for added, most in ([], 1.5 * 20 + 12), ([new], 20 + 12):
+        body = json.dumps({**changes, "add": added}).encode()
+        rest = parse_replan(replace(source, body=body), LIMITS, {})
+        document = run_fleet(rest.subject, rest, Tools({}, LIMITS), Watch())
+        [after, *_] = json.loads(document.json(id="", status="done"))["front"]
+        assert after["measures"]["duration_p90"] == most
 
 
 def begun_with(stop: str, request: Json, **way: Any) -> tuple[int, ReplanSource]:
@@ -663,6 +693,58 @@ def test_vehicles_that_differ_drive_through_the_rush(
     assert route["arrivals"][1] == 130
     if "max_driving" in van and driver == "van":
         assert route["driving"] == [0, 20, 40]
+
+
+def sliced(request: Json, *profiles: str) -> Json:
+    """Return a request in which some profiles have slices in place of the factors of the day."""
+    [time, *others] = json.loads(json.dumps(request["objectives"]))
+    factors = time.pop("over_the_day")
+    for item in time["matrices"]:
+        if item["profile"] in profiles:
+            matrix = np.array(item.pop("matrix"))
+            item["slices"] = [{"from": at, "matrix": (x * matrix).tolist()} for at, x in factors]
+    return {**request, "objectives": [time, *others]}
+
+
+@pytest.mark.parametrize(("van", "bike", "factor", "driver"), DRIVERS)
+def test_profiles_have_slices_of_the_day(van: Json, bike: Json, factor: float, driver: str) -> None:
+    """vroom#654 and pyvrp#894: each kind of vehicle is slow at times of its own."""
+    request = fleet({"job": {"at": EAST, "window": [130, 130]}}, van={**MORNING, **van})
+    request["vehicles"].append({**BIKE, **MORNING, **bike})
+    request = over_the_day(by_profile(request, car=1, truck=factor), **RUSH)
+    plan = planned(request)
+    assert plan["routes"][0]["vehicle"] == driver
+    assert planned(sliced(request, "car", "truck")) == plan
+    # The bike is as fast in the rush as before.
+    fast = sliced(request, "car")
+    fast["vehicles"][0]["fixed"] = 100
+    [route] = planned(fast)["routes"]
+    assert (route["vehicle"], route["arrivals"][0]) == ("bike", 130 - 10 * factor)
+    _, source = begun_with("job", fast)
+    assert parse_replan(source, LIMITS, {}).subject.stops.changes
+
+
+def test_slices_of_profiles_fit_each_other() -> None:
+    request = over_the_day(by_profile({**fleet(SIDES), "vehicles": VANS}, car=1, truck=2), **RUSH)
+    for path, value, code in (
+        (["matrices", 1, "slices", 1, "from"], 99, "other-slices"),
+        (["matrices", 1, "slices", 1, "from"], 0, "not-later"),
+        (["matrices", 1, "slices", 2, "matrix"], [[0]], "row-each"),
+        (["matrices", 1, "matrix"], [[0] * 3] * 3, "one-form"),
+        (["matrices", 1, "slices"], [], "one-form"),
+        (["over_the_day"], RUSH["over_the_day"], "not-beside"),
+    ):
+        asked = sliced(request, "car", "truck")
+        at = asked["objectives"][0]
+        for part in path[:-1]:
+            at = at[part]
+        at[path[-1]] = value
+        with pytest.raises(Refusal) as refused:
+            planned(asked)
+        [fault] = refused.value.errors
+        assert fault.code == code
+        assert fault.pointer is not None
+        assert "/".join(map(str, ["", "objectives", 0, *path])).startswith(fault.pointer)
 
 
 def test_a_break_is_taken_in_the_rush() -> None:

@@ -92,6 +92,55 @@ def test_the_times_of_a_clock_spread(clock: Any) -> None:
     assert fleet_of(request).rules.spread == 0.3
 
 
+SLOW = [[2] * 8] * 8
+TWO_DAYS = [{"matrix": [[4] * 8] * 8}, {"matrix": SLOW}]
+SAMPLED = {"name": "time", "days": TWO_DAYS}
+
+
+@pytest.mark.parametrize("clock", ["time", {"days": TWO_DAYS}])
+def test_the_times_of_several_days_are_given(clock: Any) -> None:
+    request = fleet_request() | {"clock": clock}
+    request["objectives"][1] = SAMPLED | {"over": "max", "percentile": 90}
+    if clock != "time":
+        request["objectives"][1] = {"name": "late", "measure": "on_time"}
+    fleet = fleet_of(request)
+    assert (fleet.rules.spread, fleet.rules.clock, fleet.rules.sampled) == (None, 1, True)
+    assert fleet.sampled is not None
+    assert fleet.sampled[:, 0, 1].tolist() == [4, 2]
+    assert fleet.costs[1, 0, 1] == 3
+
+
+def test_total_and_longest_are_of_the_same_days() -> None:
+    request = fleet_request()
+    request["objectives"] = [SAMPLED, SAMPLED | {"name": "longest", "over": "max"}]
+    assert fleet_of(request).rules.layers == (0, 0)
+
+
+CANNOT_BE_SAMPLED: list[tuple[Any, str, Any]] = [
+    ({}, "/objectives/1/days", "lengths"),
+    ({}, "/objectives/1/days", {"matrix": SLOW}),
+    ({"days": TWO_DAYS[:1]}, "/objectives/1/days", "time"),
+    ({"days": [*TWO_DAYS, {"matrix": [[0]]}]}, "/objectives/1/days/2/matrix", "time"),
+    ({"days": TWO_DAYS * 26}, "/objectives/1/days", "time"),
+    ({"spread": 0.2}, "/objectives/1/spread", "time"),
+    ({"over_the_day": [[0, 1], [9, 2]]}, "/objectives/1/days", "time"),
+    ({"matrix": SLOW}, "/objectives/1", "time"),
+]
+
+
+@pytest.mark.parametrize(("members", "pointer", "clock"), CANNOT_BE_SAMPLED)
+def test_what_cannot_be_sampled_is_named(members: Any, pointer: str, clock: Any) -> None:
+    request = fleet_request() | {"clock": clock}
+    request["objectives"] = [
+        {"name": "lengths", "from": "great_circle"},
+        SAMPLED | members,
+        {"name": "vehicles", "measure": "vehicles"},
+    ]
+    with pytest.raises(Refusal) as refused:
+        fleet_of(request)
+    assert refused.value.errors[0].pointer == pointer
+
+
 def test_objectives_are_of_most_days() -> None:
     request = fleet_request()
     time = request["objectives"][1] | {"over": "sum", "spread": 0.3}
@@ -288,6 +337,7 @@ def test_schemas_have_names_and_limits() -> None:
         "PromisedItem",
         "ServiceItem",
         "SliceItem",
+        "MatrixItem",
         "ProfileMatrixItem",
         "VehicleItem",
         "FleetObjectiveItem",

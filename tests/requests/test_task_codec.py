@@ -60,6 +60,7 @@ REQUESTS: list[tuple[TaskKind, dict[str, Any]]] = [
     ("coverage", {**GRID, **PLACES, **ROBOTS, "over": ["max", "sum"]}),
     ("fleet", FLEET),
     ("fleet", SHARED),
+    ("fleet", {**FLEET, "objectives": SPREAD[1:] + OBJECTIVES[1:], "clock": "d"}),
 ]
 
 

@@ -25,12 +25,6 @@ class StopRequest(TypedDict, total=False):
     service: float
 
 
-class MatrixRequest(TypedDict, total=False):
-    """The costs of one day."""
-
-    matrix: Required[Costs]
-
-
 # A slice of the day, and the costs in it.
 SliceRequest = TypedDict(
     "SliceRequest",
@@ -49,13 +43,16 @@ class TrafficRequest(TypedDict, total=False):
     at: Required[ArrayLike]
 
 
+class MatrixRequest(TypedDict, total=False):
+    """The costs of one day."""
+
+    matrix: Required[Costs]
+
+
 # An objective, whose costs may change over the day, or spread from day to day.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
-        "spread": float | Costs | None,
-        "days": Sequence[MatrixRequest],
-        "percentile": int | None,
         "name": Required[str],
         "unit": str | None,
         "matrix": Costs,
@@ -66,6 +63,9 @@ ObjectiveRequest = TypedDict(
         "slices": Sequence[SliceRequest],
         "breakpoints": Sequence[Sequence[ArrayLike | None] | ArrayLike] | ArrayLike,
         "traffic": TrafficRequest | None,
+        "days": Sequence[MatrixRequest],
+        "spread": float | Costs | None,
+        "percentile": int | None,
     },
     total=False,
 )
@@ -135,10 +135,11 @@ class VehicleRequest(TypedDict, total=False):
 
 
 class ProfileMatrixRequest(TypedDict, total=False):
-    """The costs of the legs to vehicles of a profile."""
+    """The costs of the legs to vehicles of a profile: a matrix, or one for each slice of a day."""
 
     profile: Required[str]
-    matrix: Required[Costs]
+    matrix: Costs
+    slices: Sequence[SliceRequest]
 
 
 Measure = Literal[
@@ -171,6 +172,7 @@ FleetObjectiveRequest = TypedDict(
         "breakpoints": Sequence[Sequence[ArrayLike | None] | ArrayLike] | ArrayLike,
         "traffic": TrafficRequest | None,
         "matrices": Sequence[ProfileMatrixRequest],
+        "days": Sequence[MatrixRequest],
         "spread": float | None,
         "measure": Measure | None,
         "over": Literal["sum", "max"],
@@ -218,6 +220,7 @@ ClockRequest = TypedDict(
         "breakpoints": Sequence[Sequence[ArrayLike | None] | ArrayLike] | ArrayLike,
         "traffic": TrafficRequest | None,
         "matrices": Sequence[ProfileMatrixRequest],
+        "days": Sequence[MatrixRequest],
         "spread": float | None,
     },
     total=False,

@@ -1,21 +1,28 @@
 """Punctuality: how surely a plan is on time, where the times of legs spread from day to day.
 
-Legs are independent of each other, and a vehicle leaves as planned. When a visit begins is taken to
-be normal, with the mean and the variance that legs and waiting leave (Clark, 1961, has those of the
-later of two times). Breaks and what a leg takes at its time of day are as planned.
+A vehicle leaves as planned. Either legs are independent of each other, and when a visit begins is
+taken to be normal, with the mean and the variance that legs and waiting leave (Clark, 1961, has
+those of the later of two times). Or the times of several days are given, and each route is driven
+on each day. Breaks and what a leg takes at its time of day are as planned.
 """
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from math import inf, sqrt
+from itertools import pairwise
+from math import ceil, inf, sqrt
 from statistics import NormalDist
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
+from service.fleet.rounding import is_over
 from service.fleet.schedule import REMEMBERED, legs, schedule
 from service.fleet.times import Schedule
 
+Array = NDArray[np.float64]
 _NINE_IN_TEN = 90
 _STANDARD = NormalDist()
 
@@ -26,7 +33,7 @@ class Normal(NamedTuple):
     mean: float
     variance: float
 
-    def after(self, time: float, variance: float) -> "Normal":
+    def after(self, time: float, variance: float = 0.0) -> "Normal":
         """Return the time after a leg, and whatever else takes the same time every day."""
         return Normal(self.mean + time, self.variance + variance)
 
@@ -48,11 +55,35 @@ class Normal(NamedTuple):
         return _STANDARD.cdf((latest - self.mean) / sqrt(self.variance))
 
 
+class Sampled(NamedTuple):
+    """A time that is known on each of d days, shape (d,)."""
+
+    times: Array
+
+    @property
+    def mean(self) -> float:
+        """The mean of all days."""
+        return float(self.times.mean())
+
+    def after(self, time: float, apart: Array | float = 0.0) -> "Sampled":
+        """Return the time after a leg, which differs from its mean by so much on each day."""
+        return Sampled(self.times + time + apart)
+
+    def from_on(self, opens: float) -> "Sampled":
+        """Return the later one of this time and the time at which a stop opens."""
+        return Sampled(np.maximum(self.times, opens))
+
+    def share_until(self, latest: float) -> float:
+        """Return on what share of days it is no later than a time."""
+        late = sum(is_over(time, latest) for time in self.times.tolist())
+        return 1.0 - late / len(self.times)
+
+
 class _Driven(NamedTuple):
     """A route, as it is driven from day to day."""
 
     on_time: tuple[float, ...]  # for each visit with a latest time, the share of days it is kept
-    duration: Normal
+    duration: Normal | Sampled
 
 
 def punctuality(fleet: Fleet, plan: Plan) -> dict[str, float]:
@@ -63,7 +94,7 @@ def punctuality(fleet: Fleet, plan: Plan) -> dict[str, float]:
     - `duration`, `duration_p90`: how long all routes take together on average, and what they do not
       exceed on nine days of ten
     """
-    if fleet.rules.spread is None:
+    if not fleet.rules.spreads:
         return {}
     shares = [share for route in plan.routes for share in _driven(fleet, route).on_time]
     kept = {"on_time": sum(shares) / len(shares)} if shares else {}
@@ -79,7 +110,7 @@ def late_visits(fleet: Fleet, route: Route) -> float:
     return sum(1.0 - share for share in _driven(fleet, route).on_time)
 
 
-def duration_of(fleet: Fleet, route: Route) -> Normal:
+def duration_of(fleet: Fleet, route: Route) -> Normal | Sampled:
     """Return how long a route takes."""
     return _driven(fleet, route).duration
 
@@ -87,8 +118,20 @@ def duration_of(fleet: Fleet, route: Route) -> Normal:
 def longest_duration(fleet: Fleet, routes: Sequence[Route], percent: int) -> float:
     """Return what routes do not exceed, all together, on so many days of a hundred."""
     durations = [duration_of(fleet, route) for route in routes]
-    variance = sum(each.variance for each in durations)
+    daily = [each.times for each in durations if isinstance(each, Sampled)]
+    if daily:
+        return float(np.sort(np.sum(daily, axis=0))[day_at(percent, len(daily[0]))])
+    variance = sum(each.variance for each in durations if isinstance(each, Normal))
     return sum(each.mean for each in durations) + deviations_of(percent) * sqrt(variance)
+
+
+def day_at(percent: int, days: int) -> int:
+    """Return the place among so many days, in order, of the last of so many of a hundred.
+
+    >>> day_at(90, 50)
+    44
+    """
+    return max(1, ceil(percent * days / 100)) - 1
 
 
 def deviations_of(percent: int) -> float:
@@ -99,22 +142,32 @@ def deviations_of(percent: int) -> float:
 @lru_cache(REMEMBERED)
 def _driven(fleet: Fleet, route: Route) -> _Driven:
     """Return how a route is driven from day to day."""
-    rules = fleet.rules
-    assert rules.clock is not None
-    assert rules.spread is not None
     times, shares = schedule(fleet, route), list[float]()
-    variances = [(rules.spread * leg) ** 2 for leg in legs(fleet, route, rules.clock)]
     departure = times.arrivals[0]
-    now, left = Normal(departure, 0.0), departure
-    arrivals = zip(times.arrivals, [0.0, *variances], times.begins, strict=True)
+    now, spreads = _begun(fleet, route, departure)
+    left = departure
+    arrivals = zip(times.arrivals, [0.0, *spreads], times.begins, strict=True)
     spans = _spans(fleet, route, times)
-    for (arrival, variance, begin), (opens, latest) in zip(arrivals, spans, strict=True):
-        now, left = now.after(arrival - left, variance), begin
+    for (arrival, spread, begin), (opens, latest) in zip(arrivals, spans, strict=True):
+        now, left = now.after(arrival - left, spread), begin
         if latest < inf:
             shares.append(now.share_until(latest))
         now = now.from_on(opens)
-    now = now.after(times.end - left - departure, 0.0)
-    return _Driven(tuple(shares), now)
+    return _Driven(tuple(shares), now.after(times.end - left - departure))
+
+
+def _begun(fleet: Fleet, route: Route, departure: float) -> tuple[Any, Sequence[Any]]:
+    """Return when a route begins, and by what each of its legs spreads, as `after` takes it."""
+    rules = fleet.rules
+    assert rules.clock is not None
+    means = legs(fleet, route, rules.clock)
+    if fleet.sampled is None:
+        assert rules.spread is not None
+        return Normal(departure, 0.0), [(rules.spread * leg) ** 2 for leg in means]
+    speed, path = rules.speed(route.vehicle, rules.clock), path_of(rules, route)
+    pairs = zip(pairwise(path), means, strict=True)
+    apart = [fleet.sampled[:, a, b] / speed - mean for (a, b), mean in pairs]
+    return Sampled(np.full(len(fleet.sampled), departure)), apart
 
 
 def _spans(fleet: Fleet, route: Route, times: Schedule) -> Iterator[tuple[float, float]]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.fleet.fleet import Fleet
 from service.fleet.measures.overlap import Nearness, nearness
-from service.fleet.measures.punctuality import deviations_of
+from service.fleet.measures.punctuality import day_at, deviations_of
 from service.fleet.rules import Rules
 
 Array = NDArray[np.float64]
@@ -33,6 +33,11 @@ class Extras(NamedTuple):
     holds: Array  # (n,), when a visit begins at the latest so that its vehicle leaves later
     spreads: bool  # whether an objective depends on how times spread
     spread: float  # the deviation of a leg, as a share of it
+    days: int  # on which the times of legs are known; 0 if they are not
+    sampled: Array  # (n, n, d), these times, and
+    speeds: Array  # (v,) what they are divided by for each type of vehicles
+    day_at: Indices  # (m,), the place of the day in order that each percentile is of
+    most_day: int  # of the objective that is a maximum
     latest: Array  # (n, w), after which a visit is late that keeps a window: see Problem.windows
     deviations: Array  # (m,), above the mean up to a percentile; -1 where there is none
     most_deviations: float  # of the objective that is a maximum
@@ -97,8 +102,8 @@ def _filled(
     return filled
 
 
-def extras_of(fleet: Fleet) -> Extras:
-    """Return the arrays of a fleet. O(n^2) if overlap is an objective."""
+def extras_of(fleet: Fleet, forbidden: float) -> Extras:
+    """Return the arrays of a fleet, with a time of forbidden legs. O(n^2) for overlap."""
     rules = fleet.rules
     overlaps = "overlap" in rules.over
     near = nearness(fleet) if overlaps else Nearness(np.empty((1, 0), np.int32), np.empty((1, 0)))
@@ -108,6 +113,8 @@ def extras_of(fleet: Fleet) -> Extras:
     pairs, places = np.unique(both, return_inverse=True)
     pair_weights = np.zeros(len(pairs))
     np.add.at(pair_weights, places, np.tile(near.weights.ravel(), 2))
+    sampled = _sampled(fleet, forbidden)
+    days = sampled.shape[-1]
     longest = "max" in rules.over
     deviations = np.array([_deviations(rules, each) for each in range(len(rules.over))])
     types = (visit.promised_to for visit in rules.visits)
@@ -124,10 +131,23 @@ def extras_of(fleet: Fleet) -> Extras:
         holds=np.array(rules.holds),
         spreads=rules.of_days,
         spread=rules.spread or 0.0,
+        days=days,
+        sampled=sampled,
+        speeds=np.array([vehicle.speed_factor for vehicle in rules.vehicles]),
+        day_at=np.array([day_at(rules.percent(m) or 0, days) for m in range(len(rules.over))]),
+        most_day=day_at(rules.percent(rules.over.index("max")) or 0, days) if longest else 0,
         latest=_latest(rules),
         deviations=deviations,
         most_deviations=max(0.0, deviations[rules.over.index("max")]) if longest else 0.0,
     )
+
+
+def _sampled(fleet: Fleet, forbidden: float) -> Array:
+    """Return the times of legs on d days, shape (n, n, d), if an objective depends on them."""
+    if fleet.sampled is None or not fleet.rules.of_days:
+        return np.empty((0, 0, 0))
+    finite = np.where(np.isinf(fleet.sampled), forbidden, fleet.sampled)
+    return np.ascontiguousarray(np.moveaxis(finite, 0, -1))
 
 
 def _deviations(rules: Rules, objective: int) -> float:

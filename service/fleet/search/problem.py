@@ -176,7 +176,7 @@ def problem_of(fleet: Fleet) -> Problem:
         wanted=_floats([visit.wanted for visit in visits]),
         urgency=_floats([visit.urgency for visit in visits]),
         begin=float(rules.begin),
-        extras=extras_of(fleet),
+        extras=extras_of(fleet, forbidden),
         prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
         near=_nearest(fleet, clients),
         clients=clients,
@@ -375,7 +375,7 @@ class Direction(NamedTuple):
     on_time: float
     mean: float  # of the time of all routes, where that spreads
     deviation: float
-    variance: float  # in place of the deviation, which is no sum over routes
+    variance: float  # in place of the deviation, which is no sum over routes: see spreading.py
     longest: float  # the limit on the length of a route in the swept costs
     penalty: float
     most: float  # the limit on what a route does not exceed on most days

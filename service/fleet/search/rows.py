@@ -1,25 +1,22 @@
 """Plans as rows of numbers, as archives keep them, and the points of plans."""
 
-import math
-
 import numpy as np
 
 from service.fleet.search.problem import (
     FIRST,
     IMBALANCE,
     MAX,
-    MEAN,
     OF_PROMISES,
     SECOND,
     SUM,
     UNASSIGNED,
-    VARIANCE,
     VEHICLES,
     Array,
     Nodes,
     Problem,
 )
 from service.fleet.search.route import measure
+from service.fleet.search.spreading import on_most_days
 from service.fleet.search.values import at_prices
 from service.fleet.search.waits import settle
 from service.fleet.search.weighed import promised_stops
@@ -141,7 +138,7 @@ def _joined_value(problem: Problem, plan: WorkingPlan, over: int, objective: int
     if objective == 0 and problem.priced:
         return _at_prices(problem, plan)
     if problem.extras.spreads and over == SUM and problem.extras.deviations[objective] >= 0.0:
-        return _on_most_days(plan, problem.extras.deviations[objective])
+        return on_most_days(problem, plan, objective)
     column = problem.column[objective]
     total, longest, shortest = 0.0, 0.0, np.inf
     for number in range(used):
@@ -151,16 +148,6 @@ def _joined_value(problem: Problem, plan: WorkingPlan, over: int, objective: int
     if over == MAX:
         return longest
     return longest - shortest if over == IMBALANCE else total
-
-
-@compiled
-def _on_most_days(plan: WorkingPlan, deviations: float) -> float:
-    """Return what all routes together do not exceed, so many deviations above their mean."""
-    mean, variance = 0.0, 0.0
-    for number in range(plan.counts[USED]):
-        mean += plan.value[plan.used[number], MEAN]
-        variance += plan.value[plan.used[number], VARIANCE]
-    return mean + deviations * math.sqrt(variance)
 
 
 @compiled

@@ -27,7 +27,6 @@ from service.fleet.search.ruin import limit_routes
 from service.fleet.search.spreading import weight_of_variance
 from service.fleet.search.working_plan import (
     MISSING,
-    USED,
     State,
     make_working_plan,
     total_cost,
@@ -330,7 +329,7 @@ class RuinSearch:
 def _by_variance(state: State) -> State:
     """Return a state whose direction weighs the variance of a plan in place of its deviation."""
     direction, plan = state.direction, state.plan
-    weight = weight_of_variance(plan, direction.deviation, int(plan.counts[USED]))
+    weight = weight_of_variance(state.problem, plan, direction.deviation)
     return state._replace(direction=direction._replace(variance=weight))
 
 

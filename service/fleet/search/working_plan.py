@@ -41,6 +41,8 @@ class WorkingPlan(NamedTuple):
     mean: Array  # (n + 2 r,), where times spread, when the visit begins, and its variance
     variance: Array
     share: Array  # (n + 2 r,), on what share of days it is late
+    daily: Array  # (n + 2 r, d), when the visit begins on each day; at the end, the time of a route
+    today: Array  # (d,), scratch space
     head: Array  # (n + 2 r, 3), the route up to here: see joined()
     tail: Array  # (n + 2 r, 3), and from here on
     tried: Indices  # (n + 2 r,), by node: the latest stop that was tried after it
@@ -108,6 +110,8 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         mean=np.zeros(nodes),
         variance=np.zeros(nodes),
         share=np.zeros(nodes),
+        daily=np.zeros((nodes, problem.extras.days)),
+        today=np.zeros(problem.extras.days),
         head=np.zeros((nodes, 3)),
         tail=np.zeros((nodes, 3)),
         tried=np.zeros(nodes, np.int64),

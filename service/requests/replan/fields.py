@@ -16,6 +16,7 @@ from service.requests.fields import (
     Items,
     Offered,
     OneEach,
+    OneEachOfCosts,
     PlanePoint,
     PlanFields,
     Share,
@@ -50,13 +51,14 @@ class StopCosts(StrictModel):
 class NewCosts(StrictModel):
     """The costs to and from a stop that the front does not have, under each objective."""
 
-    coordinates: OneEach[PlanePoint | None] = Field(
+    coordinates: OneEachOfCosts[PlanePoint | None] = Field(
         default_factory=list,
-        description="for each objective x and y in its plane, null where it has none",
+        description="for each objective that has costs x and y in its plane, null if it has none",
     )
-    costs: OneEach[StopCosts | None] = Field(
+    costs: OneEachOfCosts[StopCosts | None] = Field(
         default_factory=list,
-        description="for each objective the costs to and from all stops, null if not a matrix",
+        description="for each objective that has costs those to and from all stops, null if not a"
+        " matrix",
     )
 
 

@@ -9,6 +9,7 @@ from service.errors import invalid
 from service.fleet.fleet import LAYERS
 from service.fleet.rules import Rules
 from service.objectives import Objective
+from service.reliability.spread import Spread
 from service.requests.replan.costs import AllStops, between, changed_sources, extended_sources
 from service.requests.replan.fields import CostEntry
 from service.requests.stops import Matrix, Source, base_of
@@ -45,6 +46,35 @@ def sources_of_rest(
         placed = [between(source, chosen) for source in changed]
         found += [*placed, placed[0]][:LAYERS]
     return found
+
+
+def spreads_of_rest(
+    fleet: UnmeasuredFleet, sources: Sequence[Source], chosen: NDArray[np.int64]
+) -> tuple[Spread, ...]:
+    """Return the times of several days between some of the stops, if the fleet has them.
+
+    Times of new stops, and those that have changed, are the same on all days.
+
+    Args:
+        fleet: The fleet that is driven.
+        sources: The sources of both costs of the rest.
+        chosen: Its stops, among all.
+    """
+    known = [each.days for each in fleet.stops.spreads if each is not None]
+    if not known or known[0] is None:
+        return ()
+    clock = fleet.rules.clock or 0
+    before, now = fleet.stops.sources[clock], sources[clock]
+    assert isinstance(before, Matrix)
+    assert isinstance(now, Matrix)
+    days = np.repeat(now.costs[np.newaxis], len(known[0]), axis=0)
+    places = np.flatnonzero(chosen < len(before.costs))
+    rows, old = places[:, np.newaxis], chosen[places]
+    same = now.costs[rows, places] == before.costs[old[:, np.newaxis], old]
+    days[:, rows, places] = np.where(
+        same, known[0][:, old[:, np.newaxis], old], days[:, rows, places]
+    )
+    return (Spread(days=days),)
 
 
 def _names_of_costs(rules: Rules, objectives: Sequence[Objective]) -> list[str]:

@@ -157,8 +157,6 @@ def offers_task(
     slots = request.spans()
     if fleet.rules.clock is None:
         raise invalid("every" if request.every else "slots", "fleet-has-no-clock")
-    if fleet.rules.groups.waiting:
-        raise invalid("order", "offered-beside-waits")
     members = _members_of_replan(request, source)
     most = max(1, _MOST_BYTES // len(to_json(members["add"][-1])))
     _check_count("every/length" if request.every else "slots", len(slots), most)
@@ -167,8 +165,11 @@ def offers_task(
         rest = rest_of_fleet(fleet, task, asked, limits, actors)
     except Refusal as refusal:
         raise _of_order(refusal, len(request.add)) from None
-    labels = rest.labels
+    labels, subject = rest.labels, rest.subject
     assert labels is not None
+    assert isinstance(subject, UnmeasuredFleet)
+    if subject.rules.groups.waiting:
+        raise invalid("order", "offered-beside-waits")
     order = [stop.id for stop in labels.stops].index(request.order.id)
     parts = ["order" if stop == order else part for stop, part in enumerate(labels.parts or ())]
     return OffersTask(

@@ -31,7 +31,7 @@ from service.requests.replan.changes import (
 from service.requests.replan.costs import AllStops, all_stops
 from service.requests.replan.day import Way, day_of, removed_stops
 from service.requests.replan.fields import NewStop
-from service.requests.replan.fleet_costs import sources_of_rest
+from service.requests.replan.fleet_costs import sources_of_rest, spreads_of_rest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.vehicles import changed_fleet, vehicles_of_rest
 from service.requests.replan.way import ReplanSource, StoredFront
@@ -154,12 +154,14 @@ class _Rest:
             leave=self._rules.leave,
             groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
             spread=self._rules.spread,
+            sampled=self._rules.sampled,
             percents=self._rules.percents,
         )
         changed = self._request.costs, self._all
         chosen = np.array(list(self._place), np.int64)
         sources = sources_of_rest(self._fleet, self._known.objectives, *changed, chosen)
-        stops = Stops(locations_of(self.labels.stops), sources)
+        spreads = spreads_of_rest(self._fleet, sources, chosen)
+        stops = Stops(locations_of(self.labels.stops), sources, spreads=spreads)
         return UnmeasuredFleet(
             rules,
             self.names,

@@ -19,7 +19,8 @@ class RestVehicles:
     """The types of vehicles of the rest, each with its name and its number among the front's.
 
     Args:
-        left: Those on their way, then those that have not left.
+        left: Those on their way, then those that have not left. If there are none, the types of
+            which there may be more, with no vehicle.
         spares: Those of which none is left, of which there may be more.
     """
 
@@ -70,15 +71,17 @@ def vehicles_of_rest(
     waiting = [each for each in known if each[1].count > 0]
     if by_routes or any(name.route is not None for name, _, _ in waiting):
         waiting = list(by_route(waiting, day.waiting))
+    spares = [(name, replace(each, count=0), old) for name, each, old in _first_of_each(known)]
+    if not left and not waiting:
+        return RestVehicles(tuple(spares), ())
     found = RestVehicles((*left, *waiting), ())
-    spares = _first_of_each(known)
     names = {name for name, _, _ in waiting}
     return replace(
         found,
         spares=tuple(
-            (name, replace(vehicle, count=0), old)
-            for name, vehicle, old in spares
-            if name not in names and found.ends.issuperset(_ends_of(vehicle))
+            each
+            for each in spares
+            if each[0] not in names and found.ends.issuperset(_ends_of(each[1]))
         ),
     )
 
