@@ -42,9 +42,12 @@ _BELOW = 0.95  # how far below the least longest route limits go
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
 # to shorten the first plan (at most a round a stop), to find one vehicle less, for the fewest, and
 # for any number; and the chance of the fewest after that. Where few vehicles are full, only a
-# hotter search gets from one plan to the next, and one that may leave a stop out for a while.
-_SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, 0.5, 0.6
-_ATTEMPTS = 6  # at one vehicle less
+# hotter search gets from one plan to the next, and one that may leave a stop out for a while: it
+# goes on from one that seldom may.
+_SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, (0.25, 0.33), 0.6
+_ATTEMPTS = 8  # at one vehicle less
+_NEARLY, _NEARLY_OF = 2, 0.02  # an attempt that lacks more stops, and more of them, is the last
+_DEARER = 5.0  # times the price of stops outside, in the first search for the fewest
 _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
 _COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
@@ -82,6 +85,7 @@ class Directions:
         random: Chooses weights and limits.
         points: Returns the points of all plans so far, shape (k, m), by ascending first length.
         left: Estimates the number of rounds for which there is time.
+        lacked: Returns how many stops that must be visited the last search lacked, at the least.
         ruins: The number of ruins of a round.
     """
 
@@ -91,6 +95,7 @@ class Directions:
         random: np.random.Generator,
         points: Callable[[], Array],
         left: Callable[[], float],
+        lacked: Callable[[], int],
         ruins: int,
     ) -> None:
         self._fleet = fleet
@@ -100,6 +105,7 @@ class Directions:
         self._random = random
         self._points = points
         self._left = left
+        self._lacked = lacked
         self._per_stop = ruins / max(1, min(len(fleet.rules.clients), _HOT_STOPS))
         self._most_fixed = max(vehicle.fixed for vehicle in fleet.rules.vehicles)
         self._bound = least_longest(fleet)
@@ -148,11 +154,16 @@ class Directions:
         """Yield directions to the fewest vehicles, and to the least length with each number."""
         yield self._at_most(inf, min(self._share(_SHORTEN), len(self._rules.clients)))
         now, failed = self._ends()[0], 0
+        nearly = max(_NEARLY, _NEARLY_OF * len(self._rules.clients))
         while self._fewest < now and failed < _ATTEMPTS:
             yield replace(self._at_most(now - 1, self._share(_DESCENT)), ends_whole=True)
             found = self._ends()[0]
+            if found == now and self._lacked() > nearly:
+                break
             now, failed = found, failed + 1 if found == now else 0
-        yield self._at_most(now, self._share(_AT_FEWEST))
+        first, second = _AT_FEWEST
+        yield _dearer(self._at_most(now, self._share(first)))
+        yield self._at_most(now, self._share(second))
         yield self._at_most(inf, self._share(_AT_ANY))
         fewest, greatest = self._ends()
         for limit in range(greatest - 1, fewest, -1):
@@ -375,3 +386,9 @@ class Directions:
             strict=_STRICT * unit / self._scale,
             **{name: by_measure[name] for name in WEIGHTED},
         )
+
+
+def _dearer(step: Step) -> Step:
+    """Return a step in which the plan, once it has all stops, seldom lacks one."""
+    required = _DEARER * step.direction.required
+    return replace(step, direction=step.direction._replace(required=required))

@@ -35,6 +35,8 @@ from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
 
+_HUGE = 1e6  # times as long as what is left of a route
+
 
 class Span(NamedTuple):
     """A part of a route: the least time it takes, and the departures that take only this time.
@@ -195,20 +197,25 @@ def measure_with(state: State, slot: int, stop: int) -> bool:
     """Work out the cost of a route that has got a stop; return whether it keeps all rules.
 
     Without times and loads on the way, lengths change by three legs. Sums are then a few roundings
-    apart from those of measure(), which is due when the plan is kept.
+    apart from those of measure(), which is due when the plan is kept. A sum of which a huge leg is
+    taken would be left with little of the rest: then all is measured anew.
     """
     problem, plan, direction = state
     whole = problem.carries or problem.reloads or problem.weighs or direction.load_distance > 0
     if problem.clock >= 0 or whole:
         return measure(state, slot)
     mark_used(plan, slot)
-    kind, profile, fits = problem.kind[slot], problem.profile[slot], True
+    kind, profile, fits, lost = problem.kind[slot], problem.profile[slot], True, False
     before, after = plan.previous[stop], plan.next[stop]
     for layer in range(plan.step.shape[1]):
-        plan.value[slot, layer] -= plan.step[after, layer]
+        parted = plan.step[after, layer]
+        plan.value[slot, layer] -= parted
         plan.step[stop, layer] = leg(problem, profile, problem.place[before], stop, layer)
         plan.step[after, layer] = leg(problem, profile, stop, problem.place[after], layer)
         plan.value[slot, layer] += plan.step[stop, layer] + plan.step[after, layer]
+        lost |= parted > _HUGE * plan.value[slot, layer]
+    if lost:
+        return measure(state, slot)
     for dimension in range(plan.load.shape[1]):
         plan.load[slot, dimension] += problem.demand[stop, dimension]
         fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]

@@ -9,7 +9,7 @@ import numpy as np
 from service.fleet.search.changes import begin_iteration, save_slot
 from service.fleet.search.problem import MOST, Indices, Problem
 from service.fleet.search.reloads import SELDOM, load_anew
-from service.fleet.search.route import measure
+from service.fleet.search.route import head_at, joined, measure, tail_at
 from service.fleet.search.working_plan import (
     OUTSIDE,
     REMOVED,
@@ -18,9 +18,10 @@ from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
     leave_out,
+    leg,
     unlink,
 )
-from service.jit import compiled, inlined
+from service.jit import compiled, inlined, standalone
 from service.search.local_search import random_below
 
 _REMOVED = 10  # stops that an iteration takes out, on the mean
@@ -28,6 +29,8 @@ _LONGEST_STRING = 10
 _SPLIT = 2  # one string in so many leaves stops in its middle
 _STAYING = 100  # one time in so many, more of them
 _WITH_FIRST = 2  # one time in so many, a stop is taken out with one that it waits for
+# One pair of ruined routes in so many exchange their tails; each, where there are times: few fit.
+_CROSSED = 4
 _LONGEST_FIRST = 4  # one ruin in so many begins in the longest route, where that counts
 
 
@@ -49,9 +52,9 @@ def ruin(state: State) -> None:
     most = 4.0 * _REMOVED / (1.0 + longest) - 1.0
     strings = int(1 + uniform(plan.random) * max(0.0, most))
     seed = _seed(state)
-    left = strings
+    left, gap = strings, -1
     if plan.route[seed] >= 0:
-        _take_string(state, seed, longest)
+        gap = _take_string(state, seed, longest)
         left -= 1
     for number in range(problem.near.shape[1]):
         if left <= 0:
@@ -59,8 +62,10 @@ def ruin(state: State) -> None:
         stop = problem.near[seed, number]
         slot = plan.route[stop]
         if slot >= 0 and not _is_ruined(problem, plan, stop):
-            _take_string(state, stop, longest)
+            last, gap = gap, _take_string(state, stop, longest)
             left -= 1
+            if problem.clock >= 0 or random_below(plan.random, _CROSSED) == 0:
+                cross(state, last, gap)
 
 
 @inlined
@@ -91,8 +96,12 @@ def _seed(state: State) -> int:
 
 
 @compiled
-def _take_string(state: State, stop: int, longest: float) -> None:
-    """Take a string of stops around a stop out of its route."""
+def _take_string(state: State, stop: int, longest: float) -> int:
+    """Take a string of stops around a stop out of its route.
+
+    Returns:
+        The node before the string; -1 where the whole route was dissolved.
+    """
     problem, plan, _ = state
     slot = plan.route[stop]
     save_slot(problem, plan, slot)
@@ -117,10 +126,86 @@ def _take_string(state: State, stop: int, longest: float) -> None:
         # The other stop of a shipment may have taken this one with it.
         if not gap <= place < gap + staying and plan.route[plan.buffer[place]] >= 0:
             remove(problem, plan, plan.buffer[place])
+    before = plan.buffer[first - 1] if first > 0 else start
     if not measure(state, slot):
         dissolve(state, slot)
-    elif problem.reloads and random_below(plan.random, SELDOM) == 0:
+        return -1
+    if problem.reloads and random_below(plan.random, SELDOM) == 0:
         load_anew(state, slot)
+    return before
+
+
+@standalone
+def cross(state: State, first: int, second: int) -> None:
+    """Exchange what follows two nodes of two routes, if both routes then keep all rules.
+
+    Strings are short, and routes that are long and full go over into others by their tails alone.
+    It is done for vehicles of one type, and not where stops belong together or vehicles reload.
+
+    Args:
+        state: The search.
+        first: The node, -1 for none.
+        second: The other node, -1 for none.
+    """
+    problem, plan, _ = state
+    if first < 0 or second < 0:
+        return
+    if problem.ships or problem.grouped or problem.reloads or problem.waits.given:
+        return
+    a, b = _slot_of(problem, plan, first), _slot_of(problem, plan, second)
+    if a < 0 or b < 0 or a == b or problem.kind[a] != problem.kind[b]:
+        return
+    if problem.clock >= 0 and not (
+        _in_time(problem, plan, a, first, plan.next[second])
+        and _in_time(problem, plan, a, second, plan.next[first])
+    ):
+        return
+    _exchange_tails(problem, plan, first, second)
+    kept = measure(state, a)
+    kept &= measure(state, b)
+    if not kept:
+        _exchange_tails(problem, plan, first, second)
+        measure(state, a)
+        measure(state, b)
+
+
+@inlined
+def _slot_of(problem: Problem, plan: WorkingPlan, node: int) -> int:
+    """Return the route of a stop, a start or an end; -1 for a stop outside."""
+    n = len(problem.demand)
+    return (node - n) // 2 if node >= n else plan.route[node]
+
+
+@inlined
+def _in_time(problem: Problem, plan: WorkingPlan, slot: int, node: int, after: int) -> bool:
+    """Return whether the tail from one node on is in time behind another."""
+    place, there = problem.place[node], problem.place[after]
+    away = leg(problem, problem.profile[slot], place, there, problem.clock)
+    return joined(head_at(plan, node), away, tail_at(plan, after))[1]
+
+
+@inlined
+def _exchange_tails(problem: Problem, plan: WorkingPlan, first: int, second: int) -> None:
+    """Exchange what follows two nodes, up to the ends. A second time undoes it."""
+    n = len(problem.demand)
+    a, b = _slot_of(problem, plan, first), _slot_of(problem, plan, second)
+    end_a, end_b = n + 2 * a + 1, n + 2 * b + 1
+    next_a, next_b = plan.next[first], plan.next[second]
+    last_a, last_b = plan.previous[end_a], plan.previous[end_b]
+    _append(plan, a, first, next_b if second != last_b else end_a, last_b, end_a)
+    _append(plan, b, second, next_a if first != last_a else end_b, last_a, end_b)
+
+
+@inlined
+def _append(plan: WorkingPlan, slot: int, before: int, node: int, last: int, end: int) -> None:
+    """Let a tail, from a node to the last before an end, follow a node of a route."""
+    plan.next[before], plan.previous[node] = node, before
+    if node == end:
+        return
+    plan.next[last], plan.previous[end] = end, last
+    while node != end:
+        plan.route[node] = slot
+        node = plan.next[node]
 
 
 @inlined

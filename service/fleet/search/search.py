@@ -95,9 +95,11 @@ class RuinSearch:
             np.random.default_rng(options.seed),
             lambda: self.points,
             self._left,
+            lambda: self._lacked,
             RUINS,
         )
         self._rounds = 0
+        self._lacked = 0  # stops, at the least in this step
         self._began = 0.0
         self._sorted = 0, np.empty(0, np.int32)
 
@@ -242,6 +244,7 @@ class RuinSearch:
             load_row(state, row)
         limit_routes(state)
         set_prices(state)
+        self._lacked = len(problem.clients)
         heat, done, most, ends = step.heat, 0, step.rounds, self._ends_of(step)
         while done < most:
             if self._rounds >= self._options.iterations or self._ended():
@@ -255,6 +258,7 @@ class RuinSearch:
             ruins = rounds * RUINS
             heat, made = anneal(state, self._archives, ruins, heat, cooling, step.ends_whole)
             self._rounds += math.ceil(made / RUINS)
+            self._lacked = min(self._lacked, int(self._working.counts[MISSING]))
             done = done + rounds if made == ruins else most
         return False
 
