@@ -42,12 +42,13 @@ _BELOW = 0.95  # how far below the least longest route limits go
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
 # to shorten the first plan (at most a round a stop), to find one vehicle less, for the fewest, and
 # for any number; and the chance of the fewest after that. Where few vehicles are full, only a
-# hotter search gets from one plan to the next, and one that may leave a stop out for a while: it
-# goes on from one that seldom may.
-_SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, (0.25, 0.33), 0.6
-_ATTEMPTS = 8  # at one vehicle less
-_NEARLY, _NEARLY_OF = 2, 0.02  # an attempt that lacks more stops, and more of them, is the last
-_DEARER = 5.0  # times the price of stops outside, in the first search for the fewest
+# hotter search gets from one plan to the next, and one that may leave a stop out for a while.
+_SHORTEN, _DESCENT, _AT_FEWEST, _AT_ANY = 0.05, 0.07, 0.5, 0.6
+_ATTEMPTS = 6  # at one vehicle less
+# With few stops there is time for more attempts, as long as they lack few stops at the least; and
+# for a search for the fewest before that one, in which stops outside are so many times as dear.
+_SMALL, _MORE_ATTEMPTS, _NEARLY = 150, 8, 2
+_FIRST_AT_FEWEST, _DEARER = 0.25, 5.0
 _AGAIN, _OFTEN_FEWEST = 0.25, 0.6
 _HOTTER = 10.0  # times both temperatures, which are then those of SISR
 _COOLER_STOPS = 100  # with more stops, vehicles with room are searched colder, by the square root
@@ -154,16 +155,17 @@ class Directions:
         """Yield directions to the fewest vehicles, and to the least length with each number."""
         yield self._at_most(inf, min(self._share(_SHORTEN), len(self._rules.clients)))
         now, failed = self._ends()[0], 0
-        nearly = max(_NEARLY, _NEARLY_OF * len(self._rules.clients))
-        while self._fewest < now and failed < _ATTEMPTS:
+        small = len(self._rules.clients) <= _SMALL
+        attempts, nearly = (_MORE_ATTEMPTS, _NEARLY) if small else (_ATTEMPTS, inf)
+        while self._fewest < now and failed < attempts:
             yield replace(self._at_most(now - 1, self._share(_DESCENT)), ends_whole=True)
             found = self._ends()[0]
             if found == now and self._lacked() > nearly:
                 break
             now, failed = found, failed + 1 if found == now else 0
-        first, second = _AT_FEWEST
-        yield _dearer(self._at_most(now, self._share(first)))
-        yield self._at_most(now, self._share(second))
+        if small:
+            yield _dearer(self._at_most(now, self._share(_FIRST_AT_FEWEST)))
+        yield self._at_most(now, self._share(_AT_FEWEST))
         yield self._at_most(inf, self._share(_AT_ANY))
         fewest, greatest = self._ends()
         for limit in range(greatest - 1, fewest, -1):
