@@ -367,9 +367,10 @@ def _check_objectives(rules: Rules) -> None:
 def _check_measured(rules: Rules, measure: Measure, part: str) -> None:
     """Raise a refusal unless the data have what a measure is of."""
     row = MEASURES[measure]
-    if row.lacking and not row.given(rules.visits, rules.vehicles):
-        raise invalid(part, row.lacking, measure=measure)
-    if row.unit == "clock" and not row.lacking and rules.clock is None:
+    lacking = row.lacking
+    if lacking and not row.given(rules.visits, rules.vehicles):
+        raise invalid(part, lacking, measure=measure)
+    if row.unit == "clock" and not lacking and rules.clock is None:
         raise invalid(part, "untimed")
     if measure == "on_time" and not rules.spreads:
         raise invalid(part, "measure-without-spread")

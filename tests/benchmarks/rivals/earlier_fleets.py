@@ -45,7 +45,7 @@ def _process() -> subprocess.Popen[str]:
         [sys.executable, str(_SEARCH)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        text=True,
+        encoding="utf-8",
         cwd=_FOLDER,
         env={**os.environ, "PYTHONPATH": path},
     )
