@@ -33,11 +33,14 @@ def test_hundreds_of_stops_are_planned_within_a_tenth_of_a_second(
     watch = Watch[FleetFront](clock=time.process_time)
     fleet = fleet_of(400, over, **({"prize": 20.0} if "unassigned" in over else {}))
     plan_fleet(fleet, FleetOptions(time_limit=0.1), watch=watch)
-    began = time.process_time()
-    front = plan_fleet(fleet, FleetOptions(time_limit=0.1), watch=watch)
-    explain(fleet, front.plans, front.points)
-    assert time.process_time() - began < 1.0
-    assert all(violations(fleet, plan) == [] for plan in front.plans)
+    seconds = []
+    for _ in range(3):  # beside other programs a processor is slower, and not each time
+        began = time.process_time()
+        front = plan_fleet(fleet, FleetOptions(time_limit=0.1), watch=watch)
+        explain(fleet, front.plans, front.points)
+        seconds.append(time.process_time() - began)
+        assert all(violations(fleet, plan) == [] for plan in front.plans)
+    assert min(seconds) < 0.4
 
 
 def test_without_time_stops_have_neither_a_price_nor_reasons() -> None:
