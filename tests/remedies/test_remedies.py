@@ -22,7 +22,6 @@ from tests.helpers.sampled import IS_WHOLE, third
 LIMITS = Limits(body_bytes=10**6, cities=100, cells=900, preferences=20, size=30, seconds=2)
 MEMBERS = {"code", "detail", "values", "patch"}
 STOPS = 8
-SLOW = 3.0  # a clock of trials that are not in a hurry
 
 
 def request(**members: Any) -> dict[str, Any]:
@@ -42,19 +41,19 @@ def request(**members: Any) -> dict[str, Any]:
     }
 
 
-def planned(request: dict[str, Any], clock: float = 1.0) -> FrontDocument:
-    """Return the front of a request, by a clock of so many processor seconds a second."""
+def planned(request: dict[str, Any]) -> FrontDocument:
+    """Return the front of a request, by a clock that stands still while others compute."""
     source = TaskSource("fleet", json.dumps(request).encode())
     task = parse_task(source, LIMITS, {})
     assert isinstance(task.subject, UnmeasuredFleet)
-    watch = Watch[FrontDocument](clock=lambda: time.process_time() / clock)
+    watch = Watch[FrontDocument](clock=time.process_time)
     return run_fleet(task.subject, task, Tools({}, LIMITS), watch)
 
 
 def refused(request: dict[str, Any]) -> Refused:
     """Return the refusal of a request."""
     with pytest.raises(Refusal) as raised:
-        planned(request, SLOW)
+        planned(request)
     assert raised.value.code == "no-plan"
     return Refused(raised.value.document(""))
 
@@ -169,7 +168,7 @@ def test_whatever_is_told_of_a_request_helps(case: str) -> None:
     for seed in range(third(3)):
         asked = varied(TABLE[case][0], seed)
         try:
-            planned(asked, SLOW)
+            planned(asked)
         except Refusal as refusal:
             check_that_all_help(asked, Refused(refusal.document("")))
 
