@@ -22,6 +22,7 @@ _NAMES = (
     "behind",
     "bounds",
     "concave",
+    "congestion",
     "coverage",
     "curves",
     "day",

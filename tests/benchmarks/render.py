@@ -7,7 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from tests.benchmarks import beyond, open_routes, optima_table, printed, roads, under_load
+from tests.benchmarks import (
+    beyond,
+    congestion_table,
+    open_routes,
+    optima_table,
+    printed,
+    roads,
+    under_load,
+)
 from tests.benchmarks.cells import mean_seconds, mean_share, of, share_in_seconds
 from tests.benchmarks.instances import SIZES, reference_points
 from tests.benchmarks.markdown import table
@@ -40,7 +48,8 @@ taken while other programs wanted the same processor, which makes them too long.
 def page() -> str:
     """Return the whole page as Markdown."""
     paper = (_main(), _training(), _coverage(), _layers(), _concave(), _fronts())
-    ours = (open_routes.section(), roads.section(), optima_table.section())
+    over_the_day = (optima_table.section(), congestion_table.section())
+    ours = (open_routes.section(), roads.section(), *over_the_day)
     return "\n".join((INTRODUCTION, *paper, beyond.section(), *ours, under_load.section()))
 
 

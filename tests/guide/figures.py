@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.benchmarks.congestion_table import congestion_table
 from tests.benchmarks.day_table import day_table
 from tests.benchmarks.markdown import table
 from tests.benchmarks.optima_table import optima_table
@@ -28,6 +29,7 @@ def figures() -> dict[str, tuple[Path, str]]:
         "scale": (quality, scale_table()),
         "road-times": (limits, roads_table(load("roads"))),
         "optima": (quality, optima_table()),
+        "congestion": (quality, congestion_table()),
         "day": (GUIDE / "plan-around-the-rush-hour.md", day_table()),
     }
 
