@@ -7,8 +7,8 @@ and `MAMUT-routing-TDVRPTW-Vu2020` beside it.
 
 `paretour.plan_fleet` is asked for durations against vehicles, from the request to the answer, on
 one thread; times are `breakpoints`. The package kayros (PyPI, MIT) plans for the same seconds, with
-its own settings. The checker of the sets (mamut-routing-lib) prices the plans of both. Stores
-`results/congestion.json`.
+its own settings; its seconds are without reading the file. The checker of the sets
+(mamut-routing-lib) prices the plans of both. Stores `results/congestion.json`.
 """
 
 import argparse
@@ -51,7 +51,7 @@ def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser("python -m tests.benchmarks congestion", description=__doc__)
     parser.add_argument("--data", type=Path, nargs="+", required=True, help="checkouts of sets")
     parser.add_argument("--stops", type=int, nargs="+", default=[30, 59, 60])
-    parser.add_argument("--count", type=int, default=10, help="instances of each size")
+    parser.add_argument("--count", type=int, default=6, help="instances of each size")
     options = parser.parse_args(arguments)
     for folder in options.data:
         for n in options.stops:
