@@ -29,7 +29,7 @@ from tests.helpers.fleets import (
     varied_fleet,
     waiting_fleet,
 )
-from tests.helpers.sampled import third
+from tests.helpers.sampled import few
 
 
 def searched(fleet: Fleet, rounds: int = 300) -> RuinSearch:
@@ -49,7 +49,7 @@ def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
     fleet_of: Callable[[int], Fleet],
 ) -> None:
     tried = whole = 0
-    for seed in range(third(90)):
+    for seed in few(12, range(90)):
         fleet = fleet_of(seed)
         expected = exact_front(fleet)
         search = searched(fleet)
@@ -63,7 +63,7 @@ def test_small_fleets_have_plans_as_good_as_brute_force_and_none_better(
         # Equal lengths differ by a rounding where routes are summed in another order.
         most = [np.multiply(each, 1 + 1e-12) for each in expected]
         whole += all(any(all(map(le, point, each)) for point in points) for each in most)
-    assert whole >= 0.95 * tried > 5
+    assert tried - whole <= max(1, 0.05 * tried)
 
 
 @pytest.mark.parametrize(

@@ -68,6 +68,7 @@ TRAINING = GUIDE / "train-your-own-actor.md"
 EXTENSIONS = GUIDE / "use-your-own-constructor-or-search.md"
 WITH_A_TEST = (
     COMMAND_LINE,
+    FILES,
     FROM_PYTHON,
     FROM_TYPESCRIPT,
     FROM_A_SHELL,

@@ -1,5 +1,7 @@
 """Hypervolumes of three and four objectives, and the choice of points by them, against moocore."""
 
+import time
+from functools import partial
 from itertools import combinations, product
 
 import moocore
@@ -14,6 +16,7 @@ from service.search.best_subset import best_subset
 from service.search.front_points import FrontPoints
 from service.search.hypervolume import hypervolume
 from service.search.nondominated import nondominated
+from service.watch import Watch
 from tests.helpers.sampled import third
 
 several = pytest.mark.parametrize("objectives", [3, 4])
@@ -84,7 +87,12 @@ def test_a_choice_is_as_good_as_choosing_greedily(objectives: int) -> None:
 
 @several
 @pytest.mark.parametrize("size", [10, 100])
-def test_a_choice_in_little_time_loses_little(objectives: int, size: int) -> None:
+def test_a_choice_in_little_time_loses_little(
+    objectives: int, size: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Of this processor: on a busy machine a choice that is held up begins again with less time.
+    watch = partial(Watch, clock=time.thread_time)
+    monkeypatch.setattr("service.search.best_subset.Watch", watch)
     front = in_order(shell(20_000, objectives))
     best, quick = best_subset(front, size), best_subset(front, size, seconds=0.05)
     assert len(set(quick.tolist())) == size
