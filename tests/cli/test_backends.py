@@ -31,6 +31,7 @@ from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
 from tests.helpers.fake_router import fake_osrm, replying, road_costs
+from tests.helpers.sampled import few
 from tests.helpers.serving import app_of, serving
 
 
@@ -88,10 +89,12 @@ def request_of(kind: str, folder: Path) -> list[object]:
     return ["coverage", ros_map, "--spacing", 6, "--robot", "1.5,1.5", "--robot", "50.5,50.5"]
 
 
-@pytest.mark.parametrize("remote", [False, True])
-@pytest.mark.parametrize("kind", ["front", "fleet", "robots"])
+@pytest.mark.parametrize(
+    ("kind", "remote"),
+    few(4, [(kind, remote) for remote in (False, True) for kind in ("front", "fleet", "robots")]),
+)
 def test_ctrl_c_ends_the_search_with_the_best_front_so_far(
-    url: str, remote: bool, kind: str, tmp_path: Path
+    url: str, kind: str, remote: bool, tmp_path: Path
 ) -> None:
     terminal, other_end = pty.openpty()
     options = ["--url", url] if remote else []

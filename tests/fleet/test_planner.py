@@ -342,9 +342,9 @@ def test_a_plan_that_keeps_most_of_the_driven_one_is_in_its_front(
     fleet = deliveries(24, over, seed=3)
     if loads:
         fleet = loading_again(fleet)
-    long = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=1500))
+    long = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=700))
     driven = long.plans[len(long.plans) // 2]
-    options = FleetOptions(time_limit=inf, iterations=800, driven=driven, size=size)
+    options = FleetOptions(time_limit=inf, iterations=400, driven=driven, size=size)
     front = plan_fleet(fleet, options)
     assert len(front.plans) <= size
     assert (np.diff(front.points[:, 0]) >= 0).all()
