@@ -23,7 +23,7 @@ from service.objectives import OBJECTIVES
 _FIRST_SHARE = 0.25  # of all rounds, for each objective alone
 _DEEP_SHARE = 0.45  # of all rounds, for evenly spread directions
 _DEEP = 12  # directions
-_SHALLOW = 20, 300  # a further direction takes one round in at least and at most so many left
+_SHALLOW = 30, 400  # a further direction takes one round in at least and at most so many left
 _LEAST_ROUNDS = 2
 _LESSER = 1e-6  # weight of the other objectives beside one alone
 _BESIDE = 0.3  # the same beside one of which many plans have none at all
@@ -38,6 +38,7 @@ _BOUNDED = 0.5  # share of the further directions with bounds on sums
 _UNLIMITED_AGAIN = 0.1  # share of the further directions under two objectives without a limit
 _ANY_START = 0.25  # share of those under three objectives that start from a random plan
 _BELOW = 0.95  # how far below the least longest route limits go
+_BRIEF, _LOWERED = 6.0, 0.5  # with so few ruins per stop, so much of a gap below a plan is taken
 
 # Under vehicles and one more objective, where all stops must be visited: shares of the rounds left
 # to shorten the first plan (at most a round a stop), to find one vehicle less, for the fewest, and
@@ -236,6 +237,7 @@ class Directions:
         limited = self._by_limit.index(True)
         lengths = np.sort(points[:, limited])[::-1]
         greatest, least = lengths[0], lengths[-1]
+        weights = np.where(self._by_limit, _LESSER, 1.0) / self._scale
         if self._over[limited] == "vehicles":
             limit = float(self._random.integers(int(least) - 1, int(greatest) + 1))
         elif place is not None:
@@ -246,7 +248,9 @@ class Directions:
             lower = np.append(lengths[1:], self._lower(least))
             at = int(self._random.choice(len(lengths), p=self._chances(points, lengths - lower)))
             limit = self._random.uniform(lower[at], lengths[at])
-        weights = np.where(self._by_limit, _LESSER, 1.0) / self._scale
+            if rounds * self._per_stop <= _BRIEF:  # too few to get away from the plan below
+                limit = lengths[at] - _LOWERED * (lengths[at] - limit)
+                return replace(self._step(weights, {limited: limit}, rounds), start=at)
         return self._step(weights, {limited: limit}, rounds)
 
     def _lower(self, least: float) -> float:

@@ -102,6 +102,7 @@ class Problem(NamedTuple):
     breaks: Array  # (v, b, 3), the earliest and the latest begin of each, and how long it takes
     initial: Indices  # (v,), the initial load in the first dimension
     early: bool  # whether vehicles leave as early as they may
+    plain: bool  # whether times along routes follow from spans, one for each stop
     departs: Array  # (v,)
     leaves_by: Array  # (v,)
     returns: Array  # (v,), with overtime
@@ -199,6 +200,7 @@ def problem_of(fleet: Fleet) -> Problem:
         breaks=_breaks(vehicles),
         initial=np.array([(each.initial_load or (0,))[0] for each in vehicles]),
         early=rules.leave == "early",
+        plain=rules.clock is not None and fleet.day is None and not weighs and _plain_times(rules),
         departs=_floats([vehicle.way[0] for vehicle in vehicles]),
         leaves_by=_floats([min(v.leaves_by, v.way[1]) for v in vehicles]),
         returns=_floats([vehicle.way[1] for vehicle in vehicles]),
@@ -316,6 +318,14 @@ def _is_tried(fleet: Fleet, vehicle: VehicleType) -> bool:
         return bool(vehicle.breaks)
     timed = any(v.release or v.due < np.inf or len(v.windows) > 1 for v in rules.visits)
     return bool(vehicle.breaks) or timed or "load_distance" in rules.over
+
+
+def _plain_times(rules: Rules) -> bool:
+    """Return whether a span for each stop, and no more, says when a route is where."""
+    if rules.capped or rules.reloads or rules.groups.before or "lateness" in rules.over:
+        return False
+    several = any(len(windows) > 1 or windows[0][0] > windows[0][1] for windows in rules.windows)
+    return not (several or min(rules.holds) < np.inf or any(v.breaks for v in rules.vehicles))
 
 
 def _windows(rules: Rules) -> Array:

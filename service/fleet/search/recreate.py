@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from service.fleet.search.changes import begin_iteration, save_slot
+from service.fleet.search.changes import begin_iteration, measure_with, save_slot
 from service.fleet.search.companions import drop_halves, want_mates
 from service.fleet.search.insertion import best_place
 from service.fleet.search.pairs import best_pair
 from service.fleet.search.problem import Problem
 from service.fleet.search.reloads import SELDOM, load_anew
-from service.fleet.search.route import measure, measure_with
+from service.fleet.search.route import measure
 from service.fleet.search.ruin import free_waiting, uniform
 from service.fleet.search.spots import Place, Spot, put, take_back
 from service.fleet.search.waits import bind, bound, insert_firsts_first, settle, unbind

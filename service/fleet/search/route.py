@@ -35,8 +35,6 @@ from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
 
-_HUGE = 1e6  # times as long as what is left of a route
-
 
 class Span(NamedTuple):
     """A part of a route: the least time it takes, and the departures that take only this time.
@@ -114,7 +112,8 @@ def times_of(
 
 
 @inlined
-def _set_span(rows: Array, node: int, span: Span) -> None:
+def set_span(rows: Array, node: int, span: Span) -> None:
+    """Write what is known of a route up to a node, or from it on."""
     rows[node, 0], rows[node, 1], rows[node, 2] = span.time, span.early, span.late
 
 
@@ -131,18 +130,55 @@ def measure(state: State, slot: int) -> bool:
     first, second = _sum_legs(problem, plan, slot, start)
     fits &= first < problem.forbidden
     plan.value[slot, FIRST], plan.value[slot, SECOND] = first, second
-    if problem.clock >= 0:
+    if problem.plain:
+        _set_ends(problem, plan, slot)
+        fits &= set_times(problem, plan, slot, (plan.next[start], plan.previous[start + 1]))
+    elif problem.clock >= 0:
         fits &= _drive(problem.day, problem, plan, slot)
         _backward(problem, plan, slot, start)
     if problem.capped:
         fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
     if problem.weighs and fits:
         weigh(state, slot)
-    fits &= _set_cost(state, slot, start + 1)
+    fits &= set_cost(state, slot, start + 1)
     plan.plain[slot] = plan.cost[slot]
     if fits and problem.rests[problem.kind[slot]] > 0:
         return _rest(state, slot, start + 1)
     return fits
+
+
+@inlined
+def _set_ends(problem: Problem, plan: WorkingPlan, slot: int) -> None:
+    """Write when a route may begin and end."""
+    start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]
+    departs = max(problem.departs[kind], plan.value[slot, RELEASED])
+    set_span(plan.head, start, Span(0.0, departs, problem.leaves_by[kind]))
+    set_span(plan.tail, start + 1, Span(0.0, 0.0, problem.returns[kind]))
+
+
+@inlined
+def set_times(problem: Problem, plan: WorkingPlan, slot: int, changed: tuple[int, int]) -> bool:
+    """Write the plain times along a route; return whether it keeps all windows.
+
+    `changed` are its first and last stop that are new: other times are those before and after them.
+    """
+    start, end = len(problem.demand) + 2 * slot, len(problem.demand) + 2 * slot + 1
+    (node, last), profile = changed, problem.profile[slot]
+    span = head_at(plan, plan.previous[node])
+    while node != end:
+        span, _ = joined(span, plan.step[node, problem.clock], stay(problem, profile, node))
+        set_span(plan.head, node, span)
+        node = plan.next[node]
+    span, _ = joined(span, plan.step[end, problem.clock], tail_at(plan, end))
+    time, plan.ready[end] = times_of(problem, plan, slot, span, 0.0)
+    plan.value[slot, problem.clock], plan.late[end] = time, 0.0
+    node, span = last, tail_at(plan, plan.next[last])
+    while node != start:
+        onward = plan.step[plan.next[node], problem.clock]
+        span, _ = joined(stay(problem, profile, node), onward, span)
+        set_span(plan.tail, node, span)
+        node = plan.previous[node]
+    return time < np.inf
 
 
 @inlined
@@ -167,7 +203,7 @@ def _set_heads(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     kind, profile = problem.kind[slot], problem.profile[slot]
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     span = Span(0.0, departs, problem.leaves_by[kind])
-    _set_span(plan.head, start, span)
+    set_span(plan.head, start, span)
     at, node = problem.place[start], plan.next[start]
     while node != start + 1:
         leg_to = plan.step[node, problem.clock]
@@ -176,7 +212,7 @@ def _set_heads(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
             leg_to -= away
             span, _ = joined(span, away, Span(0.0, plan.released[node], np.inf))
         span, _ = joined(span, leg_to, stay(problem, profile, node))
-        _set_span(plan.head, node, span)
+        set_span(plan.head, node, span)
         at, node = node, plan.next[node]
 
 
@@ -189,47 +225,11 @@ def _rest(state: State, slot: int, end: int) -> bool:
         return False
     plan.ready[end], plan.late[end] = times.end, times.late
     plan.value[slot, problem.clock] = times.duration
-    return _set_cost(state, slot, end)
+    return set_cost(state, slot, end)
 
 
 @inlined
-def measure_with(state: State, slot: int, stop: int) -> bool:
-    """Work out the cost of a route that has got a stop; return whether it keeps all rules.
-
-    Without times and loads on the way, lengths change by three legs. Sums are then a few roundings
-    apart from those of measure(), which is due when the plan is kept. A sum of which a huge leg is
-    taken would be left with little of the rest: then all is measured anew.
-    """
-    problem, plan, direction = state
-    whole = problem.carries or problem.reloads or problem.weighs or direction.load_distance > 0
-    if problem.clock >= 0 or whole:
-        return measure(state, slot)
-    mark_used(plan, slot)
-    kind, profile, fits, lost = problem.kind[slot], problem.profile[slot], True, False
-    before, after = plan.previous[stop], plan.next[stop]
-    for layer in range(plan.step.shape[1]):
-        parted = plan.step[after, layer]
-        plan.value[slot, layer] -= parted
-        plan.step[stop, layer] = leg(problem, profile, problem.place[before], stop, layer)
-        plan.step[after, layer] = leg(problem, profile, stop, problem.place[after], layer)
-        plan.value[slot, layer] += plan.step[stop, layer] + plan.step[after, layer]
-        lost |= parted > _HUGE * plan.value[slot, layer]
-    if lost:
-        return measure(state, slot)
-    for dimension in range(plan.load.shape[1]):
-        plan.load[slot, dimension] += problem.demand[stop, dimension]
-        fits &= plan.load[slot, dimension] <= problem.capacity[kind, dimension]
-    plan.size[slot] += 1
-    fits &= plan.value[slot, FIRST] < problem.forbidden
-    if problem.capped:
-        fits &= not drives_too_far(problem, plan, slot, 0.0, 0.0)
-    fits &= _set_cost(state, slot, len(problem.demand) + 2 * slot + 1)
-    plan.plain[slot] = plan.cost[slot]
-    return fits
-
-
-@inlined
-def _set_cost(state: State, slot: int, end: int) -> bool:
+def set_cost(state: State, slot: int, end: int) -> bool:
     """Write the cost of a route whose lengths are known; return whether it is short enough."""
     problem, plan, _ = state
     kind = problem.kind[slot]
@@ -267,8 +267,8 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     for column in range(plan.value.shape[1]):
         plan.value[slot, column] = 0.0
     kind, profile = problem.kind[slot], problem.profile[slot]
-    _set_span(plan.head, start, Span(0.0, problem.departs[kind], problem.leaves_by[kind]))
-    _set_span(plan.tail, end, Span(0.0, 0.0, problem.returns[kind]))
+    set_span(plan.head, start, Span(0.0, problem.departs[kind], problem.leaves_by[kind]))
+    set_span(plan.tail, end, Span(0.0, 0.0, problem.returns[kind]))
     plan.ready[start] = problem.departs[kind]
     plan.late[start] = 0.0
     plan.along[start] = 0.0
@@ -320,7 +320,7 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     span = Span(0.0, departs, problem.leaves_by[kind])
     in_time = not _is_over(departs, problem.leaves_by[kind])
-    _set_span(plan.head, start, span)
+    set_span(plan.head, start, span)
     ready, late = departs, 0.0
     plan.ready[start], plan.late[start] = ready, late
     at, node = problem.place[start], plan.next[start]
@@ -336,7 +336,7 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
             late += begin - problem.due[node]
         ready = begin + service_at(problem, profile, node)
         span, _ = joined(span, leg_to, stay(problem, profile, node))
-        _set_span(plan.head, node, span)
+        set_span(plan.head, node, span)
         plan.ready[node], plan.late[node] = ready, late
         at, node = node, plan.next[node]
     ready += plan.step[end, problem.clock]
@@ -384,7 +384,7 @@ def _backward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> Non
     """Write what is known from each node of a route on."""
     span, end = Span(0.0, 0.0, problem.returns[problem.kind[slot]]), start + 1
     profile = problem.profile[slot]
-    _set_span(plan.tail, end, span)
+    set_span(plan.tail, end, span)
     node = plan.previous[end]
     while node != start:
         after = plan.next[node]
@@ -395,5 +395,5 @@ def _backward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> Non
             span, _ = joined(Span(0.0, plan.released[after], np.inf), onward, span)
             leg_from = away
         span, _ = joined(stay(problem, profile, node), leg_from, span)
-        _set_span(plan.tail, node, span)
+        set_span(plan.tail, node, span)
         node = plan.previous[node]
