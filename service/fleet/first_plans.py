@@ -14,10 +14,8 @@ from service.fleet.evaluation import plan_lengths
 from service.fleet.fleet import LAYERS, Array, Fleet, prices_of
 from service.fleet.left_out import with_all_stops
 from service.fleet.optimal_split import (
-    FleetArrays,
     Indices,
     RouteCosts,
-    arrays_of,
     best_split,
     most_stops,
     plan_of,
@@ -27,6 +25,7 @@ from service.fleet.optimal_split import (
 )
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
+from service.fleet.search.problem import Problem, problem_of
 from service.fleet.vehicles import VehicleType, Visit
 from service.instance import Instance
 from service.objectives import OBJECTIVES
@@ -127,15 +126,15 @@ class Cutter:
             raise Refusal("no-plan", reason=reason)
         self._fleet = fleet
         self._stop = stop
-        arrays = _from_begin(fleet, arrays_of(fleet))
-        most = max(most_stops(arrays, sequence) for sequence in sequences)
+        problem = _from_begin(fleet)
+        most = max(most_stops(problem, sequence) for sequence in sequences)
         routes = len(fleet.rules.vehicles) * len(sequences[0]) * most
         if routes > _MOST_ROUTES or routes * states_of(fleet.rules) > _MOST_STEPS:
             reason = "this many stops, types and numbers of vehicles need a time_limit over 0"
             raise Refusal("no-plan", reason=reason)
         self._stock = stock_of(fleet.rules)
         self._sequences = sequences[: _MOST_ROUTES // routes]
-        self._tables = [_table(fleet, arrays, each, most) for each in self._sequences]
+        self._tables = [route_table(problem, each, most) for each in self._sequences]
         steps = len(self._sequences) * routes * self._stock.states
         self._begins = most if steps * most <= _CYCLIC_STEPS else 1
         self._cuts = max(_FEWEST, int(_ALL_STEPS / (steps * self._begins)))  # there is time for
@@ -261,26 +260,6 @@ class Cutter:
         return found
 
 
-def _table(fleet: Fleet, arrays: FleetArrays, sequence: Indices, most: int) -> Array:
-    """Return the lengths of all routes along a sequence, as `route_table` does.
-
-    Each type of vehicles drives and serves at its own speed.
-    """
-    paces = list(map(fleet.rules.pace, range(len(fleet.rules.vehicles))))
-    if len(set(paces)) == 1 and paces[0].speed == 1 and not fleet.profiles:
-        return route_table(arrays._replace(service=np.array(paces[0].services)), sequence, most)
-    tables = []
-    for kind, pace in enumerate(paces):
-        names = ("ends", "capacity", "shift", "leaves_by", "longest")
-        own = {name: getattr(arrays, name)[kind : kind + 1] for name in names}
-        costs = arrays.costs.copy() if fleet.lines else fleet.costs_by(pace.profile).copy()
-        if arrays.clock >= 0:
-            costs[arrays.clock] /= pace.speed
-        driven = arrays._replace(costs=costs, service=np.array(pace.services), **own)
-        tables.append(route_table(driven, sequence, most))
-    return np.concatenate(tables)
-
-
 def plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
     """Yield plans that take tenths of a second, for when a search had none: they may break rules.
 
@@ -325,17 +304,18 @@ def _away(fleet: Fleet, stop: int) -> Array:
         return fleet.legs_from(0, stop) / first + fleet.legs_from(1, stop) / second
 
 
-def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
-    """Return arrays whose times count from the earliest departure.
+def _from_begin(fleet: Fleet) -> Problem:
+    """Return the arrays of a fleet, with its mean costs, and times from the earliest departure.
 
     The tolerance of lateness is relative to times: for seconds since 1970 it would be a second.
     """
+    problem = problem_of(fleet)._replace(day=None)
     if fleet.rules.clock is None:
-        return arrays
+        return problem
     begin = _begin(fleet.rules, float(fleet.largest_legs[fleet.rules.clock]))
-    names = ("window", "shift", "release", "leaves_by")
-    times = {name: np.maximum(0.0, getattr(arrays, name) - begin) for name in names}
-    return arrays._replace(**times)
+    names = ("opens", "closes", "release", "departs", "leaves_by", "returns")
+    times = {name: np.maximum(0.0, getattr(problem, name) - begin) for name in names}
+    return problem._replace(**times)
 
 
 def warm_up() -> None:

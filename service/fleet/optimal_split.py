@@ -11,78 +11,38 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.fleet.fleet import LAYERS, Array, Fleet
-from service.fleet.loads import loads_of
+from service.fleet.fleet import LAYERS, Array
 from service.fleet.plans import Plan, Route
 from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
+from service.fleet.search.problem import Problem
+from service.fleet.search.route import Span, joined, stay
+from service.fleet.search.working_plan import leg
 from service.jit import allocating, compiled, inlined
 
 Indices = NDArray[np.int64]
 _is_over = inlined(is_over)
 
 
-class FleetArrays(NamedTuple):
-    """A fleet as arrays: n stops, v types of vehicles and d dimensions of loads.
-
-    It has no shipments, and each stop has one window. No vehicle loads again.
-    """
-
-    costs: Array  # (2, n, n)
-    clock: int  # -1 for none
-    limited: int  # the number of the costs that `longest` bounds; -1 for none
-    demand: Indices  # (n, d)
-    service: Array  # (n,)
-    release: Array  # (n,)
-    window: Array  # (n, 2)
-    ends: Indices  # (v, 2), start and end of each type; -1 for none
-    capacity: Indices  # (v, d)
-    shift: Array  # (v, 2)
-    leaves_by: Array  # (v,), the latest departure
-    early: bool  # whether vehicles leave as early as they may
-    longest: Array  # (v,)
-
-
-def arrays_of(fleet: Fleet) -> FleetArrays:
-    """Return a fleet as arrays, in the types and layouts for which the code is compiled."""
-    rules = fleet.rules
-    loads = loads_of(rules)
-    ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in rules.vehicles]
-    return FleetArrays(
-        costs=np.array(fleet.matrices(), order="C"),
-        clock=-1 if rules.clock is None else rules.clock,
-        limited=-1 if rules.limited is None else rules.limited,
-        demand=loads.demand,
-        service=np.array([visit.service for visit in rules.visits]),
-        release=np.array([visit.release for visit in rules.visits]),
-        window=np.array([windows[0] for windows in rules.windows], np.float64),
-        ends=np.array(ends, np.int64),
-        capacity=loads.capacity - loads.initial,
-        shift=np.array([vehicle.way for vehicle in rules.vehicles], np.float64),
-        leaves_by=np.array([vehicle.leaves_by for vehicle in rules.vehicles]),
-        early=rules.leave == "early",
-        longest=np.array([vehicle.longest for vehicle in rules.vehicles]),
-    )
-
-
 @allocating
-def most_stops(fleet: FleetArrays, sequence: Indices) -> int:
+def most_stops(problem: Problem, sequence: Indices) -> int:
     """Return the most neighbours in a cyclic sequence that fit one vehicle; at least 1."""
     most = 1
-    for vehicle in range(len(fleet.ends)):
+    for vehicle in range(len(problem.capacity)):
         for place in range(len(sequence)):
-            most = max(most, _fitting(fleet, sequence, vehicle, place))
+            most = max(most, _fitting(problem, sequence, vehicle, place))
     return most
 
 
 @allocating
-def route_table(fleet: FleetArrays, sequence: Indices, most: int) -> Array:
+def route_table(problem: Problem, sequence: Indices, most: int) -> Array:
     """Return the lengths of each route that visits neighbours in a cyclic sequence, in its order.
 
     O(v c most).
 
     Args:
-        fleet: The fleet.
+        problem: A fleet without shipments, whose stops have one window each, and whose vehicles
+            neither load again nor have breaks.
         sequence: The c stops, shape (c,). The first follows the last.
         most: The most stops of a route.
 
@@ -91,119 +51,87 @@ def route_table(fleet: FleetArrays, sequence: Indices, most: int) -> Array:
         first place in the sequence, and the number of stops less one; infinite if the route breaks
         a rule.
     """
-    types, c = len(fleet.ends), len(sequence)
+    types, c = len(problem.capacity), len(sequence)
     table = np.full((types, c, most, LAYERS), np.inf)
     for vehicle in range(types):
         for place in range(c):
-            fitting = min(most, _fitting(fleet, sequence, vehicle, place))
-            _write_lengths(fleet, sequence, vehicle, place, table[vehicle, place, :fitting])
+            fitting = min(most, _fitting(problem, sequence, vehicle, place))
+            _write_lengths(problem, sequence, vehicle, place, table[vehicle, place, :fitting])
     return table
 
 
 @allocating
-def _fitting(fleet: FleetArrays, sequence: Indices, vehicle: int, place: int) -> int:
+def _fitting(problem: Problem, sequence: Indices, vehicle: int, place: int) -> int:
     """Return the number of stops, from a place on, that the capacity of a vehicle allows."""
-    loads = np.zeros(fleet.demand.shape[1], np.int64)
+    loads = np.zeros(problem.demand.shape[1], np.int64)
     for count in range(len(sequence)):
         stop = sequence[(place + count) % len(sequence)]
         for dimension in range(len(loads)):
-            loads[dimension] += fleet.demand[stop, dimension]
-            if loads[dimension] > fleet.capacity[vehicle, dimension]:
+            loads[dimension] += problem.demand[stop, dimension]
+            if loads[dimension] > problem.capacity[vehicle, dimension]:
                 return count
     return len(sequence)
 
 
 class _Begun(NamedTuple):
-    """The first part of a route."""
+    """The first part of a route: the sums of both costs of its legs, and when it may be driven."""
 
-    first: float  # its lengths
+    first: float
     second: float
-    departs: float  # the first departure
-    time: float  # the least time from a departure, with waiting
-    early: float  # the first and the last departure that need only this time
-    late: float
-    stop: int  # the latest stop; -1 for anywhere
-    in_time: bool
+    span: Span
 
 
 @compiled
 def _write_lengths(
-    fleet: FleetArrays, sequence: Indices, vehicle: int, place: int, lengths: Array
+    problem: Problem, sequence: Indices, vehicle: int, place: int, lengths: Array
 ) -> None:
     """Write the lengths of a vehicle's routes from a place on, shape (most, 2)."""
-    departs, returns = fleet.shift[vehicle]
-    start, end = fleet.ends[vehicle]
-    longest = fleet.longest[vehicle]
-    latest = min(returns, fleet.leaves_by[vehicle])
-    begun = _Begun(0.0, 0.0, departs, 0.0, departs, latest, start, True)
+    slot = problem.slots[vehicle]
+    profile, node = problem.profile[slot], len(problem.demand) + 2 * slot
+    at, end = problem.place[node], problem.place[node + 1]
+    begun = _Begun(0.0, 0.0, Span(0.0, problem.departs[vehicle], problem.leaves_by[vehicle]))
+    returned = Span(0.0, 0.0, problem.returns[vehicle])
+    released = 0.0
     for count in range(len(lengths)):
         stop = sequence[(place + count) % len(sequence)]
-        opens, closes = fleet.window[stop]
-        begun = _released(begun, fleet.release[stop])
-        begun = _extended(fleet, begun, stop, opens, closes, fleet.service[stop])
-        if not begun.in_time or _too_long(fleet, begun, longest):
+        released = max(released, problem.release[stop])
+        begun, in_time = _extended(problem, profile, begun, at, stop, stay(problem, profile, stop))
+        if not (in_time and _lengths_of(problem, vehicle, begun, released)[2]):
             return
-        route = _extended(fleet, begun, end, 0.0, returns, 0.0)
-        if route.in_time and not _too_long(fleet, route, longest):
-            lengths[count, 0] = _time(fleet, route) if fleet.clock == 0 else route.first
-            lengths[count, 1] = _time(fleet, route) if fleet.clock == 1 else route.second
-
-
-@inlined
-def _time(fleet: FleetArrays, begun: _Begun) -> float:
-    """Return the time from the departure of a route to its end."""
-    return begun.early + begun.time - begun.departs if fleet.early else begun.time
-
-
-@inlined
-def _released(begun: _Begun, release: float) -> _Begun:
-    """Return a route that departs no earlier than what it brings to a stop is released."""
-    early, departs = max(begun.early, release), max(begun.departs, release)
-    in_time = begun.in_time and not _is_over(early, begun.late, early + begun.time)
-    first, second, stop = begun.first, begun.second, begun.stop
-    return _Begun(first, second, departs, begun.time, early, begun.late, stop, in_time)
+        route, in_time = _extended(problem, profile, begun, stop, end, returned)
+        first, second, fits = _lengths_of(problem, vehicle, route, released)
+        if in_time and fits:
+            lengths[count, 0], lengths[count, 1] = first, second
+        at = stop
 
 
 @inlined
 def _extended(
-    fleet: FleetArrays, begun: _Begun, stop: int, opens: float, closes: float, service: float
-) -> _Begun:
-    """Return a route after one more stop.
-
-    The vehicle departs as late as that saves waiting: Vidal et al. (2013), time-window segments.
-    """
-    first, second = begun.first, begun.second
-    leg = 0.0
-    if begun.stop >= 0 and stop >= 0:
-        first += fleet.costs[0, begun.stop, stop]
-        second += fleet.costs[1, begun.stop, stop]
-        leg = fleet.costs[max(fleet.clock, 0), begun.stop, stop]
-    if fleet.clock < 0:
-        return _Begun(first, second, 0.0, 0.0, 0.0, 0.0, stop, True)
-    until = begun.time + leg
-    arrival = begun.early + until
-    if closes < opens:  # whoever is there in time waits: see Rules.windows
-        opens, service = closes, service + opens - closes
-    waiting = max(0.0, opens - until - begun.late)
-    return _Begun(
-        first,
-        second,
-        begun.departs,
-        until + waiting + service,
-        max(begun.early, opens - until) - waiting,
-        min(begun.late, closes - until),
-        stop,
-        begun.in_time and not _is_over(arrival, closes),
-    )
+    problem: Problem, profile: int, begun: _Begun, a: int, b: int, part: Span
+) -> tuple[_Begun, bool]:
+    """Return a route after one more leg and the part behind it, and whether it keeps windows."""
+    first, second = leg(problem, profile, a, b, 0), leg(problem, profile, a, b, 1)
+    span, in_time = begun.span, True
+    if problem.clock >= 0:
+        span, in_time = joined(span, first if problem.clock == 0 else second, part)
+    return _Begun(begun.first + first, begun.second + second, span), in_time
 
 
 @inlined
-def _too_long(fleet: FleetArrays, begun: _Begun, longest: float) -> bool:
-    """Return whether a route exceeds a limit on its time, or on its length without a clock."""
-    length = begun.first if fleet.limited == 0 else begun.second
-    if fleet.limited == fleet.clock:
-        length = _time(fleet, begun)
-    return _is_over(length, longest, begun.early + begun.time)
+def _lengths_of(
+    problem: Problem, vehicle: int, route: _Begun, released: float
+) -> tuple[float, float, bool]:
+    """Return both lengths of a route, and whether no limit and no forbidden leg is against it."""
+    first, second, span = route
+    fits, end = first < problem.forbidden, 0.0
+    if problem.clock >= 0:
+        departs = max(span.early, released)
+        end = departs + span.time
+        fits &= not _is_over(departs, span.late, end)
+        time = end - max(problem.departs[vehicle], released) if problem.early else span.time
+        first, second = (time, second) if problem.clock == 0 else (first, time)
+    length = first if problem.limited == 0 else second
+    return first, second, fits and not _is_over(length, problem.longest[vehicle], end)
 
 
 class Stock(NamedTuple):
