@@ -4,7 +4,6 @@ from typing import Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
-from pydantic.json_schema import SkipJsonSchema
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -15,6 +14,7 @@ from service.api.responses import compressed, json_bytes, problem_responses
 from service.api.task_parser import TaskParser
 from service.files.reading import Kind, NamedFile
 from service.files.upload import Upload
+from service.requests.fields import Maybe, optional
 
 _FILE = {"type": "string", "format": "binary", "description": "a file, with its filename"}
 _FORM = {
@@ -66,27 +66,21 @@ class FileAnswer(BaseModel):
     kind: Kind = Field(description="the operation that takes the request")
     request: dict[str, Any]
     notes: list[NoteItem]
-    columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
-        default=None, description="of tables with a heading"
+    columns: Maybe[list[ColumnItem]] = optional("of tables with a heading")
+    choices: Maybe[dict[str, list[str]]] = optional(
+        "by file, what its columns can be taken for instead: see the part `columns`"
     )
-    choices: dict[str, list[str]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="by file, what its columns can be taken for instead: see the part `columns`",
+    details: Maybe[list[DetailItem]] = optional(
+        "the columns that are taken for `detail`: by default, the first ten of a table of stops"
+        " that are not used otherwise and have texts. They are in no request"
     )
-    details: list[DetailItem] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="the columns that are taken for `detail`: by default, the first ten of a table"
-        " of stops that are not used otherwise and have texts. They are in no request",
+    planes: Maybe[list[list[float]]] = optional(
+        "for two EUC_2D files: x and y of each city in both planes. The matrices in the request are"
+        " the rounded distances"
     )
-    planes: list[list[float]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="for two EUC_2D files: x and y of each city in both planes. The matrices in the"
-        " request are the rounded distances",
-    )
-    unknown_cells: list[list[int]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="of a map with unknown cells, to draw them: rows of 0, and 1 where it is"
-        " unknown. Whether the robot may go there is in the request's grid",
+    unknown_cells: Maybe[list[list[int]]] = optional(
+        "of a map with unknown cells, to draw them: rows of 0, and 1 where it is unknown. Whether"
+        " the robot may go there is in the request's grid"
     )
     name: str
 

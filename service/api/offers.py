@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
-from pydantic.json_schema import SkipJsonSchema
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -25,6 +24,7 @@ from service.api.responses import (
 from service.api.stored_fronts import find_stored
 from service.api.task_parser import TaskParser
 from service.jobs.store import Store
+from service.requests.fields import Maybe, optional
 from service.requests.task import Task
 
 Measure = Callable[[Task], Awaitable[Task]]
@@ -36,17 +36,12 @@ class ChoiceItem(BaseModel):
 
     rise: Lengths = Field(description="what each length of the plan grows by")
     vehicle: str = Field(description="the id of the type of the vehicle")
-    shift: int | SkipJsonSchema[None] = Field(
-        default=None, description="the number of its shift, if its vehicle has several"
+    shift: Maybe[int] = optional("the number of its shift, if its vehicle has several")
+    route: Maybe[int] = optional(
+        "the number of its route in the plan; none for a vehicle that does not leave without the"
+        " order"
     )
-    route: int | SkipJsonSchema[None] = Field(
-        default=None,
-        description="the number of its route in the plan; none for a vehicle that does not leave"
-        " without the order",
-    )
-    after: str | SkipJsonSchema[None] = Field(
-        default=None, description="the stop before the order; none where the route begins there"
-    )
+    after: Maybe[str] = optional("the stop before the order; none where the route begins there")
     arrival: float = Field(description="when the vehicle arrives; it waits until the slot begins")
 
 
@@ -55,27 +50,22 @@ class OfferItem(BaseModel):
 
     slot: _Slot = Field(description="when the visit may begin, from and to")
     possible: bool
-    complete: bool | SkipJsonSchema[None] = Field(
-        default=None,
-        description="false where the time did not suffice for all places: another may be better",
+    complete: Maybe[bool] = optional(
+        "false where the time did not suffice for all places: another may be better"
     )
-    rise: Lengths | SkipJsonSchema[None] = Field(
-        default=None,
-        description="the least that each length of the plan grows by: each of its own choice",
+    rise: Maybe[Lengths] = optional(
+        "the least that each length of the plan grows by: each of its own choice"
     )
-    choices: list[ChoiceItem] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="the places of which none is better in all objectives, up to five; the first"
-        " one is the best compromise",
+    choices: Maybe[list[ChoiceItem]] = optional(
+        "the places of which none is better in all objectives, up to five; the first one is the"
+        " best compromise"
     )
-    replan: dict[str, Any] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="takes the offer: the request for `POST /front/{id}/replan` that adds the order"
-        " in this slot",
+    replan: Maybe[dict[str, Any]] = optional(
+        "takes the offer: the request for `POST /front/{id}/replan` that adds the order in this"
+        " slot"
     )
-    reasons: list[ReasonItem] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="if it is not possible: for each type of vehicles the rule that forbids it",
+    reasons: Maybe[list[ReasonItem]] = optional(
+        "if it is not possible: for each type of vehicles the rule that forbids it"
     )
 
 

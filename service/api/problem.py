@@ -4,13 +4,15 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
+from service.requests.fields import optional
+
 
 class PatchOperation(BaseModel):
     """An operation of a JSON patch (RFC 6902)."""
 
     op: Literal["add", "remove"]
     path: str = Field(description="JSON pointer into the body of the request (RFC 6901)")
-    value: Any = Field(default=None, description="of `add`: what the member gets")
+    value: Any = optional("of `add`: what the member gets")
 
 
 class RemedyItem(BaseModel):
@@ -26,21 +28,17 @@ class FaultItem(BaseModel):
     """One thing wrong with a request."""
 
     detail: str
-    pointer: str | None = Field(default=None, description="JSON pointer into the body (RFC 6901)")
-    parameter: str | None = Field(default=None, description="name of the query parameter")
-    code: str | None = Field(default=None, description="what is wrong with it; stable")
-    demand: str | None = Field(
-        default=None, description="`detail` without the name of the field at its beginning"
+    pointer: str | None = optional("JSON pointer into the body (RFC 6901)")
+    parameter: str | None = optional("name of the query parameter")
+    code: str | None = optional("what is wrong with it; stable")
+    demand: str | None = optional("`detail` without the name of the field at its beginning")
+    values: dict[str, float | str] | None = optional(
+        "the values in the sentence by name; `came` is what came, `near` what was probably meant,"
+        " and `other` the pointer to another field"
     )
-    values: dict[str, float | str] | None = Field(
-        default=None,
-        description="the values in the sentence by name; `came` is what came, `near` what was"
-        " probably meant, and `other` the pointer to another field",
-    )
-    remedies: list[RemedyItem] | None = Field(
-        default=None,
-        description="changes to the request after each of which there is a plan, as was tried; in"
-        " the first of `errors` alone",
+    remedies: list[RemedyItem] | None = optional(
+        "changes to the request after each of which there is a plan, as was tried; in the first of"
+        " `errors` alone"
     )
 
 
@@ -54,5 +52,5 @@ class Problem(BaseModel):
     detail: str
     request_id: str
     errors: list[FaultItem] | None = None
-    limit: float | None = Field(default=None, description="the most that is allowed")
-    actual: float | None = Field(default=None, description="what came, where it is known")
+    limit: float | None = optional("the most that is allowed")
+    actual: float | None = optional("what came, where it is known")

@@ -5,7 +5,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
-from pydantic.json_schema import SkipJsonSchema
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
@@ -24,6 +23,7 @@ from service.errors import Refusal
 from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.kinds.table import KINDS
+from service.requests.fields import Maybe, optional
 from service.requests.questions import QuestionsQuery, members_of
 
 
@@ -46,18 +46,10 @@ class QuestionAnswer(OptionItem):
     front: str = Field(description="the front's id")
     left: int = Field(description="how many questions are left, this one included; 0 at the end")
     options: list[OptionItem] = Field(description="by ascending first length; none at the end")
-    objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
-        default=None, description="as the request names them"
-    )
-    number: int | SkipJsonSchema[None] = Field(
-        default=None, description="at the end: the number in the front, from 0"
-    )
-    tour: CoverageItem | TourItem | SkipJsonSchema[None] = Field(
-        default=None, description="at the end, of a front of tours"
-    )
-    plan: PlanItem | RobotPlanItem | SkipJsonSchema[None] = Field(
-        default=None, description="at the end, of a front of plans"
-    )
+    objectives: Maybe[list[ObjectiveName]] = optional("as the request names them")
+    number: Maybe[int] = optional("at the end: the number in the front, from 0")
+    tour: Maybe[CoverageItem | TourItem] = optional("at the end, of a front of tours")
+    plan: Maybe[PlanItem | RobotPlanItem] = optional("at the end, of a front of plans")
 
 
 class QuestionRoutes:

@@ -12,7 +12,6 @@ from http import HTTPStatus
 from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
-from pydantic.json_schema import SkipJsonSchema
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
@@ -23,6 +22,7 @@ from service.errors import Refusal
 from service.front import Termination
 from service.jobs.record import Record, Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
+from service.requests.fields import Maybe, empty_list, optional
 from service.requests.stop_fields import NamedStop
 from service.requests.task import KindName
 
@@ -42,50 +42,33 @@ Balance = Annotated[
 class TourItem(BaseModel):
     """A tour and where it stands."""
 
-    angle: float | SkipJsonSchema[None] = Field(
-        default=None,
-        description="of two objectives: direction of the scaled lengths, in degrees",
+    angle: Maybe[float] = optional("of two objectives: direction of the scaled lengths, in degrees")
+    balance: Maybe[float] = optional(OF_TWO)
+    losses: Maybe[Lengths] = optional(OF_MORE)
+    kept: Maybe[float] = optional(
+        "only in a front that was replanned: the share of the driven tour's remaining legs that"
+        " this tour keeps, in either direction if costs are symmetric"
     )
-    balance: float | SkipJsonSchema[None] = Field(
-        default=None,
-        description=OF_TWO,
-    )
-    losses: Lengths | SkipJsonSchema[None] = Field(
-        default=None,
-        description=OF_MORE,
-    )
-    kept: float | SkipJsonSchema[None] = Field(
-        default=None,
-        description="only in a front that was replanned: the share of the driven tour's remaining"
-        " legs that this tour keeps, in either direction if costs are symmetric",
-    )
-    departure: float | SkipJsonSchema[None] = Field(
-        default=None,
-        description="where costs change over the day: when the tour begins, in seconds of the day",
+    departure: Maybe[float] = optional(
+        "where costs change over the day: when the tour begins, in seconds of the day"
     )
     lengths: Lengths
-    means: Lengths | SkipJsonSchema[None] = Field(
-        default=None,
-        description="where costs spread: the mean lengths; those in `lengths` may be percentiles",
+    means: Maybe[Lengths] = optional(
+        "where costs spread: the mean lengths; those in `lengths` may be percentiles"
     )
-    p90: Lengths | SkipJsonSchema[None] = Field(
-        default=None,
-        description="where costs spread: the lengths that nine days of ten do not exceed",
+    p90: Maybe[Lengths] = optional(
+        "where costs spread: the lengths that nine days of ten do not exceed"
     )
     tour: list[int]
-    arrivals: list[Lengths] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="only if `arrivals` is true: all lengths up to each stop, and up to the return"
-        " of a closed tour",
+    arrivals: Maybe[list[Lengths]] = optional(
+        "only if `arrivals` is true: all lengths up to each stop, and up to the return of a closed"
+        " tour"
     )
-    times: list[float] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="where costs change over the day: when it reaches each stop, in seconds of the"
-        " day, and when it ends",
+    times: Maybe[list[float]] = optional(
+        "where costs change over the day: when it reaches each stop, in seconds of the day, and"
+        " when it ends"
     )
-    stops: list[str] | SkipJsonSchema[None] = Field(
-        default=None, description="the ids of its stops, if the request has ids"
-    )
+    stops: Maybe[list[str]] = optional("the ids of its stops, if the request has ids")
 
 
 class TourAnswer(TourItem):
@@ -115,9 +98,7 @@ class RequestNote(BaseModel):
         description="tells notes apart: place, swapped, far, outlier, large-costs or prizes"
     )
     text: str
-    pointer: str | SkipJsonSchema[None] = Field(
-        default=None, description="JSON pointer to the part of the request that it is about"
-    )
+    pointer: Maybe[str] = optional("JSON pointer to the part of the request that it is about")
 
 
 class FrontAnswer(BaseModel):
@@ -125,7 +106,7 @@ class FrontAnswer(BaseModel):
 
     id: str
     status: Status
-    problem: Problem | SkipJsonSchema[None] = Field(default=None, description="why it failed")
+    problem: Maybe[Problem] = optional("why it failed")
     kind: KindName = Field(description="front, coverage, fleet or robots: what was planned")
     cities: int
     front: list[TourItem]
@@ -146,17 +127,11 @@ class FrontAnswer(BaseModel):
         " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
         " was no search, and it says that all tours asked for were built"
     )
-    closed: bool | SkipJsonSchema[None] = Field(
-        default=None, description="false where tours are open routes, left out where closed"
-    )
-    objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
-        default=None, description="as the request names them"
-    )
-    stops: list[NamedStop] | SkipJsonSchema[None] = Field(
-        default=None, description="as the request has them"
-    )
-    notes: list[RequestNote] | SkipJsonSchema[None] = Field(
-        default=None, description="what is likely to be a mistake in the request, if anything is"
+    closed: Maybe[bool] = optional("false where tours are open routes, left out where closed")
+    objectives: Maybe[list[ObjectiveName]] = optional("as the request names them")
+    stops: Maybe[list[NamedStop]] = optional("as the request has them")
+    notes: Maybe[list[RequestNote]] = optional(
+        "what is likely to be a mistake in the request, if anything is"
     )
 
 
@@ -172,9 +147,7 @@ class ListedFrontItem(BaseModel):
     cities: int = Field(description="its cities, stops or places")
     points: int
     hypervolume: float
-    objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
-        default=None, description="as the request names them"
-    )
+    objectives: Maybe[list[ObjectiveName]] = optional("as the request names them")
 
 
 class FrontsAnswer(BaseModel):
@@ -197,20 +170,16 @@ class PathItem(BaseModel):
         description="row and column of each; a closed tour ends with its first cell"
     )
     metres: float
-    points: list[list[float]] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="x and y of each cell's middle in the frame of the map, in metres, if its"
-        " origin is known",
+    points: Maybe[list[list[float]]] = optional(
+        "x and y of each cell's middle in the frame of the map, in metres, if its origin is known"
     )
-    yaws: list[float] | SkipJsonSchema[None] = Field(
-        default=None,
-        description="with points: the direction in radians in which the robot leaves each cell, and"
-        " at the last cell the one in which it arrives",
+    yaws: Maybe[list[float]] = optional(
+        "with points: the direction in radians in which the robot leaves each cell, and at the last"
+        " cell the one in which it arrives"
     )
-    visits: list[list[int]] = Field(
-        default_factory=list,
-        description="for each place of the tour in order, back to the first if it is closed: the"
-        " index of its cell in cells, and the place; all other cells are on the way",
+    visits: list[list[int]] = empty_list(
+        "for each place of the tour in order, back to the first if it is closed: the index of its"
+        " cell in cells, and the place; all other cells are on the way"
     )
 
 
@@ -237,15 +206,15 @@ class UncoveredItem(BaseModel):
 class CoverageItem(TourItem):
     """A tour through places on a map."""
 
-    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` is true")
+    path: Maybe[PathItem] = optional("if `paths` is true")
 
 
 class MapAnswer(FrontAnswer):
     """A front of anything on a map."""
 
     places: list[list[int]] = Field(description="row and column of each")
-    uncovered: UncoveredItem | SkipJsonSchema[None] = Field(
-        default=None, description="the free cells that no path leads to, once the map is surveyed"
+    uncovered: Maybe[UncoveredItem] = optional(
+        "the free cells that no path leads to, once the map is surveyed"
     )
 
 

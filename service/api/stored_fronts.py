@@ -3,7 +3,6 @@
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
-from pydantic.json_schema import SkipJsonSchema
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
@@ -28,7 +27,7 @@ from service.jobs.listing import ListedFront
 from service.jobs.record import UNFINISHED, Record
 from service.jobs.store import Store
 from service.kinds.table import KINDS
-from service.requests.fields import GEOMETRY, Geometry, NonNegativeInteger
+from service.requests.fields import GEOMETRY, Geometry, Maybe, NonNegativeInteger
 from service.requests.replan.way import ReplanSource, StoredFront, not_replannable
 from service.requests.task import TaskSource
 from service.requests.tour import TourQuery
@@ -115,7 +114,7 @@ class StoredFrontRoutes:
         request: Request,
         id: str,  # noqa: A002
         geometry: Annotated[Geometry, Query(description=GEOMETRY)] = "straight",
-        plan: Annotated[NonNegativeInteger | SkipJsonSchema[None], Query(description=PLAN)] = None,
+        plan: Annotated[Maybe[NonNegativeInteger], Query(description=PLAN)] = None,
     ) -> Response:
         """Return a front; while it is being planned, the best so far."""
         record = await self._record(request, id)

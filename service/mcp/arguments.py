@@ -12,7 +12,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core.core_schema import ModelSchema, StringSchema
 
 from service.mcp.times import TIMED
-from service.requests.fields import SearchFields
+from service.requests.fields import SearchFields, optional
 from service.requests.json_schemas import RULES, WithoutNull
 from service.requests.replan.offers import EverySlot
 
@@ -65,7 +65,7 @@ class ChosenColumn(BaseModel):
         description="id, latitude, longitude, demand, service, x, y, second x, second y, ignored or"
         " another one of the choices that an error lists"
     )
-    file: str | None = Field(default=None, description="of several files its name, or the first")
+    file: str | None = optional("of several files its name, or the first")
 
 
 class TextOfFile(BaseModel):
@@ -122,25 +122,20 @@ class StoredFront(Arguments):
 class ChooseTour(StoredFront):
     """A front and one way to choose: at_most, weights, knee, balance or number."""
 
-    at_most: Budgets | None = Field(
-        default=None,
-        description='a budget for objectives by name, such as {"time": 3600}, "2:10 h", "12 km", or'
-        ' "3%" for so much more than the least',
+    at_most: Budgets | None = optional(
+        'a budget for objectives by name, such as {"time": 3600}, "2:10 h", "12 km", or "3%" for so'
+        " much more than the least"
     )
-    prefer: str | None = Field(
-        default=None, description="with at_most: the objective that is to be least"
-    )
-    weights: Numbers | None = Field(default=None, description="how much each objective matters")
-    knee: bool | None = Field(
-        default=None, description="true: the tour with the least sum of losses, a compromise"
-    )
+    prefer: str | None = optional("with at_most: the objective that is to be least")
+    weights: Numbers | None = optional("how much each objective matters")
+    knee: bool | None = optional("true: the tour with the least sum of losses, a compromise")
     balance: float | None = Field(
         default=None,
         ge=0,
         le=1,
         description="of two objectives: from 0 (least of the first) to 1 (of the second)",
     )
-    number: Count | None = Field(default=None, description="its number in the front, from 0")
+    number: Count | None = optional("its number in the front, from 0")
     first_stop: Count = Field(
         default=0,
         description="for a long tour: how many of its stops to leave out before the first",
@@ -177,14 +172,12 @@ class Changes(StoredFront, Members):
 class DayOfFleet(BaseModel):
     """What an agent says of the vehicles of a fleet in its own words."""
 
-    done: list[int | str] | dict[str, list[str]] | str | None = Field(
-        default=None,
-        description="the stops that were visited, in order. Of a fleet: for each vehicle, by its id"
-        ' or the number of its route, {"van": ["a", "b"]}; or "as planned": what the plan visits'
-        " until now",
+    done: list[int | str] | dict[str, list[str]] | str | None = optional(
+        "the stops that were visited, in order. Of a fleet: for each vehicle, by its id or the"
+        ' number of its route, {"van": ["a", "b"]}; or "as planned": what the plan visits until now'
     )
-    broken_down: list[int | str] | None = Field(
-        default=None, description="of a fleet: the vehicles, or routes, that are out of service"
+    broken_down: list[int | str] | None = optional(
+        "of a fleet: the vehicles, or routes, that are out of service"
     )
 
 

@@ -25,6 +25,7 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    empty_list,
     without_default,
 )
 from service.requests.limits import Limits, check_limits, lower_defaults
@@ -64,18 +65,15 @@ class RobotItem(StrictModel):
     start: NonNegativeInteger = Field(
         default=0, description="the place where it starts, which needs no other visit"
     )
-    start_pose: RobotPose = Field(
-        default_factory=list,
-        description="instead of start: x and y, and maybe yaw, in the frame of the map",
+    start_pose: RobotPose = empty_list(
+        "instead of start: x and y, and maybe yaw, in the frame of the map"
     )
     end: NonNegativeInteger = Field(
         default=0,
         json_schema_extra=without_default,
         description="with closed false, the place where it ends; by default anywhere",
     )
-    end_pose: RobotPose = Field(
-        default_factory=list, description="instead of end: where it ends, in the frame of the map"
-    )
+    end_pose: RobotPose = empty_list("instead of end: where it ends, in the frame of the map")
 
     def robot(self, closed: bool) -> Robot:
         """Return the robot, which returns to its start where routes are closed."""
@@ -100,9 +98,7 @@ class CoverageRequest(MapRequest):
         description="in metres; the centre of the robot stays farther than this from the centre of"
         " every obstacle cell",
     )
-    places: SomeItems[Cell] = Field(
-        default_factory=list, description="row and column of each place to visit"
-    )
+    places: SomeItems[Cell] = empty_list("row and column of each place to visit")
     spacing: Annotated[PositiveNumber, Offered(option="", label="Places apart, m")] = Field(
         default=0.0,
         json_schema_extra=without_default,
@@ -112,18 +108,14 @@ class CoverageRequest(MapRequest):
     start_pose: Annotated[
         RobotPose,
         Offered(option="Where the robot is: x and y in the frame of the map, such as -2.0,-0.5."),
-    ] = Field(
-        default_factory=list,
-        description="instead of start: x and y, and maybe yaw, of the robot in the frame of the"
-        " map; the tours begin in this cell, which is a place of its own if none is there",
+    ] = empty_list(
+        "instead of start: x and y, and maybe yaw, of the robot in the frame of the map; the tours"
+        " begin in this cell, which is a place of its own if none is there"
     )
     end_pose: Annotated[
         RobotPose,
         Offered(option="Where the robot must end, in the same form; with --open."),
-    ] = Field(
-        default_factory=list,
-        description="instead of end, where routes are open: the pose at which they end",
-    )
+    ] = empty_list("instead of end, where routes are open: the pose at which they end")
     second_matrix: Matrix = Field(
         default_factory=empty_array,
         description="the second objective: its costs from each place (row) to each (column),"
@@ -134,17 +126,16 @@ class CoverageRequest(MapRequest):
         description="or: the cost of a metre on each cell of the grid; costs are added up along the"
         " paths",
     )
-    cost_layers: CostLayers = Field(
-        default_factory=list,
-        description="or: one to three such layers, each an objective with a name",
+    cost_layers: CostLayers = empty_list(
+        "or: one to three such layers, each an objective with a name"
     )
     detours: Annotated[bool, Offered(option="", label="Longer paths where they cost less")] = Field(
         default=False,
         description="with cost layers: whether a path between two places may give up metres for"
         " cost; by default it is a shortest one",
     )
-    second_coordinates: SomeItems[PlanePoint] = Field(
-        default_factory=list, description="or: x and y of each place in a plane; its distances"
+    second_coordinates: SomeItems[PlanePoint] = empty_list(
+        "or: x and y of each place in a plane; its distances"
     )
     paths: Annotated[
         bool,
@@ -154,10 +145,9 @@ class CoverageRequest(MapRequest):
     )
     robots: Annotated[
         list[RobotItem], Field(min_length=1, max_length=MOST_ROBOTS, fail_fast=True)
-    ] = Field(
-        default_factory=list,
-        description="several robots that share the places; the answer is a front of plans. They may"
-        " do without a second objective: then both are metres",
+    ] = empty_list(
+        "several robots that share the places; the answer is a front of plans. They may do without"
+        " a second objective: then both are metres"
     )
     over: OneForBoth[Over] = Field(
         default_factory=lambda: list(DEFAULT_OVER),

@@ -21,6 +21,7 @@ from service.requests.fields import (
     Pair,
     StrictModel,
     Text,
+    empty_list,
     one_of,
     optional,
 )
@@ -144,23 +145,20 @@ class TimedObjectiveItem(ObjectiveItem):
     model_config = one_of(*SOURCES, **OF_SOURCES)
 
     over_the_day: Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)] = (
-        Field(
-            default_factory=list,
-            description="pairs of a second of the day and a factor: from then on the costs are"
-            " those of the source times the factor; the first one holds before it too",
+        empty_list(
+            "pairs of a second of the day and a factor: from then on the costs are those of the"
+            " source times the factor; the first one holds before it too"
         )
     )
-    slices: SliceItems = Field(
-        default_factory=list,
-        description="in place of one matrix: one for each slice of the day, which the next one"
-        " ends; the first one holds before it too",
+    slices: SliceItems = empty_list(
+        "in place of one matrix: one for each slice of the day, which the next one ends; the first"
+        " one holds before it too"
     )
-    breakpoints: Rows = Field(
-        default_factory=list,
-        description="in place of a matrix, of times of travel: for each stop (row) and each other"
+    breakpoints: Rows = empty_list(
+        "in place of a matrix, of times of travel: for each stop (row) and each other"
         f" (column) pairs of a second of the day and the seconds on the way from then on, {NO_WAY}."
         " Between two of them the seconds change evenly, and before the first and after the last"
-        " they stay. Who leaves later must not arrive earlier",
+        " they stay. Who leaves later must not arrive earlier"
     )
 
     traffic: TrafficItem | None = optional(

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, JsonValue, Tag
+from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import invalid
 from service.front import BOUND_SECONDS, PlanOptions
@@ -40,6 +41,8 @@ def _integer(value: object) -> object:
 
 
 Each = TypeVar("Each")
+# A member that is absent, never null, where there is none.
+Maybe = Each | SkipJsonSchema[None]
 # Lists whose validation ends at the first item that is wrong.
 Items = Annotated[list[Each], Field(fail_fast=True)]
 SomeItems = Annotated[list[Each], Field(min_length=1, fail_fast=True)]
@@ -107,6 +110,11 @@ class Offered:
 def optional(description: str) -> Any:
     """Return a field that is None where it was not given."""
     return Field(default=None, description=description)
+
+
+def empty_list(description: str) -> Any:
+    """Return a field that is an empty list where it was not given."""
+    return Field(default_factory=list, description=description)
 
 
 def without_default(schema: dict[str, Any]) -> None:
@@ -290,9 +298,9 @@ class PlanRequest(PlanFields):
         description="whether tours return to where they began; if not, they are open routes",
     )
     start: Annotated[NonNegativeInteger | None, AT_START] = Field(default=0, description=START)
-    end: Annotated[NonNegativeInteger | None, AT_END] = Field(default=None, description=END)
-    initial_tours: SomeItems[Items[NonNegativeInteger]] = Field(
-        default_factory=list, description="tours that the front must dominate or equal"
+    end: Annotated[NonNegativeInteger | None, AT_END] = optional(END)
+    initial_tours: SomeItems[Items[NonNegativeInteger]] = empty_list(
+        "tours that the front must dominate or equal"
     )
 
     @property

@@ -22,6 +22,7 @@ from service.requests.fields import (
     OneEach,
     SearchFields,
     SomeItems,
+    empty_list,
     optional,
 )
 from service.requests.fleet_fields import (
@@ -67,26 +68,21 @@ class FleetRequest(SearchFields):
         description="two to four: costs between the stops, of two kinds at most, or other measures"
         " of plans"
     )
-    shipments: Items[ShipmentItem] = Field(
-        default_factory=list, description="pairs of stops that one vehicle visits, in order"
+    shipments: Items[ShipmentItem] = empty_list("pairs of stops that one vehicle visits, in order")
+    together: Annotated[list[References], _SOME_GROUPS] = empty_list(
+        "groups of stops, by index or id: one vehicle visits all of a group on one route, or none"
+        " of it if all may be left out"
     )
-    together: Annotated[list[References], _SOME_GROUPS] = Field(
-        default_factory=list,
-        description="groups of stops, by index or id: one vehicle visits all of a group on one"
-        " route, or none of it if all may be left out",
+    apart: Annotated[list[ApartItem], _SOME_GROUPS] = empty_list(
+        "stops that must not be on one route"
     )
-    apart: Annotated[list[ApartItem], _SOME_GROUPS] = Field(
-        default_factory=list, description="stops that must not be on one route"
+    before: Annotated[list[BeforeItem], _SOME_GROUPS] = empty_list(
+        "stops that come before others, on one route or whoever drives"
     )
-    before: Annotated[list[BeforeItem], _SOME_GROUPS] = Field(
-        default_factory=list,
-        description="stops that come before others, on one route or whoever drives",
-    )
-    clock: Clock | None = Field(
-        default=None,
-        description="the name of the objective that is time; or, where the costs of all objectives"
-        " are the same, the source of times that are not an objective. All times are in its unit;"
-        " the length of a route in it includes service and waiting",
+    clock: Clock | None = optional(
+        "the name of the objective that is time; or, where the costs of all objectives are the"
+        " same, the source of times that are not an objective. All times are in its unit; the"
+        " length of a route in it includes service and waiting"
     )
     slack: Cost = Field(
         default=0.0,

@@ -21,6 +21,7 @@ from service.requests.fields import (
     PositiveNumber,
     StrictModel,
     Text,
+    empty_list,
     one_of,
     optional,
     without_default,
@@ -63,27 +64,21 @@ class ServiceItem(StrictModel):
 class FleetStopItem(NamedStop):
     """A stop, and its demands on the vehicle that visits it."""
 
-    demand: Loads = Field(
-        default_factory=list,
-        description="whole numbers, one for each dimension of the vehicle's capacity: what it"
-        " delivers, or what it takes on where the stop is the pick-up of a shipment",
+    demand: Loads = empty_list(
+        "whole numbers, one for each dimension of the vehicle's capacity: what it delivers, or what"
+        " it takes on where the stop is the pick-up of a shipment"
     )
-    pickup: Loads = Field(
-        default_factory=list,
-        description="whole numbers, as of `demand`: what it takes on there, after what it delivers,"
-        " and brings to its end",
+    pickup: Loads = empty_list(
+        "whole numbers, as of `demand`: what it takes on there, after what it delivers, and brings"
+        " to its end"
     )
     service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
     services: Annotated[list[ServiceItem], Field(max_length=_MOST_SERVICES, fail_fast=True)] = (
-        Field(
-            default_factory=list,
-            description="how long a visit takes by some types of vehicles, in place of `service`",
-        )
+        empty_list("how long a visit takes by some types of vehicles, in place of `service`")
     )
     window: TimeSpan | None = optional("when a visit may begin, from and to")
-    windows: Windows = Field(
-        default_factory=list,
-        description="when a visit may begin, from and to: in one of up to 20, by ascending time",
+    windows: Windows = empty_list(
+        "when a visit may begin, from and to: in one of up to 20, by ascending time"
     )
     due: Due | None = optional(
         "when the visit should begin at the latest, after which the plan has lateness; or a pair:"
@@ -94,9 +89,7 @@ class FleetStopItem(NamedStop):
         description="a vehicle that brings something here leaves its start, or the stop where it"
         " loads again, no earlier",
     )
-    skills: Skills = Field(
-        default_factory=list, description="the skills that its vehicle must have, all of them"
-    )
+    skills: Skills = empty_list("the skills that its vehicle must have, all of them")
     vehicle: Text | None = optional("the id of the type of vehicles that must visit it")
     urgency: Cost = Field(
         default=1.0,
@@ -186,36 +179,30 @@ class VehicleItem(StrictModel):
     end: StopReference | None = optional(
         "the stop at which they end, by index or id; null: each at its last visit"
     )
-    capacity: Loads = Field(
-        default_factory=list, description="the most that one holds, in up to 8 dimensions"
-    )
+    capacity: Loads = empty_list("the most that one holds, in up to 8 dimensions")
     shift: TimeSpan | None = optional("when one may leave, and must be back")
-    shifts: Annotated[list[TimeSpan], Field(max_length=_MOST_SHIFTS, fail_fast=True)] = Field(
-        default_factory=list,
-        description="up to 31 shifts, by ascending time: each vehicle has a route in each",
+    shifts: Annotated[list[TimeSpan], Field(max_length=_MOST_SHIFTS, fail_fast=True)] = empty_list(
+        "up to 31 shifts, by ascending time: each vehicle has a route in each"
     )
     max_overtime: Cost = Field(
         default=0.0, description="how much later than its shift a route may end"
     )
-    breaks: Annotated[list[BreakItem], Field(max_length=_MOST_BREAKS, fail_fast=True)] = Field(
-        default_factory=list,
-        description="up to 10, by ascending time. Each is taken between two visits, before the"
-        " departure or after the end; not while the vehicle drives",
+    breaks: Annotated[list[BreakItem], Field(max_length=_MOST_BREAKS, fail_fast=True)] = empty_list(
+        "up to 10, by ascending time. Each is taken between two visits, before the departure or"
+        " after the end; not while the vehicle drives"
     )
-    skills: Skills = Field(default_factory=list, description="what it is able to do")
+    skills: Skills = empty_list("what it is able to do")
     max_stops: PositiveInteger | None = optional("the most stops of a route")
     min_stops: PositiveInteger | None = optional("the least stops of a route: else none leaves")
-    reload: Annotated[list[StopReference], Field(max_length=_MOST_RELOADS, fail_fast=True)] = Field(
-        default_factory=list,
-        description="the stops, by index or id, at which one may load again on its way",
+    reload: Annotated[list[StopReference], Field(max_length=_MOST_RELOADS, fail_fast=True)] = (
+        empty_list("the stops, by index or id, at which one may load again on its way")
     )
     max_trips: PositiveInteger | None = optional(
         "the most trips of a route, each from one loading to the next; null for any number"
     )
-    initial_load: Loads = Field(
-        default_factory=list,
-        description="the load on board at the start; it is unloaded at the first stop for loading"
-        " again, or at the end",
+    initial_load: Loads = empty_list(
+        "the load on board at the start; it is unloaded at the first stop for loading again, or at"
+        " the end"
     )
     longest: PositiveNumber | None = optional(
         "the limit on each route: on its time if there is a clock, else on its length in"

@@ -29,7 +29,9 @@ from service.requests.fields import (
     OneEach,
     PlanRequest,
     SomeItems,
+    empty_list,
     one_of,
+    optional,
 )
 from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
@@ -82,31 +84,25 @@ class FrontRequest(DayFields, PlanRequest):
 
     # A request is complete only after `parse_front_request` has checked it.
     # An empty default means that the field was not given: no caller can give an empty array.
-    coordinates: SomeItems[City] = Field(
-        default_factory=list,
-        description="a row for each city: for each objective x and y in its plane",
+    coordinates: SomeItems[City] = empty_list(
+        "a row for each city: for each objective x and y in its plane"
     )
     matrices: Matrices = Field(
         default_factory=lambda: np.empty((OBJECTIVES, 0, 0)),
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: SomeItems[StopItem] = Field(
-        default_factory=list, description="the cities, by ids that come back with every tour"
-    )
-    objectives: OneEach[DayObjectiveItem] = Field(
-        default_factory=list, description="two to four, each with the costs between the stops"
+    stops: SomeItems[StopItem] = empty_list("the cities, by ids that come back with every tour")
+    objectives: OneEach[DayObjectiveItem] = empty_list(
+        "two to four, each with the costs between the stops"
     )
     # In a checked request these hold only indexes, as in every PlanRequest.
     start: Annotated[StopReference | None, AT_START] = Field(  # type: ignore[assignment]
         default=0, description=f"{START}; by index or id"
     )
-    end: Annotated[StopReference | None, AT_END] = Field(  # type: ignore[assignment]
-        default=None, description=f"{END}; by index or id"
-    )
-    initial_tours: SomeItems[Items[StopReference]] = Field(  # type: ignore[assignment]
-        default_factory=list,
-        description="tours that the front must dominate or equal, by indexes or ids",
+    end: Annotated[StopReference | None, AT_END] = optional(f"{END}; by index or id")
+    initial_tours: SomeItems[Items[StopReference]] = empty_list(
+        "tours that the front must dominate or equal, by indexes or ids"
     )
     augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger, Offered(option="")] = (
         Field(

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from service.errors import invalid
-from service.requests.fields import Cost, StrictModel
+from service.requests.fields import Cost, StrictModel, empty_list
 from service.requests.stop_fields import StopReference
 
 _MOST_IN_GROUP = 100
@@ -19,10 +19,9 @@ class ApartItem(StrictModel):
 
     stops: References = Field(description="by index or id")
     others: Annotated[list[StopReference], Field(max_length=_MOST_IN_GROUP, fail_fast=True)] = (
-        Field(
-            default_factory=list,
-            description="by index or id: no vehicle visits one of these and one of `stops`;"
-            " without any, no vehicle visits two of `stops`",
+        empty_list(
+            "by index or id: no vehicle visits one of these and one of `stops`; without any, no"
+            " vehicle visits two of `stops`"
         )
     )
 

@@ -20,7 +20,7 @@ from service.requests.day_fields import (
     check_slices,
     read_slices,
 )
-from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, one_of
+from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, empty_list, one_of
 from service.requests.stop_fields import check_rows, check_unique
 from service.requests.stops import (
     ROAD_MEASURES,
@@ -49,14 +49,10 @@ class ProfileMatrixItem(StrictModel):
     model_config = one_of("matrix", "slices")
 
     profile: Text = Field(description="the `profile` of these vehicles")
-    matrix: CostRows = Field(
-        default_factory=list,
-        description=f"the costs from each stop (row) to each (column), {NO_WAY}",
-    )
-    slices: SliceItems = Field(
-        default_factory=list,
-        description="in place of one matrix: one for each slice of the day, as of an objective; of"
-        " all profiles that have some they begin at the same times",
+    matrix: CostRows = empty_list(f"the costs from each stop (row) to each (column), {NO_WAY}")
+    slices: SliceItems = empty_list(
+        "in place of one matrix: one for each slice of the day, as of an objective; of all profiles"
+        " that have some they begin at the same times"
     )
 
     def source(self, part: str, n: int) -> Matrix | Slices:
@@ -86,10 +82,8 @@ class ProfileCostsItem(TimedObjectiveItem):
 
     matrices: Annotated[
         list[ProfileMatrixItem], Field(max_length=MOST_PROFILES, fail_fast=True)
-    ] = Field(
-        default_factory=list,
-        description="in place of one matrix: one for each `profile` of vehicles, as for cars and"
-        " trucks",
+    ] = empty_list(
+        "in place of one matrix: one for each `profile` of vehicles, as for cars and trucks"
     )
 
     choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices and breakpoints"

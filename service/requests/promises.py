@@ -17,6 +17,7 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    empty_list,
     optional,
 )
 from service.requests.stop_fields import StopReference, find_index
@@ -34,9 +35,7 @@ class PromisedRouteItem(StrictModel):
     stops: SomeItems[StopReference] = Field(
         description="in order, by index or id; with or without its start and end"
     )
-    arrivals: Items[Cost] = Field(
-        default_factory=list, description="when it reaches each of these; needed for a tolerance"
-    )
+    arrivals: Items[Cost] = empty_list("when it reaches each of these; needed for a tolerance")
 
 
 class PromisedItem(StrictModel):

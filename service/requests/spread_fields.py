@@ -11,7 +11,7 @@ from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
 from service.reliability.spread import Spread
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.fields import AsInteger, CostRows, StrictModel, optional
+from service.requests.fields import AsInteger, CostRows, StrictModel, empty_list, optional
 
 Array = NDArray[np.float64]
 _LEAST_DAYS, _MOST_DAYS = 2, 50
@@ -33,10 +33,9 @@ class MatrixItem(StrictModel):
 class DaysFields(StrictModel):
     """The costs of several days."""
 
-    days: Annotated[list[MatrixItem], Field(max_length=_MOST_DAYS, fail_fast=True)] = Field(
-        default_factory=list,
-        description="in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of"
-        " each leg, and a tour or a plan is measured on each day",
+    days: Annotated[list[MatrixItem], Field(max_length=_MOST_DAYS, fail_fast=True)] = empty_list(
+        "in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of each leg, and"
+        " a tour or a plan is measured on each day"
     )
 
     def costs_of_days(self, part: str, n: int) -> Array:

@@ -17,6 +17,7 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    empty_list,
     one_of,
     optional,
     without_default,
@@ -48,8 +49,8 @@ class NamedStop(StrictModel):
     """A stop by its id, and where it is on the earth."""
 
     id: Text = Field(description="comes back in every answer; no two stops share one")
-    location: tuple[Longitude, Latitude] | None = Field(
-        default=None, description="longitude and latitude in degrees, WGS84"
+    location: tuple[Longitude, Latitude] | None = optional(
+        "longitude and latitude in degrees, WGS84"
     )
 
 
@@ -59,14 +60,11 @@ class ObjectiveItem(StrictModel):
     model_config = one_of("matrix", "coordinates", "from", speed=OF_A_SPEED)
 
     name: Text = Field(description="of the objective, in answers and charts")
-    unit: Text | None = Field(default=None, description="of its costs, in answers and charts")
+    unit: Text | None = optional("of its costs, in answers and charts")
     # An empty default means that the field was not given: no caller can give an empty array.
-    matrix: CostRows = Field(
-        default_factory=list,
-        description=f"the costs from each stop (row) to each (column), {NO_WAY}",
-    )
-    coordinates: SomeItems[PlanePoint] = Field(
-        default_factory=list, description="x and y of each stop in a plane; its distances"
+    matrix: CostRows = empty_list(f"the costs from each stop (row) to each (column), {NO_WAY}")
+    coordinates: SomeItems[PlanePoint] = empty_list(
+        "x and y of each stop in a plane; its distances"
     )
     measure: Measure = Field(
         default="great_circle",

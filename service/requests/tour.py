@@ -8,16 +8,24 @@ from numpy.typing import NDArray
 from paretour import choice
 from paretour.choice import NoneWithin, WrongChoice
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
-from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import Fault, Refusal
-from service.requests.fields import GEOMETRY, Angle, Geometry, Offered, Share, optional
+from service.requests.fields import (
+    GEOMETRY,
+    Angle,
+    Geometry,
+    Maybe,
+    Offered,
+    Share,
+    empty_list,
+    optional,
+)
 
 Array = NDArray[np.float64]
 _MOST_PARTS = 8  # of a list in the query
 _Length = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 _Parts = Annotated[list[str], Field(max_length=_MOST_PARTS)]
-_Name = str | SkipJsonSchema[None]
+_Name = Maybe[str]
 # `?knee` means `?knee=true`.
 _Flag = Annotated[bool, BeforeValidator(lambda value: value if value != "" else True)]
 _ON_COMMAND = Offered(option="")
@@ -46,11 +54,10 @@ class TourQuery(BaseModel):
             " where a loss is a length scaled to 0 to 1 over the front.",
             each="NAME:NUMBER",
         ),
-    ] = Field(
-        default_factory=list,
-        description="of objectives, by name or number, as `time:0.5,risk:0.3`: the tour whose"
-        " greatest weighted loss is least. A loss is a length in the front's own box, 0 at its"
-        " least and 1 at its greatest",
+    ] = empty_list(
+        "of objectives, by name or number, as `time:0.5,risk:0.3`: the tour whose greatest weighted"
+        " loss is least. A loss is a length in the front's own box, 0 at its least and 1 at its"
+        " greatest"
     )
     at_most: Annotated[
         _Parts,
@@ -58,23 +65,21 @@ class TourQuery(BaseModel):
             option="For an objective, again for each: the most that its length may be.",
             each="NAME:NUMBER",
         ),
-    ] = Field(
-        default_factory=list,
-        description="of objectives, by name or number, as `time:3600`, each with the most that is"
-        " allowed: among the tours within all of them that with the least length of `prefer`",
+    ] = empty_list(
+        "of objectives, by name or number, as `time:3600`, each with the most that is allowed:"
+        " among the tours within all of them that with the least length of `prefer`"
     )
     prefer: Annotated[
         _Name, Offered(option="With --at-most: the objective whose length is to be least.")
-    ] = Field(
-        default=None,
-        description="only with `at_most`: the objective, by name or number, whose length is to be"
-        " least; by default the one that has no limit, where there is one such",
+    ] = optional(
+        "only with `at_most`: the objective, by name or number, whose length is to be least; by"
+        " default the one that has no limit, where there is one such"
     )
     knee: Annotated[_Flag, _ON_COMMAND] = Field(
         default=False,
         description="the tour with the least sum of all lengths, each in the front's own box",
     )
-    front: _Name = Field(default=None, description="the front's id; by default the latest")
+    front: _Name = optional("the front's id; by default the latest")
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
     def check(self) -> None:

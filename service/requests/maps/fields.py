@@ -25,6 +25,8 @@ from service.requests.fields import (
     Share,
     StrictModel,
     Text,
+    empty_list,
+    optional,
     without_default,
 )
 from service.requests.maps.occupancy_grid import OccupancyGrid
@@ -58,7 +60,7 @@ class LayerItem(StrictModel):
     """A cost layer with its name: an objective of its own."""
 
     name: Text = Field(description="comes back with the objective; no two layers share one")
-    unit: Text | None = Field(default=None, description="comes back with the objective")
+    unit: Text | None = optional("comes back with the objective")
     layer: ArrayRows = Field(description="the cost of a metre on each cell of the grid")
 
     @property
@@ -114,10 +116,9 @@ class MapRequest(PlanRequest):
         description="side of a cell, in metres; resolution in a map.yaml",
         json_schema_extra=without_default,
     )
-    origin: _Pose = Field(
-        default_factory=list,
-        description="x, y and yaw of the map's lower left corner in its frame, in metres and"
-        " radians counterclockwise; with it paths have points, and there may be poses",
+    origin: _Pose = empty_list(
+        "x, y and yaw of the map's lower left corner in its frame, in metres and radians"
+        " counterclockwise; with it paths have points, and there may be poses"
     )
     mode: Mode = Field(
         default="trinary",

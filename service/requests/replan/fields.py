@@ -23,6 +23,7 @@ from service.requests.fields import (
     SomeItems,
     StrictModel,
     Text,
+    empty_list,
     optional,
 )
 from service.requests.maps.fields import CostLayers, Layer, empty_array
@@ -51,14 +52,11 @@ class StopCosts(StrictModel):
 class NewCosts(StrictModel):
     """The costs to and from a stop that the front does not have, under each objective."""
 
-    coordinates: OneEachOfCosts[PlanePoint | None] = Field(
-        default_factory=list,
-        description="for each objective that has costs x and y in its plane, null if it has none",
+    coordinates: OneEachOfCosts[PlanePoint | None] = empty_list(
+        "for each objective that has costs x and y in its plane, null if it has none"
     )
-    costs: OneEachOfCosts[StopCosts | None] = Field(
-        default_factory=list,
-        description="for each objective that has costs those to and from all stops, null if not a"
-        " matrix",
+    costs: OneEachOfCosts[StopCosts | None] = empty_list(
+        "for each objective that has costs those to and from all stops, null if not a matrix"
     )
 
 
@@ -66,9 +64,8 @@ class NewStop(NewCosts):
     """A stop that the front does not have, and how to reach it under each objective."""
 
     id: Text = Field(description="one that no stop of the front has")
-    location: tuple[Longitude, Latitude] | None = Field(
-        default=None,
-        description="longitude and latitude in degrees, where an objective is measured",
+    location: tuple[Longitude, Latitude] | None = optional(
+        "longitude and latitude in degrees, where an objective is measured"
     )
     service: TimeOfDay | None = optional(
         "the seconds of a visit, where costs change over the day; by default 0"
@@ -121,71 +118,57 @@ class ReplanRequest(PlanFields):
     done: Annotated[
         _References,
         Offered(option="The stops visited, in order, such as depot,order-17."),
-    ] = Field(default_factory=list, description="the stops that were visited, in order")
+    ] = empty_list("the stops that were visited, in order")
     position: Annotated[
         Position | None,
         Offered(
             option="The stop from which the rest is planned; by default the last stop done.",
         ),
-    ] = Field(
-        default=None,
-        description="where the way goes on: a stop, or a new place in the form of an added stop; by"
-        " default the last stop that is done",
+    ] = optional(
+        "where the way goes on: a stop, or a new place in the form of an added stop; by default the"
+        " last stop that is done"
     )
-    add: Items[_Added] = Field(
-        default_factory=list,
-        description="more stops to visit; on a map row and column of each place",
-    )
+    add: Items[_Added] = empty_list("more stops to visit; on a map row and column of each place")
     remove: Annotated[
         _References,
         Offered(option="Stops that need no visit any more, with commas between."),
-    ] = Field(default_factory=list, description="stops that are no longer visited")
-    costs: Items[CostEntry] = Field(
-        default_factory=list, description="single costs that have changed"
-    )
-    objectives: OneEach[DayObjectiveItem] = Field(
-        default_factory=list,
-        description="all objectives again, where more than single costs has changed: with the"
-        " costs between the stops of the front, then those of `add`, then `position` if that"
-        " is a place",
+    ] = empty_list("stops that are no longer visited")
+    costs: Items[CostEntry] = empty_list("single costs that have changed")
+    objectives: OneEach[DayObjectiveItem] = empty_list(
+        "all objectives again, where more than single costs has changed: with the costs between the"
+        " stops of the front, then those of `add`, then `position` if that is a place"
     )
     now: TimeOfDay | None = optional(
         "where costs change over the day: the second of the day at which the way goes on"
     )
-    tour: _References = Field(
-        default_factory=list,
-        description="the tour that is being driven, with all stops of the front; by default the"
-        " front's knee",
+    tour: _References = empty_list(
+        "the tour that is being driven, with all stops of the front; by default the front's knee"
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
     min_kept: Annotated[Share, Offered(option="")] = Field(
         default=0.0,
         description="return only tours that keep this share of the driven tour's remaining legs",
     )
-    pose: RobotPose = Field(
-        default_factory=list,
-        description="instead of position, on a map with an origin: x and y, and maybe yaw, of the"
-        " robot in the frame of the map",
+    pose: RobotPose = empty_list(
+        "instead of position, on a map with an origin: x and y, and maybe yaw, of the robot in the"
+        " frame of the map"
     )
     grid: Layer = Field(
         default_factory=empty_array,
         description="on a map: the whole map as it is now, in its old size; 0 free, 1 an obstacle",
     )
-    blocked: _Cells = Field(
-        default_factory=list,
-        description="on a map: row and column of each cell that has become an obstacle",
+    blocked: _Cells = empty_list(
+        "on a map: row and column of each cell that has become an obstacle"
     )
-    freed: _Cells = Field(
-        default_factory=list,
-        description="on a map: row and column of each cell that is no longer an obstacle",
+    freed: _Cells = empty_list(
+        "on a map: row and column of each cell that is no longer an obstacle"
     )
     cost_layer: Layer = Field(
         default_factory=empty_array,
         description="on a map: a new second objective, as in `POST /coverage`",
     )
-    cost_layers: CostLayers = Field(
-        default_factory=list,
-        description="on a map whose cost layers have names: all of these layers again",
+    cost_layers: CostLayers = empty_list(
+        "on a map whose cost layers have names: all of these layers again"
     )
     paths: bool = Field(
         default=False, description="on a map: whether each tour comes with its path"

@@ -17,6 +17,7 @@ from service.requests.fields import (
     SearchFields,
     StrictModel,
     Text,
+    empty_list,
     optional,
 )
 from service.requests.fleet_fields import FleetStopItem, Windows, spans_of
@@ -37,28 +38,22 @@ class RouteOnTheWay(StrictModel):
     """A route of the plan that is driven, whose vehicle has left."""
 
     route: NonNegativeInteger = Field(description="its number in the plan, from 0")
-    done: Items[StopReference] = Field(
-        default_factory=list, description="the stops of the route that were visited, in order"
+    done: Items[StopReference] = empty_list("the stops of the route that were visited, in order")
+    position: _Place | None = optional(
+        "where it goes on: a stop that is done or a depot, or a new place in the form of a stop; by"
+        " default the last stop that is done, or its start"
     )
-    position: _Place | None = Field(
-        default=None,
-        description="where it goes on: a stop that is done or a depot, or a new place in the form"
-        " of a stop; by default the last stop that is done, or its start",
+    leaves: Cost | None = optional(
+        "when it leaves there, if that is after the present time: at the end of the visit that has"
+        " begun"
     )
-    leaves: Cost | None = Field(
-        default=None,
-        description="when it leaves there, if that is after the present time: at the end of the"
-        " visit that has begun",
+    distance: Cost | None = optional(
+        "how far it has driven, where its vehicle has a max_distance; by default as far as in the"
+        " plan, which does not say it of a new place"
     )
-    distance: Cost | None = Field(
-        default=None,
-        description="how far it has driven, where its vehicle has a max_distance; by default as far"
-        " as in the plan, which does not say it of a new place",
-    )
-    driving: Cost | None = Field(
-        default=None,
-        description="how long it has driven, where its vehicle has a max_driving; by default as"
-        " long as in the plan, which does not say it of a new place",
+    driving: Cost | None = optional(
+        "how long it has driven, where its vehicle has a max_driving; by default as long as in the"
+        " plan, which does not say it of a new place"
     )
     broken_down: bool = Field(
         default=False,
@@ -72,9 +67,7 @@ class ChangedStop(StrictModel):
 
     stop: StopReference
     prize: Cost | None = optional("added to the first length if the stop is left out")
-    windows: Windows = Field(
-        default_factory=list, description="when the visit may begin, from and to, by ascending time"
-    )
+    windows: Windows = empty_list("when the visit may begin, from and to, by ascending time")
 
     def index(self, part: str, ids: Mapping[str, int], depots: Collection[int]) -> int:
         """Return the index of the stop, whose part of the request is `part`.
@@ -111,34 +104,20 @@ class ChangedVehicle(StrictModel):
 class FleetChanges(StrictModel):
     """The changes since a fleet was planned."""
 
-    plan: NonNegativeInteger | None = Field(
-        default=None,
-        description="the number of the plan that is driven, from 0; by default the front's knee",
+    plan: NonNegativeInteger | None = optional(
+        "the number of the plan that is driven, from 0; by default the front's knee"
     )
-    now: Cost | None = Field(
-        default=None, description="the present time, needed if the fleet has a clock"
+    now: Cost | None = optional("the present time, needed if the fleet has a clock")
+    slack: Cost | None = optional(
+        "how long before a window closes a vehicle must reach the stop from now on; by default as"
+        " long as before. With 0, vehicles that are delayed may use it up"
     )
-    slack: Cost | None = Field(
-        default=None,
-        description="how long before a window closes a vehicle must reach the stop from now on; by"
-        " default as long as before. With 0, vehicles that are delayed may use it up",
-    )
-    routes: Items[RouteOnTheWay] = Field(
-        default_factory=list, description="the routes whose vehicles have left"
-    )
-    add: Items[NewFleetStop] = Field(default_factory=list, description="more stops to visit")
-    remove: Items[StopReference] = Field(
-        default_factory=list, description="stops that are no longer visited"
-    )
-    stops: Items[ChangedStop] = Field(
-        default_factory=list, description="what is asked otherwise of stops of the front"
-    )
-    vehicles: Items[ChangedVehicle] = Field(
-        default_factory=list, description="what vehicles may do otherwise, and more of them"
-    )
-    costs: Items[CostEntry] = Field(
-        default_factory=list, description="single costs that have changed"
-    )
+    routes: Items[RouteOnTheWay] = empty_list("the routes whose vehicles have left")
+    add: Items[NewFleetStop] = empty_list("more stops to visit")
+    remove: Items[StopReference] = empty_list("stops that are no longer visited")
+    stops: Items[ChangedStop] = empty_list("what is asked otherwise of stops of the front")
+    vehicles: Items[ChangedVehicle] = empty_list("what vehicles may do otherwise, and more of them")
+    costs: Items[CostEntry] = empty_list("single costs that have changed")
 
 
 class ChangesItem(StrictModel):

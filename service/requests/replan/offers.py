@@ -12,7 +12,7 @@ from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal, invalid
 from service.errors.parts import Part, part_of, renamed
 from service.fleet.vehicles import Span
-from service.requests.fields import Cost, PositiveNumber, StrictModel, one_of, optional
+from service.requests.fields import Cost, PositiveNumber, StrictModel, empty_list, one_of, optional
 from service.requests.fleet_fields import TimeSpan
 from service.requests.limits import Limits, check_limit
 from service.requests.replan.fleet_fields import FleetChanges, NewFleetStop
@@ -74,15 +74,12 @@ class OffersRequest(FleetChanges):
         description="the order, in the form of an added stop; its costs are those of the last one"
         " that is added"
     )
-    slots: Annotated[list[TimeSpan], Field(max_length=MOST_SLOTS, fail_fast=True)] = Field(
-        default_factory=list,
-        description="when the visit may begin, from and to, in the unit of the clock: one offer"
-        " for each, up to 200",
+    slots: Annotated[list[TimeSpan], Field(max_length=MOST_SLOTS, fail_fast=True)] = empty_list(
+        "when the visit may begin, from and to, in the unit of the clock: one offer for each, up to"
+        " 200"
     )
     every: EverySlot | None = optional("in place of slots: those of a day, or of several")
-    now: Cost | None = Field(
-        default=None, description="the present time; by default 0, before any vehicle has left"
-    )
+    now: Cost | None = optional("the present time; by default 0, before any vehicle has left")
     time_limit: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
         default=1.0, description="the most seconds to look for places; then the best so far count"
     )
