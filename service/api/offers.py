@@ -14,13 +14,7 @@ from service.api.body import receive_source
 from service.api.body_budget import BodyBudget
 from service.api.plan_responses import FleetObjectiveName, ReasonItem
 from service.api.request_bodies import OFFERS_BODY
-from service.api.responses import (
-    Lengths,
-    ObjectiveName,
-    compressed,
-    json_bytes,
-    problem_responses,
-)
+from service.api.responses import Lengths, ObjectiveName, compressed, json_bytes, problem_responses
 from service.api.stored_fronts import find_stored
 from service.api.task_parser import TaskParser
 from service.jobs.store import Store

@@ -17,12 +17,7 @@ from service.api.geojson.answers import FRONT_CONTENT, TEXT_CONTENT, FrontAnswer
 from service.api.middleware import ANSWER_HEADERS
 from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
-from service.api.request_headers import (
-    PARAMETERS,
-    idempotency_key,
-    prefers_async,
-    webhook_url,
-)
+from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async, webhook_url
 from service.api.response_headers import REPLAYED
 from service.api.responses import (
     AcceptedAnswer,

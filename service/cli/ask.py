@@ -16,14 +16,7 @@ from service.cli.data import print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import read_front
 from service.cli.options import Asking, Service
-from service.cli.output import (
-    ids_of,
-    labels_of,
-    lengths_as_text,
-    plans_as_rows,
-    stops_of,
-    table_of,
-)
+from service.cli.output import ids_of, labels_of, lengths_as_text, plans_as_rows, stops_of, table_of
 from service.requests.questions import members_of
 
 _BACK = "b"

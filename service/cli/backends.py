@@ -6,16 +6,7 @@ from http import HTTPStatus
 from typing import TYPE_CHECKING, Protocol
 
 import httpx
-from paretour import (
-    Actor,
-    Client,
-    FrontOfAnyKind,
-    Job,
-    Offers,
-    OffersRequest,
-    Plan,
-    Refused,
-)
+from paretour import Actor, Client, FrontOfAnyKind, Job, Offers, OffersRequest, Plan, Refused
 from paretour.calls import address_of
 from rich.console import Console
 

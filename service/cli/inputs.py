@@ -17,13 +17,7 @@ from service.cli.errors import UsageError
 from service.cli.notes import print_file_notes
 from service.files.json_files.reader import read_object as object_in
 from service.files.reader import read_files, read_table
-from service.files.reading import (
-    Bounds,
-    Kind,
-    NamedFile,
-    Source,
-    check_cells,
-)
+from service.files.reading import Bounds, Kind, NamedFile, Source, check_cells
 from service.files.stop_tables import numbers_of
 
 Array = NDArray[np.float64]

@@ -21,14 +21,7 @@ from paretour import (
 )
 
 from service.cli.errors import UsageError
-from service.cli.inputs import (
-    FileRequest,
-    Ids,
-    check_inputs,
-    read_layer,
-    read_object,
-    read_request,
-)
+from service.cli.inputs import FileRequest, Ids, check_inputs, read_layer, read_object, read_request
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")

@@ -16,14 +16,7 @@ from service.cluster.records import (
     stored_task,
 )
 from service.cluster.script import RecordScript
-from service.errors import (
-    Expired,
-    IdempotencyMismatch,
-    NotFound,
-    NoWorker,
-    QueueFull,
-    ShareFull,
-)
+from service.errors import Expired, IdempotencyMismatch, NotFound, NoWorker, QueueFull, ShareFull
 from service.jobs.listing import ListedFront
 from service.jobs.outbox import Delivery
 from service.jobs.record import Record

@@ -21,12 +21,7 @@ from service.coverage.grid import Uncovered, free_cells, uncovered
 from service.coverage.leg_paths import Indices, LegPaths, Legs, Numbers
 from service.coverage.pace import Pace
 from service.coverage.places import find_places
-from service.coverage.shortest_paths import (
-    cell_numbers,
-    framed_layer,
-    make_grid,
-    pairwise_paths,
-)
+from service.coverage.shortest_paths import cell_numbers, framed_layer, make_grid, pairwise_paths
 from service.errors import Cancelled, Refusal, uncoverable
 from service.instance import Instance, RouteEnds
 from service.objectives import Objective

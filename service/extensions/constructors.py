@@ -9,13 +9,7 @@ from numpy.typing import NDArray
 from service.actor_info import ActorInfo
 from service.construction.call_estimate import CallEstimate
 from service.extensions.checks import called, checked
-from service.extensions.entry_points import (
-    CONSTRUCTORS,
-    described,
-    entry_point,
-    loaded,
-    source,
-)
+from service.extensions.entry_points import CONSTRUCTORS, described, entry_point, loaded, source
 from service.instance import Instance
 from service.objectives import MOST_OBJECTIVES
 

@@ -7,25 +7,11 @@ from functools import partial
 from paretour.members import FleetRequest
 
 from service.files.cells.durations import read_units
-from service.files.cells.times import (
-    is_time,
-    read_calendar,
-    recognise_hours,
-    seconds_in,
-    spans_in,
-)
+from service.files.cells.times import is_time, read_calendar, recognise_hours, seconds_in, spans_in
 from service.files.column_names import fields_of, is_about_vehicles, plain_name
 from service.files.columns import Columns, columns_of, columns_of_vehicles
 from service.files.depots import with_depots
-from service.files.fleets import (
-    ENDS,
-    End,
-    Stop,
-    Vehicle,
-    add_shifts,
-    fleet_of_tables,
-    have_times,
-)
+from service.files.fleets import ENDS, End, Stop, Vehicle, add_shifts, fleet_of_tables, have_times
 from service.files.groups import groups_of, have_waits
 from service.files.reading import Reading, Source, quoted, reading_of_several
 from service.files.stop_tables import check_degrees, visits_of

@@ -12,12 +12,7 @@ from contextlib import AbstractContextManager, nullcontext
 from threading import get_ident
 
 from service import jit
-from service.jit.compilations import (
-    Event,
-    Listener,
-    following_compilations,
-    is_switched_off,
-)
+from service.jit.compilations import Event, Listener, following_compilations, is_switched_off
 from service.jobs import compilers
 from service.jobs.pieces import PIECES, WORK
 from service.jobs.uncollected import uncollected

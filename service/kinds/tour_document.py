@@ -12,12 +12,7 @@ from pydantic_core import to_json
 from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey
 from service.front import Front
-from service.kinds.front_document import (
-    FrontDocument,
-    encode_path,
-    joined,
-    with_member,
-)
+from service.kinds.front_document import FrontDocument, encode_path, joined, with_member
 from service.objectives import OBJECTIVES
 from service.requests.stops import Labels
 

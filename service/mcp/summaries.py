@@ -14,15 +14,7 @@ from paretour.questions import Option, Question
 from paretour.remedies import in_words
 
 from service.amounts.said import amount, on_most_days
-from service.mcp.routes import (
-    Way,
-    fairest,
-    hours_of,
-    left_out_of,
-    measures_of,
-    names_of,
-    ways_of,
-)
+from service.mcp.routes import Way, fairest, hours_of, left_out_of, measures_of, names_of, ways_of
 from service.objectives import OBJECTIVES
 
 MOST_BYTES = 8000  # of a text

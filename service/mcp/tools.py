@@ -5,13 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
-from paretour import (
-    AsyncClient,
-    FrontOfAnyKind,
-    Plan,
-    Refused,
-    replan_plan,
-)
+from paretour import AsyncClient, FrontOfAnyKind, Plan, Refused, replan_plan
 from paretour.choice import choose
 from pydantic import BaseModel, ValidationError
 
@@ -30,13 +24,7 @@ from service.mcp.arguments import (
 from service.mcp.changes import changes_of
 from service.mcp.offers import offers_text
 from service.mcp.routes import names_of
-from service.mcp.summaries import (
-    explanation,
-    front_text,
-    question_text,
-    tour_text,
-    unreadable_text,
-)
+from service.mcp.summaries import explanation, front_text, question_text, tour_text, unreadable_text
 from service.mcp.times import clock_unit, with_times
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest

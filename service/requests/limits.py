@@ -8,14 +8,7 @@ from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Array, Kind
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
-from service.requests.stops import (
-    ROAD_MEASURES,
-    Measured,
-    Source,
-    Stops,
-    Traffic,
-    base_of,
-)
+from service.requests.stops import ROAD_MEASURES, Measured, Source, Stops, Traffic, base_of
 from service.requests.straight_sources import are_straight
 from service.requests.validation import too_many_cities
 

@@ -11,13 +11,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from service.errors import (
-    Refusal,
-    RouterTooSlow,
-    RouterUnavailable,
-    RouterUnusable,
-    StreetsTooLong,
-)
+from service.errors import Refusal, RouterTooSlow, RouterUnavailable, RouterUnusable, StreetsTooLong
 from service.roads.cache import ArrayCache
 from service.roads.osrm import Osrm
 from service.roads.questions import Questions

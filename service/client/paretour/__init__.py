@@ -50,13 +50,7 @@ from paretour.remedies import Remedy
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.ros.maps import read_ros_map
 from paretour.ros.paths import Path
-from paretour.values import (
-    Front,
-    Progress,
-    Tour,
-    Uncovered,
-    UncoveredRegion,
-)
+from paretour.values import Front, Progress, Tour, Uncovered, UncoveredRegion
 
 if TYPE_CHECKING:
     from paretour.asynchronous import AsyncClient, AsyncJob

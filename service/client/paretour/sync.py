@@ -6,15 +6,7 @@ from typing import Concatenate, Generic, ParamSpec, Self, TypeVar
 
 import httpx
 from paretour.bodies import MOST_BYTES, Body
-from paretour.calls import (
-    AnyFront,
-    Call,
-    Calls,
-    Parse,
-    Submitted,
-    address_of,
-    client_headers,
-)
+from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, address_of, client_headers
 from paretour.events import JobEvents
 from paretour.explaining import described_as
 from paretour.kinds import FrontOfAnyKind, parse_any

@@ -5,13 +5,7 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 from service.files.cells.dates import Parts, TimeColumn, calendar_of, parts_of
-from service.files.column_names import (
-    DURATIONS,
-    SECONDS,
-    WINDOWS,
-    seconds_of,
-    unit_of_times,
-)
+from service.files.column_names import DURATIONS, SECONDS, WINDOWS, seconds_of, unit_of_times
 from service.files.columns import Columns
 from service.files.reading import quoted
 from service.files.tables import number_in

@@ -13,13 +13,7 @@ from pydantic_core import to_json
 from service.errors import Fault, Refusal
 from service.files.maps.layers import Rows, check_size_of_layer, costs_of_cells, names_of_layers
 from service.files.maps.octile import is_octile, read_octile
-from service.files.reading import (
-    FileTooLarge,
-    Reading,
-    Source,
-    UnreadableFile,
-    quoted,
-)
+from service.files.reading import FileTooLarge, Reading, Source, UnreadableFile, quoted
 from service.files.tables import Table
 from service.objectives import MOST_OBJECTIVES
 from service.requests.maps.fields import MapRequest

@@ -23,11 +23,7 @@ from service.requests.limits import (
     lower_defaults,
 )
 from service.requests.parser import actor_for_plans
-from service.requests.replan.changes import (
-    objectives_with,
-    promised_begin,
-    tolerance_of,
-)
+from service.requests.replan.changes import objectives_with, promised_begin, tolerance_of
 from service.requests.replan.costs import AllStops, all_stops
 from service.requests.replan.day import Way, day_of, removed_stops
 from service.requests.replan.fields import NewStop

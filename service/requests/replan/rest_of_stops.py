@@ -29,14 +29,7 @@ from service.requests.replan.way import (
     rest_of_way,
 )
 from service.requests.stop_fields import read_objectives, read_sources
-from service.requests.stops import (
-    Hours,
-    Labels,
-    Source,
-    Stops,
-    kind_of,
-    locations_of,
-)
+from service.requests.stops import Hours, Labels, Source, Stops, kind_of, locations_of
 from service.requests.task import Task
 from service.requests.validation import parse_json, too_many_cities
 
