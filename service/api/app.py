@@ -152,7 +152,7 @@ def create_app(
         file_router(parser, budget, most_bytes, answers_budget),
         StoredFrontRoutes(store, engine, answers).router(),
         QuestionRoutes(store, engine).router(),
-        OfferRoutes(parser, (budget, answers_budget), most_bytes, store, edge.measure).router(),
+        OfferRoutes(parser, budget, answers_budget, most_bytes, store, edge.measure).router(),
         _actor_router(actors),
         edge.metrics.router(),
         *([] if agents is None else [agents.router()]),

@@ -1,7 +1,7 @@
 """The route that says when an order can be promised: `POST /front/{id}/offers`."""
 
 from collections.abc import Awaitable, Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter
@@ -76,22 +76,16 @@ class OffersAnswer(BaseModel):
     timings_ms: dict[str, float]
 
 
+@dataclass(frozen=True, eq=False)
 class OfferRoutes:
     """Says which slots an order can be promised in. Nothing is stored, and no plan is changed."""
 
-    def __init__(
-        self,
-        parser: TaskParser,
-        budgets: tuple[BodyBudget, BodyBudget],
-        most_bytes: int,
-        store: Store,
-        measure: Measure | None,
-    ) -> None:
-        self._parser = parser
-        self._bodies, self._answers = budgets
-        self._most_bytes = most_bytes
-        self._store = store
-        self._measure = measure
+    parser: TaskParser
+    bodies: BodyBudget
+    answers: BodyBudget
+    most_bytes: int
+    store: Store
+    measure: Measure | None
 
     def router(self) -> APIRouter:
         """Return the route with its entry in the OpenAPI document."""
@@ -113,12 +107,12 @@ class OfferRoutes:
         `POST /front/{id}/replan`.
         """
         client = client_of(request)
-        with self._bodies.open(client) as allowance:
-            body = await receive_source(request, "replan", self._most_bytes, allowance)
-            source, length = await find_stored(self._store, request, id, body)
-            asked = await self._parser.offers(source, length, client)
-            if asked.task.needs_roads and self._measure is not None:
-                asked = replace(asked, task=await self._measure(asked.task))
-            answer = await self._parser.find_offers(asked, client)
-            with self._answers.open(client, len(answer), always=True) as sent:
+        with self.bodies.open(client) as allowance:
+            body = await receive_source(request, "replan", self.most_bytes, allowance)
+            source, length = await find_stored(self.store, request, id, body)
+            asked = await self.parser.offers(source, length, client)
+            if asked.task.needs_roads and self.measure is not None:
+                asked = replace(asked, task=await self.measure(asked.task))
+            answer = await self.parser.find_offers(asked, client)
+            with self.answers.open(client, len(answer), always=True) as sent:
                 return sent.until_sent(await compressed(request, json_bytes(answer)))

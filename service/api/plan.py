@@ -3,6 +3,7 @@
 import asyncio
 import hashlib
 import uuid
+from dataclasses import dataclass, field
 from typing import Any
 
 from fastapi import APIRouter
@@ -47,6 +48,7 @@ _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
 
+@dataclass(frozen=True, eq=False)
 class PlanRoutes:
     """Parses a request for a front, has the engine plan it, and answers at once or when it is done.
 
@@ -55,26 +57,15 @@ class PlanRoutes:
     and it was answered with the best front so far.
     """
 
-    def __init__(  # noqa: PLR0913  what the routes are made of
-        self,
-        parser: TaskParser,
-        budget: BodyBudget,
-        most_bytes: int,
-        engine: Engine,
-        store: Store,
-        seconds: float,
-        answers: FrontAnswers,
-        targets: Targets,
-    ) -> None:
-        self._parser = parser
-        self._budget = budget
-        self._most_bytes = most_bytes
-        self._engine = engine
-        self._store = store
-        self._seconds = seconds
-        self._answers = answers
-        self._targets = targets
-        self._held: set[asyncio.Task[None]] = set()
+    parser: TaskParser
+    budget: BodyBudget
+    most_bytes: int
+    engine: Engine
+    store: Store
+    seconds: float
+    answers: FrontAnswers
+    targets: Targets
+    held: set[asyncio.Task[None]] = field(default_factory=set)  # until bodies are released
 
     def router(self) -> APIRouter:
         """Return the routes with their entries in the OpenAPI document."""
@@ -154,13 +145,13 @@ class PlanRoutes:
 
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
-        webhook_url(request, self._targets)  # it may be refused before the body is received
+        webhook_url(request, self.targets)  # it may be refused before the body is received
         # Counted until there is an answer: a task that waits or is being planned holds its body.
-        with self._budget.open(client_of(request)) as allowance:
-            received = await receive_source(request, kind, self._most_bytes, allowance)
-            deadline = Deadline.after(self._seconds)
+        with self.budget.open(client_of(request)) as allowance:
+            received = await receive_source(request, kind, self.most_bytes, allowance)
+            deadline = Deadline.after(self.seconds)
             if front is None:
-                task = await self._parser.parse(received, client_of(request))
+                task = await self.parser.parse(received, client_of(request))
             else:
                 task = await self._rest(request, received, front)
             record = await self._new_record(request, task, received, front)
@@ -172,9 +163,9 @@ class PlanRoutes:
         Raises:
             Refusal: The front does not exist, or cannot be replanned as the body asks.
         """
-        self._parser.check_replan(body.body)
-        asked, length = await find_stored(self._store, request, front, body)
-        return await self._parser.replan(asked, length, client_of(request))
+        self.parser.check_replan(body.body)
+        asked, length = await find_stored(self.store, request, front, body)
+        return await self.parser.replan(asked, length, client_of(request))
 
     async def _planned(
         self,
@@ -186,17 +177,17 @@ class PlanRoutes:
     ) -> Response:
         """Have the engine plan a task, and answer as the request's headers ask for."""
         geometry = task.geometry
-        self._answers.check(request, record.front.stops, geometry)
+        self.answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
             first = await self._submit(request, record, task, allowance)
-            return _accepted_response(request, self._engine.state(first).record, geometry)
+            return _accepted_response(request, self.engine.state(first).record, geometry)
         if record.key is None:
             record = await self._run(request, record, task, deadline)
         else:
             first = await self._submit(request, record, task, allowance)
-            record = await record_in_time(self._engine, first, deadline)
+            record = await record_in_time(self.engine, first, deadline)
         if record.problem is None:
-            return await self._answers.front(request, record, geometry, deadline.left())
+            return await self.answers.front(request, record, geometry, deadline.left())
         # The problem may be that of an earlier request that this one repeats.
         scope = request.scope
         document = problem_under(root_path_of(scope), record.problem)
@@ -206,31 +197,31 @@ class PlanRoutes:
         self, request: Request, record: Record, task: Task, allowance: BodyAllowance
     ) -> Record:
         """Submit a job. Its body counts against the budget until the engine releases it."""
-        first = await self._engine.submit(record, task)
+        first = await self.engine.submit(record, task)
         if first.id != record.id:
             request.scope[ANSWER_HEADERS].append(REPLAYED)
         else:
             holding = asyncio.create_task(self._hold(record, allowance.hand_over()))
-            self._held.add(holding)
-            holding.add_done_callback(self._held.discard)
+            self.held.add(holding)
+            holding.add_done_callback(self.held.discard)
         return first
 
     async def _hold(self, record: Record, allowance: BodyAllowance) -> None:
         with allowance:
-            await self._engine.release(record)
+            await self.engine.release(record)
 
     async def _check_place(self, request: Request) -> None:
         """Raise a refusal, before the body is received, if the engine takes no more tasks."""
-        await self._engine.check_open()
+        await self.engine.check_open()
         # A repeat may need no place.
         if idempotency_key(request) is None:
-            await self._engine.check_place(client_of(request))
+            await self.engine.check_place(client_of(request))
 
     async def _new_record(
         self, request: Request, task: Task, body: TaskSource, front: str | None
     ) -> Record:
         key = idempotency_key(request)
-        url = webhook_url(request, self._targets)
+        url = webhook_url(request, self.targets)
         long = body.length > _LONG
         id_ = uuid.uuid4().hex
         return Record(
@@ -251,7 +242,7 @@ class PlanRoutes:
     ) -> Record:
         disconnect = asyncio.ensure_future(disconnected(request))
         try:
-            return await self._engine.run(record, task, disconnect, deadline)
+            return await self.engine.run(record, task, disconnect, deadline)
         finally:
             disconnect.cancel()
 

@@ -1,6 +1,7 @@
 """The route that asks which of a few options is best: `GET /front/{id}/questions`."""
 
 import asyncio
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -52,12 +53,12 @@ class QuestionAnswer(OptionItem):
     plan: Maybe[PlanItem | RobotPlanItem] = optional("at the end, of a front of plans")
 
 
+@dataclass(frozen=True, eq=False)
 class QuestionRoutes:
     """Asks questions about stored fronts. Each caller sees only its own."""
 
-    def __init__(self, store: Store, engine: Engine) -> None:
-        self._store = store
-        self._engine = engine
+    store: Store
+    engine: Engine
 
     def router(self) -> APIRouter:
         """Return the route with its entry in the OpenAPI document."""
@@ -81,7 +82,7 @@ class QuestionRoutes:
         good in all of them, and says the best that stays within reach (E-NAUTILUS). Nothing is
         stored: the picks so far are a parameter.
         """
-        record = self._engine.state(await find_record(self._store, request, id)).record
+        record = self.engine.state(await find_record(self.store, request, id)).record
         front = record.front
         if not record.finished:
             raise Refusal("front-unfinished", front=record.id, status=record.status)

@@ -1,5 +1,6 @@
 """The routes that list, read, follow and forget fronts: `/front`, `/front/{id}`, `/tour`."""
 
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
@@ -43,13 +44,13 @@ _QUICK = 8  # times as fast as a request stored tours are read
 _LARGEST = 2**53  # above the numbers of all records, and exact in JSON
 
 
+@dataclass(frozen=True, eq=False)
 class StoredFrontRoutes:
     """Answers requests about stored fronts. Each caller sees only its own."""
 
-    def __init__(self, store: Store, engine: Engine, answers: FrontAnswers) -> None:
-        self._store = store
-        self._engine = engine
-        self._answers = answers
+    store: Store
+    engine: Engine
+    answers: FrontAnswers
 
     def router(self) -> APIRouter:
         """Return the routes with their entries in the OpenAPI document."""
@@ -100,7 +101,7 @@ class StoredFrontRoutes:
         are more than `limit`, the header `Link` has the address of the next page.
         """
         caller = caller_of(request)
-        found = await self._store.fronts(caller, owner_of(request), after, limit + 1)
+        found = await self.store.fronts(caller, owner_of(request), after, limit + 1)
         page = found[:limit]
         present = [await self._present(caller, each) for each in page]
         response = json_response({"fronts": [each.document() for each in present]})
@@ -118,15 +119,15 @@ class StoredFrontRoutes:
     ) -> Response:
         """Return a front; while it is being planned, the best so far."""
         record = await self._record(request, id)
-        return await self._answers.front(request, record, geometry, plan=plan)
+        return await self.answers.front(request, record, geometry, plan=plan)
 
     async def forget_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Delete a front. One that is being planned is stopped, and kept with what it has found."""
         record = await self._record(request, id)
         if record.finished:
-            await self._store.delete(record)
+            await self.store.delete(record)
             return Response(status_code=204)
-        cancelled = await self._engine.cancel(record)
+        cancelled = await self.engine.cancel(record)
         return json_bytes(record_under(root_path_of(request.scope), cancelled).json())
 
     async def follow_front(self, request: Request, id: str) -> Response:  # noqa: A002
@@ -139,7 +140,7 @@ class StoredFrontRoutes:
         seen = Seen.read(request.headers.get("last-event-id"))
         if seen.has_end(record):
             return Response(status_code=204)
-        events = events_after(self._engine.watch(record), seen)
+        events = events_after(self.engine.watch(record), seen)
         headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
         return StreamingResponse(events, media_type="text/event-stream", headers=headers)
 
@@ -153,28 +154,22 @@ class StoredFrontRoutes:
             raise Refusal("no-tour", front=record.id)
         names = [each["name"] for each in record.front.objectives or ()]
         index = query.choose(record.front.lengths, record.front.directions, names)
-        return await self._answers.tour(request, record, index, query.geometry)
+        return await self.answers.tour(request, record, index, query.geometry)
 
     async def _present(self, caller: str, listed: ListedFront) -> ListedFront:
         """Return what is known of a front now: the engine may know more than the store."""
         if listed.status not in UNFINISHED:
             return listed
         try:
-            stored = await self._store.get(caller, listed.id)
+            stored = await self.store.get(caller, listed.id)
         except (NotFound, Expired):  # deleted meanwhile
             return listed
-        record = self._engine.state(stored).record
-        return ListedFront.of(
-            record.front,
-            number=listed.number,
-            stored_at=listed.stored_at.timestamp(),
-            id=listed.id,
-            status=record.status,
-        )
+        record = self.engine.state(stored).record
+        return replace(listed, front=record.front, status=record.status)
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
         """Return the present state of the caller's record with an id, or of its latest record."""
-        return self._engine.state(await find_record(self._store, request, id)).record
+        return self.engine.state(await find_record(self.store, request, id)).record
 
 
 async def find_record(store: Store, request: Request, id: str | None) -> Record:  # noqa: A002

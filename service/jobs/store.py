@@ -8,6 +8,7 @@ import logging
 import zlib
 from collections.abc import Mapping
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any, Protocol, get_args
 
 import numpy as np
@@ -156,7 +157,8 @@ def listed_from(
     try:
         _check_status(status)
         front = FrontDocument.from_members(json.loads(members))
-        return ListedFront.of(front, number=number, stored_at=stored_at, id=id, status=status)
+        time = datetime.fromtimestamp(stored_at, UTC)
+        return ListedFront(number=number, stored_at=time, id=id, status=status, front=front)
     # All that parsers may raise for damaged bytes.
     except Exception as error:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error

@@ -10,6 +10,7 @@ import traceback
 from asyncio import StreamReader, StreamWriter
 from collections.abc import AsyncIterator, Callable, Collection
 from contextlib import ExitStack, suppress
+from dataclasses import dataclass
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 from queue import SimpleQueue
@@ -233,23 +234,17 @@ def _picklable(error: Exception) -> Exception:
     return error
 
 
+@dataclass(frozen=True, eq=False)
 class WorkerProcess:
     """The handle of a worker process: the process and the sockets to it.
 
     When the service is gone, the process ends; when the process is gone, its messages end.
     """
 
-    def __init__(
-        self,
-        process: ForkServerProcess,
-        results: StreamReader,
-        tasks: StreamWriter,
-        signals: StreamWriter,
-    ) -> None:
-        self._process = process
-        self._results = results
-        self._tasks = tasks
-        self._signals = signals
+    process: ForkServerProcess
+    results: StreamReader
+    tasks: StreamWriter
+    signals: StreamWriter
 
     @classmethod
     async def start(cls, make_runner: MakeRunner) -> "WorkerProcess":
@@ -277,31 +272,31 @@ class WorkerProcess:
     @property
     def pid(self) -> int | None:
         """The id of the process."""
-        return self._process.pid
+        return self.process.pid
 
     def send(self, message: Do | StopTask | WarmUp) -> None:
         """Send a message; one to a process that is gone is lost."""
-        connection = self._tasks if isinstance(message, Do) else self._signals
+        connection = self.tasks if isinstance(message, Do) else self.signals
         connection.write(encode(message))
 
     def messages(self) -> AsyncIterator[object]:
         """Yield each message of the process, until it is gone."""
-        return received(self._results)
+        return received(self.results)
 
     @property
     def exit_status(self) -> int | None:
         """The exit status of the process once `join` has returned; minus a signal's number."""
-        return self._process.exitcode
+        return self.process.exitcode
 
     def kill(self) -> None:
         """Kill the process."""
-        self._process.kill()
+        self.process.kill()
 
     async def join(self) -> None:
         """Wait until the process has ended, and close the sockets."""
-        self._tasks.close()
-        self._signals.close()
-        await asyncio.to_thread(self._process.join)
+        self.tasks.close()
+        self.signals.close()
+        await asyncio.to_thread(self.process.join)
 
 
 def _socket_pair(ours: ExitStack, theirs: ExitStack) -> tuple[socket, socket]:

@@ -12,7 +12,6 @@ from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal, invalid
 from service.errors.parts import by_stop
 from service.fleet.plans import Route
-from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, Span, VehicleType, Visit
 from service.requests.limits import (
     Limits,
@@ -138,20 +137,16 @@ class _Rest:
     @property
     def subject(self) -> UnmeasuredFleet:
         """The fleet of the rest."""
-        rules = Rules(
+        rules = replace(
+            self._rules,
             visits=tuple(self._visit(stop) for stop in self._place),
             vehicles=tuple(self._placed(vehicle) for vehicle in self._types),
             shipments=tuple(self._shipments()),
             over=self._over,
             layers=(*self._rules.layers, 0)[: len(self._over)],
-            clock=self._rules.clock,
             slack=self._rules.slack if self._request.slack is None else self._request.slack,
             tolerance=self._tolerance,
-            leave=self._rules.leave,
             groups=self._rules.groups.among({stop: self._place[stop] for stop in self._left}),
-            spread=self._rules.spread,
-            sampled=self._rules.sampled,
-            percents=self._rules.percents,
         )
         changed = self._request.costs, self._all
         chosen = np.array(list(self._place), np.int64)
