@@ -93,6 +93,24 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
     return np.array(rows, dtype=np.float64)
 
 
+def costs_between(rows: CostRows, name: str, n: int) -> Array:
+    """Return the costs between n stops, shape (n, n), as `cost_matrix` does, checked.
+
+    Raises:
+        Refusal: There is not a row for each stop, a matrix is not square, or an entry no cost.
+    """
+    check_rows(name, n, len(rows))
+    matrix = cost_matrix(rows, name)
+    check_costs(matrix, name)
+    return matrix
+
+
+def check_rows(part: str, n: int, rows: int) -> None:
+    """Raise a refusal unless there is a row for each of n stops."""
+    if rows != n:
+        raise invalid(part, "row-each", stops=n, came=rows)
+
+
 def check_grid(grid: Array) -> None:
     """Raise a refusal unless all cells of a map, shape (rows, columns), are 0 or 1."""
     binary = (grid == 0) | (grid == 1)

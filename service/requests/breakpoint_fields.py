@@ -9,8 +9,8 @@ from pydantic import Field
 
 from service.day.breakpoints import Breakpoints
 from service.errors import invalid
+from service.requests.arrays import check_rows
 from service.requests.fields import Items, Pair
-from service.requests.stop_fields import check_rows
 
 LATEST = 864_000  # ten days
 _MOST = 2**20  # of all pairs

@@ -42,18 +42,8 @@ DEFAULT_OVER: tuple[Over, Over] = ("sum", "max")
 RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
 # The fields that are about the tours of one robot, or about the network that builds them.
 OF_ONE_ROBOT = (
-    "start",
-    "end",
-    "start_pose",
-    "end_pose",
-    "cost_layers",
-    "detours",
-    "initial_tours",
-    "preferences",
-    "repairs",
-    "arrivals",
-    "bound",
-    "actor",
+    *("start", "end", "start_pose", "end_pose", "cost_layers", "detours", "initial_tours"),
+    *("preferences", "repairs", "arrivals", "bound", "actor"),
 )
 ENDS = (("start", "start_pose"), ("end", "end_pose"))
 

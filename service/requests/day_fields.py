@@ -11,7 +11,7 @@ from service.errors import invalid
 from service.errors.faults import show
 from service.objectives import Objective
 from service.reliability.spread import Spread
-from service.requests.arrays import check_costs, cost_matrix
+from service.requests.arrays import costs_between
 from service.requests.breakpoint_fields import LATEST as _LATEST
 from service.requests.breakpoint_fields import Rows, TimeOfDay, read_breakpoints
 from service.requests.fields import (
@@ -264,14 +264,8 @@ def read_slices(items: Sequence[SliceItem], part: str, n: int) -> Slices:
     """
     begins = [item.begins for item in items]
     _check_times(part, [f"{k}/from" for k in range(len(begins))], begins)
-    matrices = []
-    for k, item in enumerate(items):
-        where = f"{part}/{k}/matrix"
-        if len(item.matrix) != n:
-            raise invalid(where, "row-each", stops=n, came=len(item.matrix))
-        matrix = cost_matrix(item.matrix, where)
-        check_costs(matrix, where)
-        matrices.append(matrix)
+    named = enumerate(items)
+    matrices = [costs_between(item.matrix, f"{part}/{k}/matrix", n) for k, item in named]
     return Slices(np.array(begins), np.stack(matrices))
 
 

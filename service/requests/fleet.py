@@ -44,7 +44,7 @@ from service.requests.profile_fields import (
 from service.requests.promises import PromisedItem, promised_plan
 from service.requests.stop_fields import (
     check_unique,
-    find_index,
+    find_indexes,
     read_objectives,
     read_stops,
 )
@@ -239,10 +239,7 @@ class FleetRequest(SearchFields):
         """
 
         def found(references: Sequence[int | str], part: str) -> tuple[int, ...]:
-            return tuple(
-                find_index(reference, ids, f"{part}/{i}", len(ids))
-                for i, reference in enumerate(references)
-            )
+            return find_indexes(references, ids, part)
 
         return Groups(
             together=tuple(found(each, f"together/{i}") for i, each in enumerate(self.together)),

@@ -28,7 +28,7 @@ from service.requests.fields import (
 )
 from service.requests.profile_fields import ProfileCostsItem
 from service.requests.spread_fields import Percentile, SpreadOfTimes
-from service.requests.stop_fields import NamedStop, StopReference, find_index
+from service.requests.stop_fields import NamedStop, StopReference, find_index, find_indexes
 from service.requests.validation import nearest
 
 _MOST_LOAD = 10**9
@@ -254,10 +254,7 @@ class VehicleItem(StrictModel):
             None if stop is None else find_index(stop, ids, f"{part}/{name}", len(ids))
             for name, stop in (("start", self.start), ("end", self.end))
         )
-        reload = [
-            find_index(stop, ids, f"{part}/reload/{i}", len(ids))
-            for i, stop in enumerate(self.reload)
-        ]
+        reload = find_indexes(self.reload, ids, f"{part}/reload")
         return [
             VehicleType(
                 start=start,
@@ -277,7 +274,7 @@ class VehicleItem(StrictModel):
                 max_stops=self.max_stops,
                 min_stops=self.min_stops or 0,
                 shortest=self.shortest,
-                reload=tuple(reload),
+                reload=reload,
                 max_trips=self.max_trips,
                 initial_load=tuple(self.initial_load),
                 max_overtime=self.max_overtime,

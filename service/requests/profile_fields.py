@@ -11,7 +11,7 @@ from pydantic import Field
 
 from service.errors import invalid
 from service.errors.faults import show
-from service.requests.arrays import check_costs, cost_matrix
+from service.requests.arrays import costs_between
 from service.requests.day_fields import (
     OF_SOURCES,
     SOURCES,
@@ -21,7 +21,7 @@ from service.requests.day_fields import (
     read_slices,
 )
 from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, empty_list, one_of
-from service.requests.stop_fields import check_rows, check_unique
+from service.requests.stop_fields import check_unique
 from service.requests.stops import (
     ROAD_MEASURES,
     FixedSource,
@@ -66,10 +66,7 @@ class ProfileMatrixItem(StrictModel):
             raise invalid(part, "one-form", forms="matrix and slices", given=given)
         if self.slices:
             return read_slices(self.slices, f"{part}/slices", n)
-        check_rows(f"{part}/matrix", n, len(self.matrix))
-        matrix = cost_matrix(self.matrix, f"{part}/matrix")
-        check_costs(matrix, f"{part}/matrix")
-        return Matrix(matrix)
+        return Matrix(costs_between(self.matrix, f"{part}/matrix", n))
 
 
 class ProfileCostsItem(TimedObjectiveItem):

@@ -20,7 +20,7 @@ from service.requests.fields import (
     empty_list,
     optional,
 )
-from service.requests.stop_fields import StopReference, find_index
+from service.requests.stop_fields import StopReference, find_indexes
 from service.requests.task import VehicleName, types_by_id
 from service.requests.validation import nearest
 
@@ -142,10 +142,7 @@ def _stops(
     item: PromisedRouteItem, part: str, vehicle: VehicleType, ids: Mapping[str, int]
 ) -> Iterator[tuple[int, int]]:
     """Yield the places and the stops of a route, without its start and end."""
-    stops = [
-        find_index(reference, ids, f"{part}/stops/{place}", len(ids))
-        for place, reference in enumerate(item.stops)
-    ]
+    stops = find_indexes(item.stops, ids, f"{part}/stops")
     first = int(stops[0] == vehicle.start)
     last = len(stops) - int(len(stops) > first and stops[-1] == vehicle.end)
     return zip(range(first, last), stops[first:last], strict=True)

@@ -10,7 +10,7 @@ from pydantic import Discriminator, Field, Tag
 from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
 from service.reliability.spread import Spread
-from service.requests.arrays import check_costs, cost_matrix
+from service.requests.arrays import costs_between
 from service.requests.fields import AsInteger, CostRows, StrictModel, empty_list, optional
 
 Array = NDArray[np.float64]
@@ -48,7 +48,9 @@ class DaysFields(StrictModel):
             came = len(self.days)
             raise invalid(f"{part}/days", "too-few-days", least=_LEAST_DAYS, came=came)
         days = enumerate(self.days)
-        return np.stack([_matrix(each.matrix, f"{part}/days/{d}/matrix", n) for d, each in days])
+        return np.stack(
+            [costs_between(each.matrix, f"{part}/days/{d}/matrix", n) for d, each in days]
+        )
 
 
 class SpreadOfTimes(DaysFields):
@@ -87,7 +89,7 @@ class SpreadFields(DaysFields):
                 raise invalid(f"{part}/spread", "not-beside", member="days")
             return Spread(days=self.costs_of_days(part, n), percent=self.percentile)
         if isinstance(self.spread, list):
-            deviations = _matrix(self.spread, f"{part}/spread", n)
+            deviations = costs_between(self.spread, f"{part}/spread", n)
             return Spread(deviations=deviations, percent=self.percentile)
         return Spread(factor=self.spread, percent=self.percentile)
 
@@ -119,11 +121,3 @@ def read_spreads(
         part = f"objectives/{percents[-1]}/percentile"
         raise invalid(part, "too-many-percentiles", limit=MOST_OBJECTIVES)
     return spreads
-
-
-def _matrix(rows: list[list[float | None]], part: str, n: int) -> Array:
-    if len(rows) != n:
-        raise invalid(part, "row-each", stops=n, came=len(rows))
-    matrix = cost_matrix(rows, part)
-    check_costs(matrix, part)
-    return matrix

@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, JsonValue, Tag
 
 from service.errors import invalid
 from service.objectives import Objective
-from service.requests.arrays import check_costs, cost_matrix
+from service.requests.arrays import check_rows, costs_between
 from service.requests.fields import (
     NO_WAY,
     CostRows,
@@ -122,7 +122,7 @@ class ObjectiveItem(StrictModel):
         """Return the source of costs that are the same all day, as `source` does."""
         match self.sources:
             case ["matrix"]:
-                return self._matrix(f"{part}/matrix", len(stops))
+                return Matrix(costs_between(self.matrix, f"{part}/matrix", len(stops)))
             case ["coordinates"]:
                 check_rows(f"{part}/coordinates", len(stops), len(self.coordinates))
                 return Plane(np.array(self.coordinates, dtype=np.float64))
@@ -132,12 +132,6 @@ class ObjectiveItem(StrictModel):
             case sources:
                 came = " and ".join(sources) or "none"
                 raise invalid(part, "not-one-source", sources=self.choices, given=came)
-
-    def _matrix(self, part: str, n: int) -> Matrix:
-        check_rows(part, n, len(self.matrix))
-        matrix = cost_matrix(self.matrix, part)
-        check_costs(matrix, part)
-        return Matrix(matrix)
 
 
 def read_stops(items: Sequence[NamedStop]) -> tuple[Stop, ...]:
@@ -208,10 +202,13 @@ def find_index(
     raise invalid(part, "not-an-id", came=reference, near=nearest(reference, ids))
 
 
-def check_rows(part: str, n: int, rows: int) -> None:
-    """Raise a refusal unless there is a row for each of n stops."""
-    if rows != n:
-        raise invalid(part, "row-each", stops=n, came=rows)
+def find_indexes(
+    references: Iterable[int | str], ids: Mapping[str, int], part: str
+) -> tuple[int, ...]:
+    """Return the indexes of stops that all have ids; raises what `find_index` does."""
+    return tuple(
+        find_index(each, ids, f"{part}/{i}", len(ids)) for i, each in enumerate(references)
+    )
 
 
 def _check_located(part: str, measure: Measure, stops: Sequence[Stop]) -> None:
