@@ -1,7 +1,7 @@
 """The types of fields in requests, and the fields that all requests share."""
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,7 @@ def _integer(value: object) -> object:
 
 Each = TypeVar("Each")
 # A member that is absent, never null, where there is none.
-Maybe = Each | SkipJsonSchema[None]
+Maybe: TypeAlias = Each | SkipJsonSchema[None]
 # Lists whose validation ends at the first item that is wrong.
 Items = Annotated[list[Each], Field(fail_fast=True)]
 SomeItems = Annotated[list[Each], Field(min_length=1, fail_fast=True)]

@@ -100,8 +100,10 @@ class FrontRequest(DayFields, PlanRequest):
     start: Annotated[StopReference | None, AT_START] = Field(  # type: ignore[assignment]
         default=0, description=f"{START}; by index or id"
     )
-    end: Annotated[StopReference | None, AT_END] = optional(f"{END}; by index or id")
-    initial_tours: SomeItems[Items[StopReference]] = empty_list(
+    end: Annotated[StopReference | None, AT_END] = optional(  # type: ignore[assignment]
+        f"{END}; by index or id"
+    )
+    initial_tours: SomeItems[Items[StopReference]] = empty_list(  # type: ignore[assignment]
         "tours that the front must dominate or equal, by indexes or ids"
     )
     augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger, Offered(option="")] = (
