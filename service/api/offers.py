@@ -98,7 +98,7 @@ class OfferRoutes:
         )(self.offer_slots)
         return router
 
-    async def offer_slots(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def offer_slots(self, request: Request, id: str) -> Response:
         """Say in which slots an order can be promised, and what each costs the plan that is driven.
 
         For each slot: whether the order fits into the plan, the least rise of each objective, and

@@ -128,7 +128,7 @@ class PlanRoutes:
         """
         return await self._plan(request, "fleet")
 
-    async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def replan_front(self, request: Request, id: str) -> Response:
         """Plan the rest of a tour or of a fleet's plan that is driven, after something has changed.
 
         Stops were done, added or removed, the vehicle is elsewhere, or costs or the map changed.
@@ -254,7 +254,7 @@ def _accepted_response(request: Request, record: Record, geometry: Geometry) -> 
     return response
 
 
-def _location(request: Request, id: str, geometry: Geometry) -> str:  # noqa: A002
+def _location(request: Request, id: str, geometry: Geometry) -> str:
     query = "" if geometry == "straight" else f"?geometry={geometry}"
     return f"{root_path_of(request.scope)}/front/{id}{query}"
 

@@ -71,10 +71,7 @@ class QuestionRoutes:
         return router
 
     async def ask_about_front(
-        self,
-        request: Request,
-        id: str,  # noqa: A002
-        query: Annotated[QuestionsQuery, Query()],
+        self, request: Request, id: str, query: Annotated[QuestionsQuery, Query()]
     ) -> Response:
         """Ask which option of a few is best, and after some picks return a tour of the front.
 

@@ -113,7 +113,7 @@ class StoredFrontRoutes:
     async def get_front(
         self,
         request: Request,
-        id: str,  # noqa: A002
+        id: str,
         geometry: Annotated[Geometry, Query(description=GEOMETRY)] = "straight",
         plan: Annotated[Maybe[NonNegativeInteger], Query(description=PLAN)] = None,
     ) -> Response:
@@ -121,7 +121,7 @@ class StoredFrontRoutes:
         record = await self._record(request, id)
         return await self.answers.front(request, record, geometry, plan=plan)
 
-    async def forget_front(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def forget_front(self, request: Request, id: str) -> Response:
         """Delete a front. One that is being planned is stopped, and kept with what it has found."""
         record = await self._record(request, id)
         if record.finished:
@@ -130,7 +130,7 @@ class StoredFrontRoutes:
         cancelled = await self.engine.cancel(record)
         return json_bytes(record_under(root_path_of(request.scope), cancelled).json())
 
-    async def follow_front(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def follow_front(self, request: Request, id: str) -> Response:
         """Send the progress of a front as events, until it is finished.
 
         With `Last-Event-ID` the events go on after that one. Once a client knows that the front is
@@ -167,12 +167,12 @@ class StoredFrontRoutes:
         record = self.engine.state(stored).record
         return replace(listed, front=record.front, status=record.status)
 
-    async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
+    async def _record(self, request: Request, id: str | None) -> Record:
         """Return the present state of the caller's record with an id, or of its latest record."""
         return self.engine.state(await find_record(self.store, request, id)).record
 
 
-async def find_record(store: Store, request: Request, id: str | None) -> Record:  # noqa: A002
+async def find_record(store: Store, request: Request, id: str | None) -> Record:
     """Return the caller's record with an id, as it is stored; without an id its latest.
 
     Callers without a key share their fronts, but each address has its own latest front.
@@ -195,10 +195,7 @@ async def find_record(store: Store, request: Request, id: str | None) -> Record:
 
 
 async def find_stored(
-    store: Store,
-    request: Request,
-    id: str,  # noqa: A002
-    body: TaskSource,
+    store: Store, request: Request, id: str, body: TaskSource
 ) -> tuple[ReplanSource, int]:
     """Return a request about a finished front of the caller, and the bytes that there are to parse.
 

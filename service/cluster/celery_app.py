@@ -56,7 +56,7 @@ def make_celery(redis_url: str, seconds: float) -> Celery:
     return celery
 
 
-def send_record(celery: Celery, id: str) -> None:  # noqa: A002
+def send_record(celery: Celery, id: str) -> None:
     """Send the id of a record to plan. The same id may be sent twice.
 
     Raises:

@@ -49,7 +49,7 @@ class Subscriptions:
         self._on_finished = on_finished
         self._changes = WeakValueDictionary[str, Event]()  # while somebody has them
 
-    def next_change(self, id: str) -> Event:  # noqa: A002
+    def next_change(self, id: str) -> Event:
         """Return an event that is set at the next change of a record."""
         return self._changes.setdefault(id, Event())
 
@@ -75,12 +75,12 @@ class Subscriptions:
                     id_, _, status = message["data"].decode(errors="replace").partition(":")
                     self._handle(id_, status)
 
-    def _handle(self, id: str, status: str) -> None:  # noqa: A002
+    def _handle(self, id: str, status: str) -> None:
         if status not in UNFINISHED:
             self._on_finished(id)
         self._wake(id)
 
-    def _wake(self, id: str) -> None:  # noqa: A002
+    def _wake(self, id: str) -> None:
         if changed := self._changes.pop(id, None):
             changed.set()
 
@@ -263,7 +263,7 @@ class RedisEngine:
             self._log.warning("front %s has lost its worker, sent again", name[:80])
             await asyncio.to_thread(self._send, name)
 
-    async def _claim(self, id: str) -> None:  # noqa: A002
+    async def _claim(self, id: str) -> None:
         """Pass a finished front on, unless another replica has."""
         with suppress(StoreUnavailable):
             fields = await self._store.call("claim", id)

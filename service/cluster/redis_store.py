@@ -69,7 +69,7 @@ class RedisStore(RecordScript):
         """Raise QueueFull or ShareFull when no place is left for one more record of a client."""
         _check_reply(await self.call("check_place", queue, share, client))
 
-    async def get(self, caller: str, id: str) -> Record:  # noqa: A002
+    async def get(self, caller: str, id: str) -> Record:
         """Return the caller's record with this id."""
         return (await self.find("get", caller, id)).record
 
@@ -111,11 +111,11 @@ class RedisStore(RecordScript):
                 await self.call("remove_delivery", parts[0])
         return found
 
-    async def postpone(self, id: str, seconds: float) -> None:  # noqa: A002
+    async def postpone(self, id: str, seconds: float) -> None:
         """Have the delivery of a job tried again after some seconds."""
         await self.call("postpone", id, seconds)
 
-    async def remove_delivery(self, id: str) -> None:  # noqa: A002
+    async def remove_delivery(self, id: str) -> None:
         """Remove the delivery of a job."""
         await self.call("remove_delivery", id)
 

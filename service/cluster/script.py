@@ -104,11 +104,7 @@ class RecordScript:
             raise StoreUnavailable from error
 
     async def read(
-        self,
-        id: bytes,  # noqa: A002
-        *hashes: Iterable[bytes],
-        caller: str = "",
-        whole: bool = False,
+        self, id: bytes, *hashes: Iterable[bytes], caller: str = "", whole: bool = False
     ) -> StoredRecord | None:
         """Return the record in these hashes; if it cannot be read, drop it and return None.
 

@@ -107,7 +107,7 @@ class RecordWorker:
         """Hand the records back that are being planned."""
         self._draining = True
 
-    async def plan(self, id: str, known_lost: bool) -> None:  # noqa: A002
+    async def plan(self, id: str, known_lost: bool) -> None:
         """Plan the front of the record that is next, if one waits.
 
         Args:
@@ -159,7 +159,7 @@ class RecordWorker:
         if submission.stop_reason is Draining:
             raise Draining
 
-    async def _follow(self, store: WorkerStore, id: str, submission: Submission) -> None:  # noqa: A002
+    async def _follow(self, store: WorkerStore, id: str, submission: Submission) -> None:
         """Report on a submission, and stop it once it is not wanted, until it ends."""
         ended = asyncio.Event()
         submission.when_ended(ended.set)
@@ -258,7 +258,7 @@ class CeleryWorker:
         self._wait_for(self.records.close())
         return int(worker.exitcode or 0)
 
-    def _plan(self, id: str) -> None:  # noqa: A002
+    def _plan(self, id: str) -> None:
         """Plan a record. If its message was delivered before, that worker was lost."""
         redelivered = bool(current_task.request.delivery_info.get("redelivered"))
         try:

@@ -43,7 +43,7 @@ class WorkerStore(RecordScript):
         """Register this worker as alive, if Redis answers."""
         await self._call_once("present", self._worker)
 
-    async def begin(self, id: str, known_lost: bool) -> StoredRecord | None:  # noqa: A002
+    async def begin(self, id: str, known_lost: bool) -> StoredRecord | None:
         """Take the next record for this worker and return it.
 
         A message stands for a turn, which goes to the next client. If the worker that had the
@@ -59,17 +59,13 @@ class WorkerStore(RecordScript):
         reply = await self._call_until_answered("begin", id, self._worker, LEASE, known)
         return await self.read(*reply, whole=True) if reply else None
 
-    async def stop_reason(self, id: str) -> StopReason | None:  # noqa: A002
+    async def stop_reason(self, id: str) -> StopReason | None:
         """Renew the lease of a record, and return why it is to be stopped, if it is."""
         reason = await self._call_once("seen", id, self._worker)
         return TakenOver if reason == TAKEN_OVER else REASON_OF.get(reason)
 
     async def report(
-        self,
-        id: str,  # noqa: A002
-        process: int | None,
-        progress: Progress | None,
-        front: FrontDocument | None,
+        self, id: str, process: int | None, progress: Progress | None, front: FrontDocument | None
     ) -> None:
         """Store which process plans a record, its progress and best front, if Redis answers."""
         arguments = report_arguments(process, progress, front)
@@ -81,7 +77,7 @@ class WorkerStore(RecordScript):
         arguments = record_arguments(replace(record, task=None))
         await self._call_until_answered("finish", record.id, *arguments)
 
-    async def hand_back(self, id: str) -> None:  # noqa: A002
+    async def hand_back(self, id: str) -> None:
         """Queue a record again, for another worker."""
         await self._call_until_answered("hand_back", id, self._worker)
 

@@ -27,7 +27,7 @@ class Delivery:
     attempts: int
 
     @classmethod
-    def read(cls, id: str, webhook: str, status: str, ended: str, attempts: str) -> Self:  # noqa: A002
+    def read(cls, id: str, webhook: str, status: str, ended: str, attempts: str) -> Self:
         """Return the delivery with these values, as stores keep them.
 
         Raises:
@@ -66,8 +66,8 @@ class Outbox(Protocol):
             StoreUnavailable: The store does not answer.
         """
 
-    async def postpone(self, id: str, seconds: float) -> None:  # noqa: A002
+    async def postpone(self, id: str, seconds: float) -> None:
         """Have the delivery of a job tried again after some seconds."""
 
-    async def remove_delivery(self, id: str) -> None:  # noqa: A002
+    async def remove_delivery(self, id: str) -> None:
         """Remove the delivery of a job: it was made, or is given up."""

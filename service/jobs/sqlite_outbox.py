@@ -25,7 +25,7 @@ class SqliteOutbox:
     def __init__(self, database: sqlite3.Connection) -> None:
         self._database = database
 
-    def add(self, id: str, webhook: Webhook, status: Status, ended: float) -> None:  # noqa: A002
+    def add(self, id: str, webhook: Webhook, status: Status, ended: float) -> None:
         """Add the delivery of a job that has just ended; it is due at once."""
         self._database.execute(_ADD, (id, webhook.json(), status, ended, ended))
         self._database.execute(_TRIM, (MOST_DELIVERIES,))
@@ -41,10 +41,10 @@ class SqliteOutbox:
                 self.remove(row[0])
         return found
 
-    def postpone(self, id: str, due: float) -> None:  # noqa: A002
+    def postpone(self, id: str, due: float) -> None:
         """Have the delivery of a job tried again at a time."""
         self._database.execute("UPDATE delivery SET due = ? WHERE id = ?", (due, id))
 
-    def remove(self, id: str) -> None:  # noqa: A002
+    def remove(self, id: str) -> None:
         """Remove the delivery of a job."""
         self._database.execute("DELETE FROM delivery WHERE id = ?", (id,))

@@ -130,7 +130,7 @@ class SqliteStore:
         """
         return await self._in_thread(self._repeated, record)
 
-    async def get(self, caller: str, id: str) -> Record:  # noqa: A002
+    async def get(self, caller: str, id: str) -> Record:
         """Return the caller's record with this id."""
         return await self._found("caller = ? AND id = ?", caller, id)
 
@@ -158,11 +158,11 @@ class SqliteStore:
         """Take deliveries that are due; after some seconds they are due again."""
         return await self._in_thread(self._outbox.take, most, self._clock(), seconds)
 
-    async def postpone(self, id: str, seconds: float) -> None:  # noqa: A002
+    async def postpone(self, id: str, seconds: float) -> None:
         """Have the delivery of a job tried again after some seconds."""
         await self._in_thread(self._outbox.postpone, id, self._clock() + seconds)
 
-    async def remove_delivery(self, id: str) -> None:  # noqa: A002
+    async def remove_delivery(self, id: str) -> None:
         """Remove the delivery of a job."""
         await self._in_thread(self._outbox.remove, id)
 
@@ -320,12 +320,12 @@ class SqliteStore:
             return None
         return record
 
-    def _task(self, id: str) -> bytes | None:  # noqa: A002
+    def _task(self, id: str) -> bytes | None:
         query = f"SELECT {', '.join(TASK_COLUMNS)} FROM front WHERE id = ?"
         row = self._database.execute(query, (id,)).fetchone()
         return task_from(dict(zip(TASK_COLUMNS, row, strict=True))) if row else None
 
-    def _delete(self, id: str) -> None:  # noqa: A002
+    def _delete(self, id: str) -> None:
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
 
     def _evict(self) -> None:

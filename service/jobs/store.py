@@ -35,7 +35,7 @@ class Store(Outbox, Protocol):
     is too large for the store. A client is a caller with a key, or an address.
     """
 
-    async def get(self, caller: str, id: str) -> Record:  # noqa: A002
+    async def get(self, caller: str, id: str) -> Record:
         """Return the caller's record with this id.
 
         Raises:
@@ -143,11 +143,7 @@ def record_from(columns: Mapping[str, Any], webhook: str | None = None) -> Recor
 
 
 def listed_from(
-    number: int,
-    stored_at: float,
-    id: str,  # noqa: A002
-    status: Status,
-    members: bytes,
+    number: int, stored_at: float, id: str, status: Status, members: bytes
 ) -> ListedFront:
     """Return what a list says of a record, given some of its columns.
 
@@ -169,7 +165,7 @@ def task_from(columns: Mapping[str, Any]) -> bytes | None:
     return columns.get("body") if columns.get("kind") == _KIND else None
 
 
-def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
+def log_dropped(id: str, error: UnreadableRecord) -> None:
     """Log that a record that cannot be decoded was dropped."""
     logging.getLogger("paretour").warning("front %s cannot be read and is dropped: %s", id, error)
 

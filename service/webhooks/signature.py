@@ -38,12 +38,7 @@ class Secret:
         return cls(key)
 
 
-def signed_headers(
-    id: str,  # noqa: A002
-    seconds: int,
-    body: bytes,
-    secrets: Iterable[Secret],
-) -> dict[str, str]:
+def signed_headers(id: str, seconds: int, body: bytes, secrets: Iterable[Secret]) -> dict[str, str]:
     """Return the headers with the id, the time and the signatures of one attempt.
 
     Args:

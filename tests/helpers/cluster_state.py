@@ -30,7 +30,7 @@ class ClusterState:
         records = [dict(zip(*[iter(fields)] * 2, strict=True)) for _, fields, _ in self._records()]
         return {fields[b"id"].decode(): fields for fields in records}
 
-    def planning(self, id: str) -> int | None:  # noqa: A002
+    def planning(self, id: str) -> int | None:
         """Return the process that plans a front, if one does."""
         fields = self._running().get(id)
         return int(fields.get(b"process") or 0) or None if fields else None

@@ -45,7 +45,7 @@ class Served:
     searching: Callable[[], Mapping[Hashable, int]]
     redis_url: str = ""
 
-    def kill(self, id: str, but: int | None = None) -> int:  # noqa: A002
+    def kill(self, id: str, but: int | None = None) -> int:
         """Kill the process that plans a front, once it is another than this."""
         while (pid := self.planning(id)) in (None, but):
             time.sleep(0.02)

@@ -69,7 +69,7 @@ class Immediate:
         del record
         return None
 
-    async def get(self, caller: str, id: str) -> Record:  # noqa: A002
+    async def get(self, caller: str, id: str) -> Record:
         for record in self.records.values():
             if (record.caller, record.id) == (caller, id):
                 return record

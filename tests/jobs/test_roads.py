@@ -288,7 +288,7 @@ def test_what_is_asked_of_the_engine_is_counted(url: str, engine: FakeOsrm) -> N
     assert after[name] - before[name] == 2
 
 
-def _finished(url: str, id: str) -> dict[str, Any]:  # noqa: A002
+def _finished(url: str, id: str) -> dict[str, Any]:
     """Wait until a job is finished, and return its front."""
     deadline = time.monotonic() + 20
     while time.monotonic() < deadline:
