@@ -288,10 +288,11 @@ class FleetRequest(SearchFields):
             Refusal: An objective has both costs and a measure, or there are too many costs.
         """
         # Objectives that share costs also share the clock, so only those that must do, or that ask
-        # for percentiles of its times, or have its days.
+        # for percentiles of its times, have its days, or stand beside times of their own.
         costly = sum(item.of_plan is None for item in self.objectives)
         sampled = any(item.days for item in self.objectives)
         shared = costly > LAYERS or bool(self._percents) or sampled
+        shared = shared or isinstance(self.clock, ClockItem)
         costs: list[int] = []
         layers: list[int] = []
         for index, item in enumerate(self.objectives):

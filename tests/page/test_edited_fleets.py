@@ -1,6 +1,7 @@
 """Fleets edited on the page: tables of stops and vehicles, objectives, and stops on the map."""
 
 import json
+import re
 from copy import deepcopy
 from typing import Any
 
@@ -169,6 +170,29 @@ def test_objectives_are_chosen_from_a_list(fleet: Page) -> None:
         **{"from": "great_circle", "speed": 30},
     }
     assert asked["clock"] == "longest route"
+
+
+def test_late_visits_are_traded_where_times_vary_from_day_to_day(fleet: Page) -> None:
+    fleet.get_by_label("First objective against").select_option("Late visits")
+    varies = fleet.get_by_label("Times vary from day to day by, %")
+    expect(varies).to_have_value("20")
+    varies.fill("a lot")
+    varies.press("Tab")
+    said = "Times must vary by 0 to 1000 %, as 20, got \N{LEFT DOUBLE QUOTATION MARK}a lot"
+    expect(fleet.locator("#spread-fault")).to_contain_text(said)
+    varies.fill("30 %")
+    varies.press("Tab")
+    expect(fleet.locator("#spread-fault")).to_be_empty()
+    asked = curl_body(fleet, "fleet")
+    late = {"name": "late visits", "measure": "on_time"}
+    assert (asked["clock"]["spread"], asked["objectives"][1]) == (0.3, late)
+    plan(fleet)
+    wait_until_planned(fleet)
+    sentence = (
+        r"On an average day, [\d.]+ % of the visits with a window or a due time are on time\."
+    )
+    expect(fleet.locator("#choice")).to_contain_text(re.compile(sentence))
+    expect(fleet.get_by_role("row", name=re.compile("^Visits on time, %"))).to_be_visible()
 
 
 def test_a_third_objective_is_chosen_from_a_list_and_planned(fleet: Page) -> None:

@@ -160,7 +160,8 @@ MEASURES: Mapping[str, PlanMeasure] = {
         column="share of visits on time",
         text="or, where times have a `spread` or `days`, on_time: how many visits are late on an"
         " average day",
-        note="begun after their window or when they are due, on an average day",
+        choice={"title": "Late visits", "name": "late visits", "stops": "window"},
+        note="begun after their window or after they are due, on an average day",
         given=lambda visits, _: any(visit.is_timed for visit in visits),
         lacking="no-window-or-due",
     ),

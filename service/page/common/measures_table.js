@@ -15,7 +15,7 @@ export const MEASURES = {
   load_distance: {"title": "Load carried", "unit": "load", "note": "each load times how far it is carried, added up"},
   overlap: {"title": "Overlap of routes", "unit": "%", "note": "how many neighbours ride with different vehicles, the nearest counting most"},
   changes: {"title": "Stops changed", "unit": "stops", "note": "visited by another vehicle, or later, than in the plan before"},
-  on_time: {"title": "Visits on time", "unit": "visits", "ofPlan": "%", "note": "begun after their window or when they are due, on an average day", "column": "share of visits on time"},
+  on_time: {"title": "Visits on time", "unit": "visits", "ofPlan": "%", "note": "begun after their window or after they are due, on an average day", "column": "share of visits on time"},
   duration: {"title": "Time in all, on average", "unit": "clock", "column": "mean time in all"},
   duration_p90: {"title": "Nine days of ten within", "unit": "clock", "column": "p90 time in all"},
 };
@@ -31,4 +31,5 @@ export const CHOICES = {
   imbalance: {"title": "Longest minus shortest route", "name": "imbalance"},
   load_distance: {"title": "Load carried", "name": "load carried", "vehicles": "capacity"},
   overlap: {"title": "Overlap of routes", "name": "overlap of routes"},
+  on_time: {"title": "Late visits", "name": "late visits", "stops": "window"},
 };

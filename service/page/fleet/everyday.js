@@ -4,7 +4,7 @@ import { duration, timeText } from "../common/durations.js";
 import { isMeasured, withAnother, without } from "../inputs/stops.js";
 import { secondsIn } from "./cells.js";
 import { byIds } from "./references.js";
-import { timedBy } from "./trade.js";
+import { withClock } from "./trade.js";
 
 const [DAY, NEAR] = [86400, 100]; // seconds; kilometres from a depot that is remembered to a stop, at most
 const DEGREE = 111; // kilometres
@@ -111,13 +111,6 @@ function withMember(item, member, value) {
 
 /** A shift that ends with the day, if only its begin is given. */
 export const wholeShift = (times) => (times.length === 1 ? [times[0], Math.max(DAY, times[0])] : times);
-
-/** The request with times, if it has none. */
-function withClock(asked) {
-  if (asked.clock) return asked;
-  const { measure, from } = asked.objectives[1];
-  return timedBy(asked, measure || from === "road_distance" ? "own" : "second");
-}
 
 /** The speed of straight lines; null if no time is measured by one, undefined if they differ. */
 const speedIn = ({ objectives, clock }) => common([...objectives, typeof clock === "object" ? clock : {}].map(({ speed }) => speed ?? undefined));

@@ -1,6 +1,6 @@
 /** The form of a fleet: the tables of its stops and vehicles, what is traded, and the columns to add. */
 
-import { tellFault } from "../planning/faults.js";
+import { isRead, tellFault } from "../planning/faults.js";
 import { counted } from "../common/numbers.js";
 import { detailColumns, withDetail } from "../inputs/details.js";
 import { EditableTable } from "../inputs/table.js";
@@ -11,6 +11,7 @@ import { EverydayForm } from "./everyday_form.js";
 import { columnsOf, isShown } from "./columns.js";
 import { vehiclesIn } from "./fleet_request.js";
 import { byIds, vehicleRenamed, withVehicle } from "./references.js";
+import { percentTyped, variesBy, varyingBy } from "./spread.js";
 import { AGAINST, againstOf, alsoAgainst, doubtOfTimes, isTraded, timedBy, timesOf, tradedAgainst, tradedAlsoAgainst } from "./trade.js";
 
 const element = (id) => document.getElementById(id);
@@ -50,6 +51,7 @@ export class FleetForm {
     element("against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAgainst));
     element("also-against").addEventListener("change", ({ target }) => this.#trade(target.value, tradedAlsoAgainst));
     element("times").addEventListener("change", ({ target }) => this.#onTrade(timedBy(this.#asked, target.value)));
+    element("spread").addEventListener("change", ({ target }) => this.#vary(target));
     element("widen").addEventListener("click", ({ target }) => target.setAttribute("aria-pressed", target.getAttribute("aria-pressed") !== "true"));
     for (const table of ["stops", "vehicles"]) {
       element(`${table}-column`).addEventListener("change", ({ target }) => this.#addColumn(table, target.value));
@@ -61,6 +63,7 @@ export class FleetForm {
     this.#asked = asked;
     this.#added = { stops: new Set(), vehicles: new Set() };
     this.#vehicles.forget();
+    element("spread").setCustomValidity("");
     this.#everyday.open();
     if (!asked) this.#everyday.show(null);
     for (const each of document.querySelectorAll(".of-fleet")) each.hidden = !asked;
@@ -169,6 +172,13 @@ export class FleetForm {
     this.#showTrade();
   }
 
+  /** Takes by how much the times vary. */
+  #vary(input) {
+    const percent = percentTyped(input.value);
+    const fault = `Times must vary by 0 to 1000 %, as 20, got “${input.value.trim()}”`;
+    if (isRead(input, percent !== undefined, fault)) this.#onTrade(varyingBy(this.#asked, percent));
+  }
+
   /** Takes a new member of an objective; the clock keeps its objective under another name. */
   #measure(axis, change) {
     const { objectives, clock } = this.#asked;
@@ -188,6 +198,15 @@ export class FleetForm {
     choose("also-against", alsoAgainst(this.#asked), againstOf(this.#asked, 2));
     const offered = Object.entries(TIMES).filter(([key]) => key !== (objectives[1].measure ? "second" : "own"));
     choose("times", offered, times ?? "");
+    this.#showSpread();
+  }
+
+  /** Shows by how much the times vary; what is not understood stays. */
+  #showSpread() {
+    const [input, percent] = [element("spread"), variesBy(this.#asked)];
+    input.closest(".field").hidden = !this.#asked.clock;
+    Object.assign(input, { disabled: percent === undefined, placeholder: percent === undefined ? "the days of the file" : "0" });
+    if (input.validity.valid) input.value = percent ?? "";
   }
 }
 

@@ -1,10 +1,13 @@
 /** Find what a fleet trades for its first objective, and what its times are measured by. */
 
 import { CHOICES } from "../common/measures_table.js";
+import { SECONDS } from "../common/durations.js";
 import { SPEED } from "../inputs/objective_fields.js";
-import { clockUnit } from "./units.js";
+import { variesBy, varyingBy } from "./spread.js";
+import { clockUnit, unitOf } from "./units.js";
 
 const STRAIGHT = { from: "great_circle" };
+const USUAL = 20; // per cent by which times vary, until others are typed
 
 /** The second objectives, by their measure or by `over` of their costs, each with its title and its name. */
 export const AGAINST = {
@@ -29,19 +32,26 @@ export const alsoAgainst = (asked) => [
     .map(([key, { title }]) => [key, title]),
 ];
 
+/** The request whose times vary, if an objective is of that. */
+const varyingFor = (key, asked) => (key === "on_time" && variesBy(asked) === null ? varyingBy(withClock(asked), USUAL) : asked);
+
 /** The request with another third objective; "" takes it away. Costs are those of the second or the first objective. */
-export function tradedAlsoAgainst(asked, key) {
+export const tradedAlsoAgainst = (asked, key) => varyingFor(key, withThird(asked, key));
+
+function withThird(asked, key) {
   const objectives = asked.objectives.slice(0, 2);
   if (!key) return { ...asked, objectives };
   const { name } = AGAINST[key];
   const unique = objectives.some((each) => each.name === name) ? `${name} too` : name;
   if (!COSTS.includes(key)) return { ...asked, objectives: [...objectives, { name: unique, measure: key }] };
-  const { name: _, over: __, ...costs } = objectives.findLast(({ measure }) => !measure);
+  const { name: _, over: __, spread: ___, percentile: ____, ...costs } = objectives.findLast(({ measure }) => !measure);
   return { ...asked, objectives: [...objectives, { ...costs, name: unique, over: key }] };
 }
 
 /** The request with another second objective. Its costs become those of the clock if they were, and back. */
-export function tradedAgainst(asked, key) {
+export const tradedAgainst = (asked, key) => varyingFor(key, withSecond(asked, key));
+
+function withSecond(asked, key) {
   const [first, second, ...more] = asked.objectives;
   const { name } = AGAINST[key];
   const { clock, ...others } = asked;
@@ -64,8 +74,22 @@ export function timesOf({ clock, objectives }) {
   return clock === objectives[0].name ? "first" : "second";
 }
 
-/** The request with other times. Metres in straight lines become seconds at a speed. */
+/** The request with times, if it has none. */
+export function withClock(asked) {
+  if (asked.clock) return asked;
+  const [first, { measure, from }] = asked.objectives;
+  if (!measure && from !== "road_distance") return timedBy(asked, "second");
+  return timedBy(asked, !first.measure && SECONDS.has(unitOf(first)) ? "first" : "own");
+}
+
+/** The request with other times, which vary as those before. Metres in straight lines become seconds at a speed. */
 export function timedBy(asked, times) {
+  const percent = variesBy(asked) ?? null;
+  const timed = withTimes(percent === null ? asked : varyingBy(asked, null), times);
+  return percent === null || !times ? timed : varyingBy(timed, percent);
+}
+
+function withTimes(asked, times) {
   const { clock: _, ...others } = asked;
   if (!times) return others;
   if (times === "own") return { ...others, clock: { name: "time", ...STRAIGHT, speed: SPEED } };

@@ -20,7 +20,7 @@ function unitOfRoutes(request) {
 
 /** The unit of a measure of plans, by that of its row in the table of measures. */
 export function unitOfMeasure(unit, objectives, request) {
-  const units = { clock: clockUnit(request), routes: unitOfRoutes(request), prizes: objectives[0].unit, load: loadUnit(objectives), "%": "%", stops: "stops" };
+  const units = { clock: clockUnit(request), routes: unitOfRoutes(request), prizes: objectives[0].unit, load: loadUnit(objectives), "%": "%", stops: "stops", visits: "visits" };
   return units[unit] ?? "";
 }
 

@@ -74,7 +74,7 @@ export function changingOver(asked, hours) {
 }
 
 /** What costs are measured by, whose total or maximum is an objective. */
-const sourceOf = ({ name: _, over: __, over_the_day: ___, unit: ____, ...source }) => JSON.stringify(source);
+const sourceOf = ({ name: _, over: __, over_the_day: ___, unit: ____, spread: _____, percentile: ______, ...source }) => JSON.stringify(source);
 
 export const hoursText = (hours) => hours.map(([from, factor]) => `${timeText(from) ?? from} ${factor}`).join("; ");
 

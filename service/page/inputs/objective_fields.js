@@ -1,6 +1,7 @@
 /** The fields of the objectives: names and units, and for stops how each is measured. */
 
 import { isOwnName } from "../planning/faults.js";
+import { OWN_COSTS } from "./stops.js";
 
 const TIMED = "speed"; // straight lines at a speed
 export const SPEED = 30; // km/h, until another is typed
@@ -52,10 +53,9 @@ export class ObjectiveFields {
   #changed(axis, member, value) {
     if (member === "speed") return { speed: speedIn(value) };
     if (member !== "source") return { [member]: value || undefined };
-    const { matrix, coordinates, slices, breakpoints } = this.#own[axis];
-    if (value === OWN) return { from: undefined, speed: undefined, matrix, coordinates, slices, breakpoints };
+    if (value === OWN) return { from: undefined, speed: undefined, ...Object.fromEntries(OWN_COSTS.map((own) => [own, this.#own[axis][own]])) };
     // A unit that was typed for another source would be wrong; the service knows that of the source.
-    const others = ["unit", "matrix", "coordinates", "slices", "breakpoints", "traffic"];
+    const others = ["unit", ...OWN_COSTS, "traffic"];
     const left = Object.fromEntries(others.map((other) => [other, undefined]));
     return value === TIMED ? { from: "great_circle", speed: SPEED, ...left } : { from: value, speed: undefined, ...left };
   }
@@ -106,9 +106,9 @@ function labelled(title, input, label = title) {
 
 const input = (axis, member, value) => marked(Object.assign(document.createElement("input"), { value, autocomplete: "off" }), axis, member);
 
-function source(axis, { from, speed, matrix, coordinates, slices, breakpoints }) {
+function source(axis, { from, speed, ...costs }) {
   const made = marked(document.createElement("select"), axis, "source");
-  if (matrix || coordinates || slices || breakpoints) made.append(new Option(coordinates ? "A plane from the file" : "Costs from the file", OWN));
+  if (OWN_COSTS.some((name) => costs[name])) made.append(new Option(costs.coordinates ? "A plane from the file" : "Costs from the file", OWN));
   made.append(...Object.entries(SOURCES).map(([name, title]) => greyed(new Option(title, name))));
   made.value = from === "great_circle" && speed != null ? TIMED : (from ?? OWN);
   return made;

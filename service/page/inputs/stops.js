@@ -6,10 +6,13 @@ import { EARTH, mapsOf } from "./places.js";
 /** Whether all costs and times of a request are known for a stop at any place. */
 export const isMeasured = (asked) => Boolean(asked.objectives?.every(({ from, measure }) => from || measure)) && !hasOwnTimes(asked);
 
-const hasOwnTimes = ({ clock }) => Boolean(clock?.matrix || clock?.coordinates || clock?.breakpoints);
+/** The members of an objective or a clock that hold costs of each stop, as a file brings them. */
+export const OWN_COSTS = ["matrix", "matrices", "coordinates", "slices", "breakpoints", "days"];
+
+const hasOwnTimes = ({ clock }) => OWN_COSTS.some((name) => clock?.[name]);
 
 /** Whether some costs or times of a request are those of a matrix, and not measured between places. */
-export const isPriced = ({ objectives, clock }) => Boolean(objectives?.some(({ matrix, slices, breakpoints }) => matrix || slices || breakpoints) || clock?.matrix);
+export const isPriced = ({ objectives = [], clock }) => [...objectives, clock].some((each) => OWN_COSTS.some((name) => name !== "coordinates" && each?.[name]));
 
 /** The same request with other stops; objectives and a clock keep the rows and columns of `kept`. */
 function withStops(asked, stops, kept) {
@@ -19,13 +22,11 @@ function withStops(asked, stops, kept) {
 }
 
 function costsOf(objective, kept) {
-  const { matrix, coordinates, slices, breakpoints } = objective;
   const between = (rows) => kept.map((from) => kept.map((to) => rows[from][to]));
-  if (slices) return { ...objective, slices: slices.map((each) => costsOf(each, kept)) };
-  if (breakpoints) return { ...objective, breakpoints: between(breakpoints) };
-  if (matrix) return { ...objective, matrix: between(matrix) };
-  if (coordinates) return { ...objective, coordinates: kept.map((row) => coordinates[row]) };
-  return objective;
+  const each = (items) => items.map((item) => costsOf(item, kept));
+  const change = { matrix: between, breakpoints: between, coordinates: (rows) => kept.map((row) => rows[row]), slices: each, matrices: each, days: each };
+  if (Array.isArray(objective.spread)) change.spread = between;
+  return Object.fromEntries(Object.entries(objective).map(([name, value]) => [name, value && change[name] ? change[name](value) : value]));
 }
 
 export function renamed(asked, row, id) {

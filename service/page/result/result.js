@@ -16,6 +16,7 @@ import { Maps } from "../map/maps.js";
 import { roundOf } from "../map/planes.js";
 import { kindNamed, kindOf } from "../common/kinds.js";
 import { measuresOf } from "../fleet/measures.js";
+import { onTimeSaid } from "../fleet/spread.js";
 import { PlanView } from "../fleet/plan_view.js";
 import { lastBack } from "../fleet/timetable.js";
 import { hoursOf } from "../fleet/times.js";
@@ -262,7 +263,7 @@ export class Result {
   /** What is said of a tour or plan. */
   #said(item) {
     const said = this.#kept ? choiceKept(this.#kind.noun) : choiceOf(this.#front, item, this.#objectives, this.#kind.noun);
-    return `${said}${this.#kind.movers ? lastBack(item, this.#asked) : ""}`;
+    return `${said}${this.#kind.movers ? `${onTimeSaid(item)}${lastBack(item, this.#asked)}` : ""}`;
   }
 
   /** The cities of a tour, back to its start if it is closed; none for a plan. */
