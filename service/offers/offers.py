@@ -7,7 +7,7 @@ by ascending bounds, until no other place can be better in any objective.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, pairwise
+from itertools import chain
 from typing import get_args
 
 import numpy as np
@@ -18,21 +18,23 @@ from service.fleet.evaluation import (
     joined_lengths,
     plan_lengths,
     route_lengths,
+    routes_broken,
 )
 from service.fleet.fleet import Array, Fleet
 from service.fleet.left_out import Reason, with_stop
-from service.fleet.measures.carried import load_distance
 from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rules import Rule
-from service.fleet.schedule import legs, schedule
+from service.fleet.schedule import schedule, with_waits
 from service.fleet.vehicles import Span
+from service.offers.least_rises import LeastRises
 from service.offers.places import Places, places_in
-from service.offers.screen import Bounds, bounds
+from service.offers.screen import bounds
 from service.offers.slots import SlottedFleet, with_slots
 
 MOST_CHOICES = 5  # of an offer
 _ROUNDING = 1e-9  # of the scale: lengths that differ by less are equal
 _RULES: tuple[Rule, ...] = get_args(Rule)  # from those that never change to those that may
+_MENDED_BY_WAITS: tuple[Rule, ...] = ("longest", "shortest")
 _SAME_IN_ALL_SLOTS = ("skills", "vehicle", "way", "capacity", "max_stops", "max_trips", "apart")
 
 
@@ -156,13 +158,15 @@ class _Search:
         self._fleet = slotted.fleet
         self._rows: list[tuple[Places, int]] = []
         self._dead: dict[int, Broken] = {}  # rows that break a rule whatever the slot
+        self._waits = bool(self._fleet.rules.groups.waiting)
+        self._known = {*routes_broken(self._fleet, plan)} if self._waits else set()
         self._of_routes = [route_lengths(self._fleet, route) for route in plan.routes]
         self._base = np.array(plan_lengths(self._fleet, plan))
-        late, least = [], []
+        late, least, rises = [], [], LeastRises(slotted, plan)
         for each in places_in(self._fleet, plan):
             known = bounds(slotted, each)
             late.append(known.late)
-            least.append(self._least_rises(each, known))
+            least.append(rises.at(each, known))
             self._rows += [(each, place) for place in each.places]
         self._late = np.concatenate(late)  # (p, s)
         self._least = np.concatenate(least)  # (p, s, m)
@@ -192,9 +196,7 @@ class _Search:
     def _try(self, row: int, slot: int, found: _Found) -> None:
         """Evaluate a place, and add it unless another one is as good in everything."""
         route = self._route(row, self._slotted.copy(slot))
-        broken = first_broken(self._fleet, route)
-        if broken is not None:
-            self._note(row, broken)
+        if self._broken(row, route) is not None:
             return
         rise = self._rise(row, route)
         if _is_beaten(rise, found.rises):
@@ -202,6 +204,25 @@ class _Search:
         better = [n for n, each in enumerate(found.rises) if not (rise <= each).all()]
         found.rises = np.vstack((found.rises[better], rise))
         found.rows = [*(found.rows[n] for n in better), row]
+
+    def _broken(self, row: int, route: Route) -> Broken | None:
+        """Return the first rule that a place breaks, by itself or beside the other routes.
+
+        Of other routes those rules do not count that they break without the order.
+        """
+        broken = first_broken(self._fleet, route)
+        if broken is not None and not (self._waits and broken.rule in _MENDED_BY_WAITS):
+            self._note(row, broken)
+            return broken
+        if not self._waits:
+            return None
+        longer = routes_broken(self._fleet, self._with(row, route))
+        return next((pair[1] for pair in longer if pair not in self._known), None)
+
+    def _with(self, row: int, route: Route) -> Plan:
+        """Return the plan with a route in its place."""
+        number, routes = self._rows[row][0].number, self._plan.routes
+        return Plan((*routes[:number], route, *routes[number + 1 :]))
 
     def _note(self, row: int, broken: Broken) -> None:
         """Remember a rule that a place breaks in all slots, or that all of its route do."""
@@ -218,12 +239,14 @@ class _Search:
 
     def _rise(self, row: int, route: Route) -> Array:
         """Return what the lengths of the plan grow by with a route, without roundings."""
-        places, _ = self._rows[row]
-        number = places.number
-        routes = (*self._plan.routes[:number], route, *self._plan.routes[number + 1 :])
-        lengths = [*self._of_routes]
-        lengths[number : number + 1] = [route_lengths(self._fleet, route)]
-        grown = np.array(joined_lengths(self._fleet, Plan(routes), lengths)) - self._base
+        number, longer = self._rows[row][0].number, self._with(row, route)
+        if self._waits:  # then other routes may change as well
+            joined = plan_lengths(self._fleet, longer)
+        else:
+            lengths = [*self._of_routes]
+            lengths[number : number + 1] = [route_lengths(self._fleet, route)]
+            joined = joined_lengths(self._fleet, longer, lengths)
+        grown = np.array(joined) - self._base
         return np.where(np.abs(grown) < _ROUNDING * self._scale, 0.0, grown)
 
     def _route(self, row: int, stop: int) -> Route:
@@ -243,7 +266,8 @@ class _Search:
     def _choice(self, row: int, slot: int, rise: Array) -> Choice:
         places, _ = self._rows[row]
         stop = self._slotted.copy(slot)
-        route = self._route(row, stop)
+        longer = with_waits(self._fleet, self._with(row, self._route(row, stop)))
+        route = longer.routes[places.number]
         path = path_of(self._fleet.rules, route)
         at = path.index(stop)
         return Choice(
@@ -269,96 +293,12 @@ class _Search:
             if broken is None:
                 if self._ended():
                     break
-                broken = first_broken(self._fleet, self._route(row, self._slotted.copy(slot)))
+                broken = self._broken(row, self._route(row, self._slotted.copy(slot)))
                 if broken is None:
                     continue
-                self._note(row, broken)
             if known is None or _RULES.index(broken.rule) > _RULES.index(known.rule):
                 reasons[vehicle] = broken
         return tuple(Reason(*each) for each in sorted(reasons.items()))
-
-    def _least_rises(self, places: Places, known: Bounds) -> Array:
-        """Return the least that each length of the plan grows by, shape (p, s, m)."""
-        rules = self._fleet.rules
-        others = [each for n, each in enumerate(self._of_routes) if n != places.number]
-        found = []
-        vehicle = rules.vehicles[places.vehicle]
-        for m, (over, layer) in enumerate(zip(rules.over, rules.layers, strict=True)):
-            own = self._least_length(places, known, over, layer)
-            if m == 0:
-                own = vehicle.per_distance * own
-                own = own + vehicle.per_time * known.duration if vehicle.per_time else own
-            lengths = [each[m] for each in others]
-            match over:
-                case "sum" if rules.percent(m) is not None:
-                    total = np.zeros(known.end.shape)
-                case "max":
-                    total = np.maximum(own, max(lengths, default=0.0))
-                case "imbalance":
-                    total = _least_imbalance(own, lengths)
-                case _:
-                    total = own + sum(lengths)
-            added = places.number == len(self._of_routes) and m == 0
-            fixed = vehicle.fixed if added else 0.0
-            found.append(total + fixed + self._constants[m] - self._base[m])
-        return np.stack(found, axis=-1)
-
-    @cached_property
-    def _constants(self) -> Array:
-        """The parts of each length that do not depend on routes: fixed costs and lost prizes."""
-        empty = [(0.0,) * len(self._fleet.rules.over) for _ in self._plan.routes]
-        return np.array(joined_lengths(self._fleet, self._plan, empty))
-
-    def _least_length(self, places: Places, known: Bounds, over: str, layer: int) -> Array:
-        """Return the least length of the route in an objective, shape (p, s)."""
-        rules = self._fleet.rules
-        match over:
-            case "sum" | "max":
-                return self._least_costs(places, known, layer)
-            case "imbalance":
-                return self._least_costs(places, known, rules.limited)
-            case "vehicles":
-                return np.ones(known.end.shape)
-            case "lateness":
-                return known.lateness
-            case "overtime":
-                return np.maximum(known.end - rules.vehicles[places.vehicle].shift[1], 0.0)
-            case "load_distance" if self._fleet.day is None:
-                return self._at_any_time(places, known, load_distance)
-        return np.zeros(known.end.shape)  # there may be none of it
-
-    def _least_costs(self, places: Places, known: Bounds, layer: int | None) -> Array:
-        """Return the least length of the route in some costs, shape (p, s)."""
-        if layer == self._fleet.rules.clock or layer is None:
-            return known.duration
-
-        def driven(fleet: Fleet, route: Route) -> float:
-            if fleet.day is None:
-                return sum(legs(fleet, route, layer))
-            path = pairwise(path_of(fleet.rules, route))
-            return sum(fleet.leg(layer, *leg, route.vehicle) for leg in path)
-
-        return self._at_any_time(places, known, driven)
-
-    def _at_any_time(
-        self, places: Places, known: Bounds, length: Callable[[Fleet, Route], float]
-    ) -> Array:
-        """Return a length that is the same in all slots, shape (p, s)."""
-        order = self._slotted.order
-        each = [length(self._fleet, places.route(place, order)) for place in places.places]
-        return np.broadcast_to(np.array(each)[:, np.newaxis], known.end.shape)
-
-
-def _least_imbalance(own: Array, others: Sequence[float]) -> Array:
-    """Return the least difference between the longest and the shortest route.
-
-    The route with the order may be longer than `own`, which may make the shortest one longer.
-    """
-    if not others:
-        return np.zeros(own.shape)
-    shortest, longest = min(others), max(others)
-    least: Array = np.maximum(own, longest) - shortest
-    return np.where(own < shortest, longest - shortest, least)
 
 
 def _is_beaten(rise: Array, rises: Array) -> bool:

@@ -30,6 +30,8 @@ from tests.helpers.offers import (
 ORDER = {"id": "new", "location": NEW_PLACE, "demand": [1], "service": 300}
 HOURS = {"from": NINE, "to": FIVE, "length": HOUR}
 FRONT = as_stored(stored_fleet(fleet_request()))
+WAITS = [{"first": ["order-1"], "then": ["order-7"], "vehicles": "any", "gap": HOUR}]
+WAITING = as_stored(stored_fleet({**fleet_request(), "before": WAITS}))
 
 
 def ask(front: Any = FRONT, **members: Any) -> dict[str, Any]:
@@ -39,9 +41,9 @@ def ask(front: Any = FRONT, **members: Any) -> dict[str, Any]:
     return answer
 
 
-def promised(offer: dict[str, Any], choice: dict[str, Any]) -> tuple[Plan, Any]:
+def promised(offer: dict[str, Any], choice: dict[str, Any], front: Any = FRONT) -> tuple[Plan, Any]:
     """Return the plan that is promised, and the fleet that the request of an offer makes."""
-    task = parse_replan(ReplanSource(json.dumps(offer["replan"]).encode(), FRONT), LIMITS, {})
+    task = parse_replan(ReplanSource(json.dumps(offer["replan"]).encode(), front), LIMITS, {})
     fleet, labels = task.subject, task.labels
     ids = [stop.id for stop in labels.stops]
     order, routes = ids.index("new"), list(fleet.driven)
@@ -89,17 +91,27 @@ def test_during_the_day_vans_bring_what_they_carry_and_nothing_new() -> None:
     assert any("route" in choice for offer in visited for choice in offer.get("choices", ()))
 
 
-def test_slots_are_offered_once_no_visit_waits_for_another() -> None:
-    waits = [{"first": ["order-1"], "then": ["order-7"], "vehicles": "any"}]
-    front = as_stored(stored_fleet({**fleet_request(), "before": waits}))
-    with pytest.raises(Refusal) as refused:
-        ask(front, every=HOURS)
-    [fault] = refused.value.errors
-    assert (fault.pointer, fault.code) == ("/order", "offered-beside-waits")
-    routes = json.loads(front.found.split()[0])["routes"]
-    begun = {"now": routes[0]["arrivals"][1] + 600, "plan": 0}
-    begun["routes"] = [{"route": 0, "done": ["order-1"]}, {"route": 1, "done": []}]
-    assert ask(front, every=HOURS, **begun)["offers"]
+def test_an_order_may_delay_a_visit_that_others_wait_for_as_long_as_all_are_in_time() -> None:
+    """The price counts what the other van loses, too."""
+    answer = ask(WAITING, every=HOURS)
+    assert [each["possible"] for each in answer["offers"]].count(True) > 1
+    for offer in answer["offers"]:
+        for choice in offer.get("choices", ()):
+            plan, fleet = promised(offer, choice, WAITING)
+            assert fleet.rules.groups.waiting
+            assert not violations(fleet, plan)
+            rise = np.subtract(plan_lengths(fleet, plan), answer["lengths"])
+            assert rise == pytest.approx(choice["rise"], abs=1e-6)
+
+
+@pytest.mark.parametrize("front", [FRONT, WAITING])
+def test_a_late_van_keeps_no_other_one_from_taking_an_order(front: Any) -> None:
+    ways = [{"route": number, "done": []} for number in (0, 1)]
+    late = {"plan": 0, "now": 11.5 * HOUR, "routes": ways}
+    offers = ask(front, every=HOURS, **late)["offers"]
+    choices = [choice for offer in offers for choice in offer.get("choices", ())]
+    assert choices
+    assert all("route" not in choice for choice in choices)
 
 
 def test_an_order_that_no_vehicle_can_bring_has_reasons() -> None:

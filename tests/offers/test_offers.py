@@ -12,7 +12,13 @@ from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.vehicles import Span
 from service.offers.offers import MOST_CHOICES, find_offers
-from tests.helpers.fleets import bounded_fleet, every_plan, mixed_fleet, random_fleet
+from tests.helpers.fleets import (
+    bounded_fleet,
+    every_plan,
+    mixed_fleet,
+    random_fleet,
+    waiting_fleet,
+)
 from tests.helpers.sampled import third
 
 SLOTS: tuple[Span, ...] = ((0.0, 10.0), (8.0, 8.0), (15.0, 30.0), (40.0, 45.0), (60.0, 100.0))
@@ -48,7 +54,7 @@ def some_plans(fleet: Fleet, order: int) -> list[Plan]:
     return kept[:: max(1, len(kept) // 3)]
 
 
-MAKERS = (random_fleet, bounded_fleet, mixed_fleet)
+MAKERS = (random_fleet, bounded_fleet, mixed_fleet, waiting_fleet)
 
 
 @pytest.mark.parametrize("seed", range(third(60)))
@@ -56,7 +62,8 @@ MAKERS = (random_fleet, bounded_fleet, mixed_fleet)
 def test_offers_are_those_of_every_place_in_every_slot(make: object, seed: int) -> None:
     fleet = make(seed)  # type: ignore[operator]
     rules = fleet.rules
-    alone = [stop for stop in rules.clients if stop not in rules.shipped]
+    grouped = {stop for pair in rules.groups.ordered for stop in pair}
+    alone = [stop for stop in rules.clients if stop not in rules.shipped | grouped]
     if rules.clock is None or not alone:
         return
     order = alone[seed % len(alone)]

@@ -162,11 +162,8 @@ def offers_task(
         rest = rest_of_fleet(fleet, task, asked, limits, actors)
     except Refusal as refusal:
         raise _of_order(refusal, len(request.add)) from None
-    labels, subject = rest.labels, rest.subject
+    labels = rest.labels
     assert labels is not None
-    assert isinstance(subject, UnmeasuredFleet)
-    if subject.rules.groups.waiting:
-        raise invalid("order", "offered-beside-waits")
     order = [stop.id for stop in labels.stops].index(request.order.id)
     parts = ["order" if stop == order else part for stop, part in enumerate(labels.parts or ())]
     return OffersTask(
