@@ -23,7 +23,11 @@ _LONGER = (25, 50, 100, 200, 400)  # per cent
 def longer_shifts(asked: AskedFleet, tried: Try) -> Remedy | None:
     """Let all vehicles be back later than the end of their shift."""
     found = asked.least_change(_amounts(asked, _longest_shift(asked)), _with_overtime, tried)
-    return None if found is None else Remedy("longer-shifts", found[1], _values(asked, found[0]))
+    if found is None:
+        return None
+    over = any(begin == end for begin, end in (each.shift for each in asked.rules.vehicles))
+    code = "later-than-now" if over else "longer-shifts"
+    return Remedy(code, found[1], _values(asked, found[0]))
 
 
 def _with_overtime(more: float, _: str, vehicle: VehicleType) -> Members:
@@ -143,9 +147,22 @@ def _with_longer(share: int, _: str, vehicle: VehicleType) -> Members:
 
 
 def _longest_shift(asked: AskedFleet) -> float:
-    """Return the length of the longest shift that ends; 0 without one."""
+    """Return the length of the longest shift that ends; 0 without one.
+
+    Where all are over, it is about the time for all stops, each on a way of its own.
+    """
     shifts = [vehicle.shift for vehicle in asked.rules.vehicles]
-    return max((end - begin for begin, end in shifts if end < inf), default=0.0)
+    lengths = [end - begin for begin, end in shifts if end < inf]
+    return max(lengths) or _time_for_all(asked.fleet) if lengths else 0.0
+
+
+def _time_for_all(fleet: Fleet) -> float:
+    rules, [vehicle, *_] = fleet.rules, fleet.rules.vehicles
+    assert rules.clock is not None
+    ends = [end for end in (vehicle.start, vehicle.end) if end is not None]
+    legs = [fleet.leg(rules.clock, end, stop, 0) for stop in rules.clients for end in ends]
+    services = [rules.service(0, stop) for stop in rules.clients]
+    return sum(leg for leg in legs if leg < inf) + sum(services)
 
 
 def _amounts(asked: AskedFleet, longest: float) -> list[float]:

@@ -235,6 +235,24 @@ def test_where_all_vehicles_are_out_of_service_more_of_them_help(
     assert offered.json()["errors"][0]["code"] == "no-vehicle-left"
 
 
+END = 30000  # of all shifts
+
+
+def test_a_van_may_still_leave_within_its_overtime_and_not_after_it(client: httpx.Client) -> None:
+    front = client.post("/fleet", json=request(max_overtime=7200)).json()
+    for route in (
+        route
+        for each in replan(client, front, plan=0, now=END + 600).json()["front"]
+        for route in each["routes"]
+    ):
+        assert END + 600 <= route["arrivals"][0] < route["arrivals"][-1] <= END + 7200
+    after = replan(client, front, plan=0, now=END + 7201)
+    assert (after.status_code, after.json()["code"]) == (422, "no-plan")
+    more = {"vehicles": [{"vehicle": "van", "more": 1}]}
+    refused = replan(client, front, plan=0, now=END + 7201, **more).json()
+    assert [each["code"] for each in refused["errors"]] == ["no-more-vehicles"]
+
+
 NEW = {"id": "new", "location": [24.95, 60.17]}
 REFUSED = [
     ({"now": None}, "/now"),

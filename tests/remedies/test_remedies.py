@@ -12,11 +12,13 @@ from service.errors import Refusal
 from service.kinds.fleet import run_fleet, warm_up
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Tools
-from service.kinds.parsing import parse_task
+from service.kinds.parsing import parse_replan, parse_task
 from service.requests.limits import Limits
-from service.requests.task import TaskSource, UnmeasuredFleet
+from service.requests.replan.way import ReplanSource
+from service.requests.task import Task, TaskSource, UnmeasuredFleet
 from service.watch import Watch
 from tests.helpers.actors import info_of
+from tests.helpers.offers import FIVE, as_stored, fleet_request, stored_fleet
 from tests.helpers.sampled import IS_WHOLE, third
 
 LIMITS = Limits(body_bytes=10**6, cities=100, cells=900, preferences=20, size=30, seconds=2)
@@ -44,7 +46,11 @@ def request(**members: Any) -> dict[str, Any]:
 def planned(request: dict[str, Any]) -> FrontDocument:
     """Return the front of a request, by a clock that stands still while others compute."""
     source = TaskSource("fleet", json.dumps(request).encode())
-    task = parse_task(source, LIMITS, {})
+    return run(parse_task(source, LIMITS, {}))
+
+
+def run(task: Task) -> FrontDocument:
+    """Return the front of a task, in the same way."""
     assert isinstance(task.subject, UnmeasuredFleet)
     watch = Watch[FrontDocument](clock=time.process_time)
     return run_fleet(task.subject, task, Tools({}, LIMITS), watch)
@@ -171,6 +177,31 @@ def test_whatever_is_told_of_a_request_helps(case: str) -> None:
             planned(asked)
         except Refusal as refusal:
             check_that_all_help(asked, Refused(refusal.document("")))
+
+
+@pytest.mark.parametrize("on_the_way", [False, True])
+def test_where_all_shifts_are_over_overtime_from_now_on_helps(on_the_way: bool) -> None:
+    """Whether the vans have left or not: as their shifts are over, none may go on."""
+    asked = fleet_request()
+    for stop in asked["stops"]:
+        stop.pop("window", None)
+    front = as_stored(stored_fleet(asked))
+    routes = json.loads(front.found.split()[0])["routes"] if on_the_way else []
+    ways = [{"route": n, "done": each["stops"][1:3]} for n, each in enumerate(routes)]
+    late = {"plan": 0, "now": FIVE + 600, "routes": ways, "time_limit": 1}
+
+    def replanned(body: dict[str, Any]) -> FrontDocument:
+        source = ReplanSource(json.dumps(body).encode(), front)
+        return run(parse_replan(source, LIMITS, {}))
+
+    with pytest.raises(Refusal) as raised:
+        replanned(late)
+    remedies = {each.code: each for each in Refused(raised.value.document("")).remedies}
+    remedy = remedies["later-than-now"]
+    plans = json.loads(b"[%b]" % replanned(remedy.applied_to(late)).tours)
+    for route in (route for each in plans for route in each["routes"]):
+        assert route["arrivals"][0] >= FIVE + 600
+        assert route["arrivals"][-1] <= FIVE + 600 + remedy.values["more"] + 1e-6
 
 
 def test_without_a_routing_engine_great_circles_are_a_remedy() -> None:

@@ -98,7 +98,10 @@ class ChangedVehicle(StrictModel):
     more: NonNegativeInteger = Field(
         default=0, description="how many more of them can leave from now on, where the others did"
     )
-    max_overtime: Cost | None = optional("how long after the end of its shift a route may end")
+    max_overtime: Cost | None = optional(
+        "how long after the end of its shift a route may end, or after the present time if the"
+        " shift is over"
+    )
 
 
 class FleetChanges(StrictModel):

@@ -68,10 +68,13 @@ def vehicles_of_rest(
     left = [(*each, old) for each, old in zip(gone, types, strict=True)]
     used = [way.type for way in day.ways]
     known = list(_not_gone(request, fleet, used, now))
-    waiting = [each for each in known if each[1].count > 0]
+    able = [each for each in known if not _is_over(each[1])]
+    waiting = [each for each in able if each[1].count > 0]
+    if not left and not waiting:  # with more overtime, those could leave whose shift is over
+        waiting = [each for each in known if each[1].count > 0]
     if by_routes or any(name.route is not None for name, _, _ in waiting):
         waiting = list(by_route(waiting, day.waiting))
-    spares = [(name, replace(each, count=0), old) for name, each, old in _first_of_each(known)]
+    spares = [(name, replace(each, count=0), old) for name, each, old in _first_of_each(able)]
     if not left and not waiting:
         return RestVehicles(tuple(spares), ())
     found = RestVehicles((*left, *waiting), ())
@@ -89,22 +92,37 @@ def vehicles_of_rest(
 def _not_gone(
     request: ReplanFleetRequest, fleet: UnmeasuredFleet, used: Sequence[int], now: float
 ) -> Iterator[NamedType]:
-    """Yield the types that may still leave, with as many vehicles as have not left, maybe none."""
+    """Yield the types that may still leave, with as many vehicles as have not left, maybe none.
+
+    Those whose last shift is over have what is left of their overtime, or what the request gives
+    them from now on.
+    """
+    longer = {each.vehicle for each in request.vehicles if each.max_overtime is not None}
     more = {each.vehicle: (index, each.more) for index, each in enumerate(request.vehicles)}
     names = (*fleet.vehicles, *fleet.names_of_spares)
-    for old, (name, vehicle) in enumerate(
-        zip(names, (*fleet.rules.vehicles, *fleet.spares), strict=True)
-    ):
+    types = (*fleet.rules.vehicles, *fleet.spares)
+    ends = [(name.id, vehicle.shift[1]) for name, vehicle in zip(names, types, strict=True)]
+    last = dict(sorted(ends, key=lambda each: each[1]))
+    for old, (name, vehicle) in enumerate(zip(names, types, strict=True)):
         begin, end = max(vehicle.shift[0], now), vehicle.shift[1]
-        if begin > end or begin > vehicle.leaves_by:
+        if begin > vehicle.leaves_by or (begin > end and end < last[name.id]):
             continue
+        left = replace(vehicle, shift=(begin, max(begin, end)))
+        if begin > end and name.id not in longer:
+            left = replace(left, max_overtime=max(0.0, vehicle.way[1] - begin))
         count = vehicle.count - used.count(old)
-        if name.route is None:
+        if name.route is None and not _is_over(left):
             count += more.pop(name.id, (0, 0))[1]
-        yield name, replace(vehicle, count=count, shift=(begin, end)), old
+        yield name, replace(left, count=count), old
     for vehicle_id, (index, count) in more.items():
         if count:
             raise invalid(f"vehicles/{index}/more", "no-more-vehicles", came=vehicle_id)
+
+
+def _is_over(vehicle: VehicleType) -> bool:
+    """Return whether no time is left of a vehicle's shift and overtime."""
+    begin, end = vehicle.way
+    return begin == end
 
 
 def _first_of_each(known: Iterable[NamedType]) -> Iterator[NamedType]:
