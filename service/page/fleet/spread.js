@@ -1,4 +1,4 @@
-/** How the times of a fleet vary from day to day, and how surely a plan is on time. */
+/** Read and write by how much the times of a fleet vary from day to day, and say how surely a plan is on time. */
 
 const [PER_CENT, MOST] = [100, 1000]; // the most per cent that the service takes
 const [SURE, NEARLY] = [99.95, 99]; // per cent: from there on a rounded number would say "all"
