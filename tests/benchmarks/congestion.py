@@ -3,7 +3,7 @@
 Each folder is a checkout of a set of ANR-MAMUT (GitHub, MIT) whose arrival times are given for each
 pair of stops, with the best known sums of the durations of all routes, many of them proven:
 `git clone https://github.com/ANR-MAMUT/MAMUT-routing-TDVRPTW-Rifki2020`, on the streets of Lyon,
-and `MAMUT-routing-TDVRPTW-Vu2020` beside it.
+`MAMUT-routing-TDVRPTW-Vu2020` beside it, and the folder `S1` of `MAMUT-routing-TDVRPTW-Lera2026`.
 
 `paretour.plan_fleet` is asked for durations against vehicles, from the request to the answer, on
 one thread; times are `breakpoints`. The package kayros (PyPI, MIT) plans for the same seconds, with
@@ -50,7 +50,7 @@ def main(arguments: list[str]) -> None:
     """The command line."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks congestion", description=__doc__)
     parser.add_argument("--data", type=Path, nargs="+", required=True, help="checkouts of sets")
-    parser.add_argument("--stops", type=int, nargs="+", default=[30, 59, 60])
+    parser.add_argument("--stops", type=int, nargs="+", default=[30, 59, 60, 200])
     parser.add_argument("--count", type=int, default=6, help="instances of each size")
     options = parser.parse_args(arguments)
     for folder in options.data:
