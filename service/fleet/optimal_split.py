@@ -16,7 +16,7 @@ from service.fleet.plans import Plan, Route
 from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
 from service.fleet.search.problem import Problem
-from service.fleet.search.route import Span, joined, stay
+from service.fleet.search.spans import Span, joined, stay, times_of
 from service.fleet.search.working_plan import leg
 from service.jit import allocating, compiled, inlined
 
@@ -125,10 +125,8 @@ def _lengths_of(
     first, second, span = route
     fits, end = first < problem.forbidden, 0.0
     if problem.clock >= 0:
-        departs = max(span.early, released)
-        end = departs + span.time
-        fits &= not _is_over(departs, span.late, end)
-        time = end - max(problem.departs[vehicle], released) if problem.early else span.time
+        time, end = times_of(problem, vehicle, span, released)
+        fits &= time < np.inf
         first, second = (time, second) if problem.clock == 0 else (first, time)
     length = first if problem.limited == 0 else second
     return first, second, fits and not _is_over(length, problem.longest[vehicle], end)

@@ -250,7 +250,7 @@ class Directions:
             limit = self._random.uniform(lower[at], lengths[at])
             if rounds * self._per_stop <= _BRIEF:  # too few to get away from the plan below
                 limit = lengths[at] - _LOWERED * (lengths[at] - limit)
-                return replace(self._step(weights, {limited: limit}, rounds), start=at)
+                return self._step(weights, {limited: limit}, rounds, at)
         return self._step(weights, {limited: limit}, rounds)
 
     def _lower(self, least: float) -> float:
@@ -280,7 +280,9 @@ class Directions:
                 least = self._lower(points[:, index].min())
                 less = some - self._random.integers(2) if down else least
                 limits[index] = float(less if down else self._random.uniform(less, some))
-        return self._step(weights, limits, rounds, any_start=self._random.random() < _ANY_START)
+        anywhere = self._random.random() < _ANY_START
+        start = int(self._random.integers(len(points))) if anywhere else None
+        return self._step(weights, limits, rounds, start)
 
     def _below_a_point(self, points: Array, weights: Array, rounds: int) -> Step:
         """Return a random weighted sum, where some lengths are bounded by those of a plan."""
@@ -304,12 +306,13 @@ class Directions:
         weights: Array,
         limits: dict[int, float],
         rounds: int,
-        any_start: bool = False,
+        start: int | None = None,
         bounds: Array | None = None,
     ) -> Step:
         """Return a search with weights, shape (m,), and limits and bounds on some objectives.
 
-        Limits are on each route, and bounds, shape (m,), on all routes together.
+        Limits are on each route, and bounds, shape (m,), on all routes together. It starts from the
+        plan that is best by them, if no other is given.
         """
         bounds = np.full(len(self._over), inf) if bounds is None else bounds
         if "imbalance" in self._over:
@@ -317,16 +320,13 @@ class Directions:
             bounds[index] = min(bounds[index], limits.get(index, inf))
         unit = float((weights * self._scale).max())
         points = self._points()
-        start = None
-        if len(points):
+        if start is None and len(points):
             beyond = np.zeros(len(points))
             for index, limit in limits.items():
                 beyond += np.maximum(0.0, points[:, index] - limit) / self._scale[index]
             beyond += (np.maximum(0.0, points - bounds) / self._scale).sum(axis=1)
             values = points @ weights + _STRICT * unit * beyond
             start = int(values.argmin())
-        if any_start and len(points):
-            start = int(self._random.integers(len(points)))
         ruins = max(1.0, rounds * self._per_stop)
         hotter = self._hotter(limits)
         heat, cooled = min(_HOTTEST, _HEAT * ruins**_POWER), hotter * unit * _COLDEST

@@ -16,15 +16,8 @@ from service.fleet.search.problem import (
     SECOND,
     Problem,
 )
-from service.fleet.search.route import (
-    Span,
-    head_at,
-    joined,
-    measure,
-    stay,
-    tail_at,
-    times_of,
-)
+from service.fleet.search.route import measure
+from service.fleet.search.spans import Span, head_at, joined, stay, times_with
 from service.fleet.search.spots import Place, nowhere
 from service.fleet.search.values import Values, drives_too_far, grown_cost, values_of
 from service.fleet.search.weighed import weighed_with
@@ -226,12 +219,8 @@ def _timed(
     profile, before = problem.profile[slot], begun.at
     after = plan.next[begun.before if before == problem.pickup[delivery] else before]
     there = leg(problem, profile, before, delivery, problem.clock)
-    span, kept = joined(begun.span, there, stay(problem, profile, delivery))
-    if not kept:
-        return np.inf, 0.0
     onward = leg(problem, profile, delivery, problem.place[after], problem.clock)
-    span, kept = joined(span, onward, tail_at(plan, after))
-    return times_of(problem, plan, slot, span, -np.inf) if kept else (np.inf, 0.0)
+    return times_with(problem, plan, (slot, delivery, after), begun.span, (there, onward))
 
 
 @compiled

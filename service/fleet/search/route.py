@@ -1,7 +1,5 @@
 """Measure a route: what is known up to each stop and from it on, and what it costs."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from service.fleet.rounding import is_over
@@ -19,6 +17,7 @@ from service.fleet.search.problem import (
 )
 from service.fleet.search.rests import rested
 from service.fleet.search.routes_of_day import drive_over_the_day
+from service.fleet.search.spans import Span, head_at, joined, stay, tail_at, times_of
 from service.fleet.search.values import drives_too_far, lacking, route_cost, values_of
 from service.fleet.search.weighed import weigh
 from service.fleet.search.working_plan import (
@@ -36,83 +35,8 @@ from service.jit import compiled, inlined, standalone
 _is_over = inlined(is_over)
 
 
-class Span(NamedTuple):
-    """A part of a route: the least time it takes, and the departures that take only this time.
-
-    Attributes:
-        time: The least time, with waiting.
-        early: The first such departure. Leaving before only adds waiting.
-        late: The last departure that keeps all windows.
-    """
-
-    time: float
-    early: float
-    late: float
-
-
 @inlined
-def joined(a: Span, way: float, b: Span) -> tuple[Span, bool]:
-    """Return two parts of a route with a leg between them, and whether they keep all windows.
-
-    Vidal et al. (2013), time-window segments.
-    """
-    until = a.time + way
-    waiting = max(0.0, b.early - until - a.late)
-    span = Span(
-        until + waiting + b.time,
-        max(a.early, b.early - until) - waiting,
-        min(a.late, b.late - until),
-    )
-    return span, not _is_over(a.early + until, b.late)
-
-
-@inlined
-def stay(problem: Problem, profile: int, stop: int) -> Span:
-    """Return the visit of a stop as a part of a route."""
-    service = service_at(problem, profile, stop) + problem.held[stop]
-    return Span(service, problem.opens[stop], problem.closes[stop])
-
-
-@inlined
-def head_at(plan: WorkingPlan, node: int) -> Span:
-    """Return the route up to a node."""
-    return Span(plan.head[node, 0], plan.head[node, 1], plan.head[node, 2])
-
-
-@inlined
-def tail_at(plan: WorkingPlan, node: int) -> Span:
-    """Return the route from a node on."""
-    return Span(plan.tail[node, 0], plan.tail[node, 1], plan.tail[node, 2])
-
-
-@inlined
-def times_of(
-    problem: Problem, plan: WorkingPlan, slot: int, span: Span, released: float
-) -> tuple[float, float]:
-    """Return the time that a whole route takes, and when it ends.
-
-    Args:
-        problem: The fleet.
-        plan: Where the route is changed.
-        slot: The route.
-        span: The changed route.
-        released: When the stop that is new in it is ready to be loaded.
-
-    Returns:
-        The time, infinite where the vehicle would have to leave too late, and the end.
-    """
-    released = max(released, plan.value[slot, RELEASED])
-    departs = max(span.early, released)
-    end = departs + span.time
-    if _is_over(departs, span.late, end):
-        return np.inf, 0.0
-    if problem.early:
-        return end - max(problem.departs[problem.kind[slot]], released), end
-    return span.time, end
-
-
-@inlined
-def set_span(rows: Array, node: int, span: Span) -> None:
+def _set_span(rows: Array, node: int, span: Span) -> None:
     """Write what is known of a route up to a node, or from it on."""
     rows[node, 0], rows[node, 1], rows[node, 2] = span.time, span.early, span.late
 
@@ -152,8 +76,8 @@ def _set_ends(problem: Problem, plan: WorkingPlan, slot: int) -> None:
     """Write when a route may begin and end."""
     start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
-    set_span(plan.head, start, Span(0.0, departs, problem.leaves_by[kind]))
-    set_span(plan.tail, start + 1, Span(0.0, 0.0, problem.returns[kind]))
+    _set_span(plan.head, start, Span(0.0, departs, problem.leaves_by[kind]))
+    _set_span(plan.tail, start + 1, Span(0.0, 0.0, problem.returns[kind]))
 
 
 @inlined
@@ -167,16 +91,17 @@ def set_times(problem: Problem, plan: WorkingPlan, slot: int, changed: tuple[int
     span = head_at(plan, plan.previous[node])
     while node != end:
         span, _ = joined(span, plan.step[node, problem.clock], stay(problem, profile, node))
-        set_span(plan.head, node, span)
+        _set_span(plan.head, node, span)
         node = plan.next[node]
     span, _ = joined(span, plan.step[end, problem.clock], tail_at(plan, end))
-    time, plan.ready[end] = times_of(problem, plan, slot, span, 0.0)
+    kind, released = problem.kind[slot], plan.value[slot, RELEASED]
+    time, plan.ready[end] = times_of(problem, kind, span, released)
     plan.value[slot, problem.clock], plan.late[end] = time, 0.0
     node, span = last, tail_at(plan, plan.next[last])
     while node != start:
         onward = plan.step[plan.next[node], problem.clock]
         span, _ = joined(stay(problem, profile, node), onward, span)
-        set_span(plan.tail, node, span)
+        _set_span(plan.tail, node, span)
         node = plan.previous[node]
     return time < np.inf
 
@@ -203,7 +128,7 @@ def _set_heads(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     kind, profile = problem.kind[slot], problem.profile[slot]
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     span = Span(0.0, departs, problem.leaves_by[kind])
-    set_span(plan.head, start, span)
+    _set_span(plan.head, start, span)
     at, node = problem.place[start], plan.next[start]
     while node != start + 1:
         leg_to = plan.step[node, problem.clock]
@@ -212,7 +137,7 @@ def _set_heads(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
             leg_to -= away
             span, _ = joined(span, away, Span(0.0, plan.released[node], np.inf))
         span, _ = joined(span, leg_to, stay(problem, profile, node))
-        set_span(plan.head, node, span)
+        _set_span(plan.head, node, span)
         at, node = node, plan.next[node]
 
 
@@ -267,8 +192,8 @@ def _set_empty(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> No
     for column in range(plan.value.shape[1]):
         plan.value[slot, column] = 0.0
     kind, profile = problem.kind[slot], problem.profile[slot]
-    set_span(plan.head, start, Span(0.0, problem.departs[kind], problem.leaves_by[kind]))
-    set_span(plan.tail, end, Span(0.0, 0.0, problem.returns[kind]))
+    _set_span(plan.head, start, Span(0.0, problem.departs[kind], problem.leaves_by[kind]))
+    _set_span(plan.tail, end, Span(0.0, 0.0, problem.returns[kind]))
     plan.ready[start] = problem.departs[kind]
     plan.late[start] = 0.0
     plan.along[start] = 0.0
@@ -320,7 +245,7 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
     span = Span(0.0, departs, problem.leaves_by[kind])
     in_time = not _is_over(departs, problem.leaves_by[kind])
-    set_span(plan.head, start, span)
+    _set_span(plan.head, start, span)
     ready, late = departs, 0.0
     plan.ready[start], plan.late[start] = ready, late
     at, node = problem.place[start], plan.next[start]
@@ -336,7 +261,7 @@ def _forward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> tupl
             late += begin - problem.due[node]
         ready = begin + service_at(problem, profile, node)
         span, _ = joined(span, leg_to, stay(problem, profile, node))
-        set_span(plan.head, node, span)
+        _set_span(plan.head, node, span)
         plan.ready[node], plan.late[node] = ready, late
         at, node = node, plan.next[node]
     ready += plan.step[end, problem.clock]
@@ -384,7 +309,7 @@ def _backward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> Non
     """Write what is known from each node of a route on."""
     span, end = Span(0.0, 0.0, problem.returns[problem.kind[slot]]), start + 1
     profile = problem.profile[slot]
-    set_span(plan.tail, end, span)
+    _set_span(plan.tail, end, span)
     node = plan.previous[end]
     while node != start:
         after = plan.next[node]
@@ -395,5 +320,5 @@ def _backward(problem: Problem, plan: WorkingPlan, slot: int, start: int) -> Non
             span, _ = joined(Span(0.0, plan.released[after], np.inf), onward, span)
             leg_from = away
         span, _ = joined(stay(problem, profile, node), leg_from, span)
-        set_span(plan.tail, node, span)
+        _set_span(plan.tail, node, span)
         node = plan.previous[node]

@@ -9,7 +9,8 @@ import numpy as np
 from service.fleet.search.changes import begin_iteration, save_slot
 from service.fleet.search.problem import MOST, Indices, Problem
 from service.fleet.search.reloads import SELDOM, load_anew
-from service.fleet.search.route import head_at, joined, measure, tail_at
+from service.fleet.search.route import measure
+from service.fleet.search.spans import head_at, joined, tail_at
 from service.fleet.search.working_plan import (
     OUTSIDE,
     REMOVED,

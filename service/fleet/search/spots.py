@@ -14,15 +14,9 @@ from service.fleet.search.problem import (
     SECOND,
     Problem,
 )
-from service.fleet.search.route import (
-    head_at,
-    joined,
-    measure,
-    stay,
-    tail_at,
-    times_of,
-)
-from service.fleet.search.spots_of_day import cost_over_the_day
+from service.fleet.search.route import measure
+from service.fleet.search.routes_of_day import cost_over_the_day
+from service.fleet.search.spans import head_at, times_with
 from service.fleet.search.values import Values, drives_too_far, grown_cost
 from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import (
@@ -214,13 +208,8 @@ def _timed(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot) -> tuple[
     slot, before, via, onward = spot
     profile, after = problem.profile[slot], plan.next[before]
     there = way(problem, profile, problem.place[before], via, stop, problem.clock)
-    span, kept = joined(head_at(plan, before), there, stay(problem, profile, stop))
-    if not kept:
-        return np.inf, 0.0
     away = way(problem, profile, stop, onward, problem.place[after], problem.clock)
-    span, kept = joined(span, away, tail_at(plan, after))
-    released = -np.inf if problem.reloads else problem.release[stop]
-    return times_of(problem, plan, slot, span, released) if kept else (np.inf, 0.0)
+    return times_with(problem, plan, (slot, stop, after), head_at(plan, before), (there, away))
 
 
 @inlined
