@@ -247,6 +247,13 @@ class Fleet:
         )
 
     @cached_property
+    def has_one_cost(self) -> bool:
+        """Whether both costs are the same."""
+        if self.lines:
+            return self._are_alike and self.lines[0].factor == self.lines[1].factor
+        return self.day is None and all(np.array_equal(*each) for each in self._by_profile)
+
+    @cached_property
     def _are_alike(self) -> bool:
         """Whether costs are lines between the same places, so that one is in proportion to both."""
         if not self.lines:

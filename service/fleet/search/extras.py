@@ -1,4 +1,4 @@
-"""The arrays of a fleet that few need: neighbours, promises, spreads, and visits that wait."""
+"""The arrays of a fleet that few need: bounds, neighbours, promises, spreads, waiting visits."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -16,11 +16,14 @@ Indices = NDArray[np.int64]
 Nodes = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 NO_PROMISE = -2
+_NEAR = 100  # stops that are near a stop, at most
 
 
 class Extras(NamedTuple):
     """The neighbours of n stops, the promises and the spread, where an objective needs them."""
 
+    times_beside: Array  # (n, k, 2), of legs from the neighbours of each stop, and to them
+    least_times: Array  # (n, 2), of any leg to each stop, and from it
     overlaps: bool  # whether overlap is an objective
     beside: Nodes  # (n, k), the neighbours of each stop, and how much each counts: see overlap.py
     weights: Array  # (n, k)
@@ -102,9 +105,16 @@ def _filled(
     return filled
 
 
-def extras_of(fleet: Fleet, forbidden: float) -> Extras:
-    """Return the arrays of a fleet, with a time of forbidden legs. O(n^2) for overlap."""
+def extras_of(fleet: Fleet, forbidden: float, neighbours: Nodes) -> Extras:
+    """Return the arrays of a fleet. O(n^2).
+
+    Args:
+        fleet: A fleet.
+        forbidden: What a forbidden leg costs.
+        neighbours: The k neighbours of each stop beside which it is tried, shape (n, k).
+    """
     rules = fleet.rules
+    beside, least = _least_times(fleet, neighbours)
     overlaps = "overlap" in rules.over
     near = nearness(fleet) if overlaps else Nearness(np.empty((1, 0), np.int32), np.empty((1, 0)))
     n, k = near.stops.shape
@@ -119,6 +129,8 @@ def extras_of(fleet: Fleet, forbidden: float) -> Extras:
     deviations = np.array([_deviations(rules, each) for each in range(len(rules.over))])
     types = (visit.promised_to for visit in rules.visits)
     return Extras(
+        times_beside=np.minimum(beside, forbidden),
+        least_times=np.minimum(least, forbidden),
         overlaps=overlaps,
         beside=near.stops,
         weights=near.weights,
@@ -140,6 +152,38 @@ def extras_of(fleet: Fleet, forbidden: float) -> Extras:
         deviations=deviations,
         most_deviations=max(0.0, deviations[rules.over.index("max")]) if longest else 0.0,
     )
+
+
+def _least_times(fleet: Fleet, neighbours: Nodes) -> tuple[Array, Array]:
+    """Return bounds on the times of legs: see Extras. They are 0 where times are not all known."""
+    rules = fleet.rules
+    beside, least = np.zeros((*neighbours.shape, 2)), np.zeros((rules.n, 2))
+    paces = {(each.speed_factor, each.profile) for each in rules.vehicles}
+    if rules.clock is None or fleet.day is not None or rules.reloads or paces != {(1, 0)}:
+        return beside, least
+    near, stops = neighbours.astype(np.int64), np.arange(rules.n)[:, np.newaxis]
+    if fleet.lines:
+        beside[:] = fleet.lines[rules.clock].legs(near, stops)[:, :, np.newaxis]
+    else:
+        costs = fleet.costs[rules.clock]
+        beside[:, :, 0], beside[:, :, 1] = costs[near, stops], costs[stops, near]
+    to, away = fleet.nearest(rules.clock)
+    # A leg from anywhere, or to anywhere, takes no time.
+    least[:, 0] = 0 if any(each.start is None for each in rules.vehicles) else to
+    least[:, 1] = 0 if any(each.end is None for each in rules.vehicles) else away
+    return beside, least
+
+
+def neighbours_of(fleet: Fleet, clients: Nodes) -> Nodes:
+    """Return the nearest stops to visit of each stop, shape (n, k), in both costs together."""
+    k = min(_NEAR, len(clients) - 1)
+    near = np.zeros((fleet.rules.n, k), np.int32)
+    for stop in clients.tolist():
+        away = fleet.away(stop)[clients]
+        away[clients == stop] = np.inf
+        first = np.argpartition(away, k - 1)[:k] if k else np.empty(0, int)
+        near[stop] = clients[first[np.argsort(away[first], kind="stable")]]
+    return near
 
 
 def _sampled(fleet: Fleet, forbidden: float) -> Array:

@@ -3,10 +3,9 @@
 A vehicle that may load again may do so just before or just after the stop.
 """
 
+from service.fleet.rounding import is_over
 from service.fleet.search.companions import may_join, order_kept
-from service.fleet.search.problem import (
-    Problem,
-)
+from service.fleet.search.problem import NEIGHBOURS, Problem
 from service.fleet.search.spots import Place, Spot, better_at, nowhere
 from service.fleet.search.waits import bound
 from service.fleet.search.working_plan import (
@@ -22,11 +21,14 @@ from service.fleet.search.working_plan import (
     State,
     WorkingPlan,
     free_slot,
+    service_at,
+    slot_of,
 )
 from service.jit import compiled, inlined
 from service.search.local_search import random_below
 
-_NEIGHBOURS = 30  # beside which a stop is tried
+_is_over = inlined(is_over)
+
 _SELDOM = 3  # one time in so many, one trip more is tried where the stop fits without
 _FEW = 8  # of them that are in routes: then all routes are tried
 # Where so many more stops are outside than are inserted, one that does not fit near its neighbours
@@ -43,19 +45,11 @@ def best_place(state: State, stop: int, most: float) -> Place:
     problem, plan, _ = state
     best = nowhere(most)
     plan.counts[TRY] += 1
-    tried = 0
-    neighbours = min(_NEIGHBOURS, problem.near.shape[1])
-    for number in range(neighbours):
-        beside = problem.near[stop, number]
-        slot = plan.route[beside]
-        if slot < 0:
-            continue
-        tried += 1
-        if not has_room(problem, plan, stop, slot):
-            continue
-        best = _better(state, stop, slot, beside, best)
-        best = _better(state, stop, slot, plan.previous[beside], best)
-    if tried < _FEW or (best.slot < 0 and _looks_far(plan)):
+    if problem.simple:
+        inside, best = _beside_if_simple(state, stop, best)
+    else:
+        inside, best = _beside(state, stop, best)
+    if inside < _FEW or (best.slot < 0 and _looks_far(plan)):
         best = _anywhere(state, stop, best)
     for kind in range(plan.counts[TYPE], plan.counts[TYPES_END]):
         slot = new_slot(state, kind)
@@ -63,6 +57,76 @@ def best_place(state: State, stop: int, most: float) -> Place:
             best = _better(state, stop, slot, len(problem.demand) + 2 * slot, best)
     # Of two equal places that in a route of its own is the better: it depends on nothing.
     return _between_trips(state, stop, best) if plan.counts[MORE_TRIPS] > 0 else best
+
+
+@inlined
+def _beside(state: State, stop: int, best: Place) -> tuple[int, Place]:
+    """Return how many neighbours of a stop are in routes, and the best place so far or by these."""
+    problem, plan, _ = state
+    inside = 0
+    for number in range(min(NEIGHBOURS, problem.near.shape[1])):
+        beside = problem.near[stop, number]
+        slot = plan.route[beside]
+        if slot < 0:
+            continue
+        inside += 1
+        if not has_room(problem, plan, stop, slot):
+            continue
+        best = _better(state, stop, slot, beside, best)
+        best = _better(state, stop, slot, plan.previous[beside], best)
+    return inside, best
+
+
+@inlined
+def _beside_if_simple(state: State, stop: int, best: Place) -> tuple[int, Place]:
+    """Do the same where loads and times alone rule places out: most of them, and all at first.
+
+    No branch of the first loop depends on the plan: a processor would predict half of them wrongly.
+    """
+    problem, plan, _ = state
+    inside = found = 0
+    for number in range(min(NEIGHBOURS, problem.near.shape[1])):
+        node = problem.near[stop, number]
+        slot = plan.route[node]
+        fits = slot >= 0
+        inside += fits
+        slot = max(slot, 0)
+        for dimension in range(plan.load.shape[1]):
+            load = plan.load[slot, dimension] + problem.demand[stop, dimension]
+            fits &= load <= problem.capacity[problem.kind[slot], dimension]
+        here, back = (
+            problem.extras.times_beside[stop, number, 0],
+            problem.extras.times_beside[stop, number, 1],
+        )
+        there, away = problem.extras.least_times[stop, 0], problem.extras.least_times[stop, 1]
+        plan.places[found] = node
+        found += fits & _may_be_in_time(problem, plan, stop, slot, node, (here, away))
+        before = max(plan.previous[node], 0)
+        plan.places[found] = before
+        found += fits & _may_be_in_time(problem, plan, stop, slot, before, (there, back))
+    for place in range(found):
+        before = plan.places[place]
+        if not _passes_by(plan, before):
+            best = _after(state, stop, slot_of(problem, plan, before), before, best)
+    return inside, best
+
+
+@inlined
+def _may_be_in_time(
+    problem: Problem,
+    plan: WorkingPlan,
+    stop: int,
+    slot: int,
+    before: int,
+    legs: tuple[float, float],
+) -> bool:
+    """Return whether a stop after a node may be in time, for all that bounds on its legs say."""
+    if problem.clock < 0:
+        return True
+    begin = max(plan.head[before, 0] + plan.head[before, 1] + legs[0], problem.opens[stop])
+    end = begin + service_at(problem, problem.profile[slot], stop) + legs[1]
+    late = _is_over(begin, problem.closes[stop])
+    return not (late | _is_over(end, plan.tail[plan.next[before], 2]))
 
 
 @inlined
@@ -162,20 +226,31 @@ def blinks(plan: WorkingPlan) -> bool:
 
 
 @inlined
-def _better(
-    state: State,
-    stop: int,
-    slot: int,
-    before: int,
-    best: Place,
-) -> Place:
+def _better(state: State, stop: int, slot: int, before: int, best: Place) -> Place:
     """Return the better of two places: the best so far, and that after a node."""
     problem, plan, _ = state
+    if _passes_by(plan, before):
+        return best
+    if problem.clock >= 0:
+        legs = problem.extras.least_times[stop, 0], problem.extras.least_times[stop, 1]
+        if not _may_be_in_time(problem, plan, stop, slot, before, legs):
+            return best
+    return _after(state, stop, slot, before, best)
+
+
+@inlined
+def _passes_by(plan: WorkingPlan, before: int) -> bool:
+    """Return whether not to try a stop after a node: it was tried there, or at random."""
     if plan.tried[before] == plan.counts[TRY]:
-        return best
+        return True
     plan.tried[before] = plan.counts[TRY]
-    if blinks(plan):
-        return best
+    return blinks(plan)
+
+
+@inlined
+def _after(state: State, stop: int, slot: int, before: int, best: Place) -> Place:
+    """Return the better of two places: the best so far, and that after a node, which is tried."""
+    problem, plan, _ = state
     if problem.ordered and not order_kept(problem, plan, stop, slot, before):
         return best
     if problem.reloads:

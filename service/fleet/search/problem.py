@@ -11,7 +11,7 @@ from service.fleet.loads import loads_of
 from service.fleet.measures.table import Measure
 from service.fleet.rules import Over, Rules
 from service.fleet.search.day import FleetDay, day_of
-from service.fleet.search.extras import Extras, Waits, extras_of, waits_of
+from service.fleet.search.extras import Extras, Waits, extras_of, neighbours_of, waits_of
 from service.fleet.vehicles import Pace, VehicleType
 from service.jit import by_reference
 
@@ -39,7 +39,7 @@ WEIGHTED: Mapping[str, int] = {
     "changes": CHANGES,
     "on_time": LATE,
 }
-_NEAR = 100  # stops that are near a stop, at most
+NEIGHBOURS = 30  # of these, beside which it is tried first
 _FORBIDDEN = 1e4  # cost of a forbidden leg, in the cost of a plan in which each leg is the largest
 
 
@@ -56,6 +56,7 @@ class Problem(NamedTuple):
     places: Array  # (n, 2, 3), where stops are in each line; (0, 2, 3) where costs are stored
     curved: Flags  # (2,), whether each line is along a sphere
     factors: Array  # (p, 2), what a line of length 1 costs
+    alike: bool  # whether both costs are the same
     day: FleetDay | None  # both costs over the day; `costs` are then their means
     clock: int  # the number of the costs that are time; -1 for none
     limited: int  # the number of the costs that `longest` bounds; -1 for none
@@ -86,6 +87,7 @@ class Problem(NamedTuple):
     visited: Flags  # (n,), whether each stop is one of them
     tasks: Nodes  # (t,), those that are inserted: all but deliveries, which come with pick-ups
     ships: bool  # whether there are shipments
+    simple: bool  # whether loads alone say which stops a route has room for
     shipped: Flags  # (n,), whether each stop is in one
     delivery: Nodes  # (n,), where the load of each pick-up goes; -1 for other stops
     pickup: Nodes  # (n,), where the load of each delivery is from
@@ -140,6 +142,7 @@ def problem_of(fleet: Fleet) -> Problem:
     opens, closes = windows[:, 0, 0], windows[:, -1, 1]
     clients = np.array(rules.clients, np.int32)
     delivery, pickup = _shipped(rules)
+    near = neighbours_of(fleet, clients)
     counts = [min(vehicle.count, len(clients)) for vehicle in vehicles]
     kind = np.repeat(np.arange(len(vehicles)), counts)
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in vehicles]
@@ -154,6 +157,7 @@ def problem_of(fleet: Fleet) -> Problem:
         places=np.ascontiguousarray(np.moveaxis(np.array(places), 0, 1)),
         curved=np.array([line.curved for line in fleet.lines], np.bool_),
         factors=np.array([_driven(rules, factors, each.speed, forbidden) for each in profiles]),
+        alike=fleet.has_one_cost and (rules.clock is None or {each.speed for each in paces} == {1}),
         day=day_of(fleet, forbidden),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if rules.limited is None else rules.limited,
@@ -177,13 +181,14 @@ def problem_of(fleet: Fleet) -> Problem:
         wanted=_floats([visit.wanted for visit in visits]),
         urgency=_floats([visit.urgency for visit in visits]),
         begin=float(rules.begin),
-        extras=extras_of(fleet, forbidden),
+        extras=extras_of(fleet, forbidden, near[:, :NEIGHBOURS]),
         prize=_floats([np.inf if visit.prize is None else visit.prize for visit in visits]),
-        near=_nearest(fleet, clients),
+        near=near,
         clients=clients,
         visited=np.isin(np.arange(rules.n), clients),
         tasks=clients[pickup[clients] < 0],
         ships=bool(rules.shipments),
+        simple=not (rules.shipments or rules.takes or rules.reloads or rules.groups),
         shipped=(delivery >= 0) | (pickup >= 0),
         delivery=delivery,
         pickup=pickup,
@@ -348,18 +353,6 @@ def _column(rules: Rules, objective: int) -> int:
         assert rules.limited is not None
         return rules.limited
     return WEIGHTED.get(over, rules.layers[objective])
-
-
-def _nearest(fleet: Fleet, clients: Nodes) -> Nodes:
-    """Return the nearest stops to visit of each stop, shape (n, k), in both costs together."""
-    k = min(_NEAR, len(clients) - 1)
-    near = np.zeros((fleet.rules.n, k), np.int32)
-    for stop in clients.tolist():
-        away = fleet.away(stop)[clients]
-        away[clients == stop] = np.inf
-        first = np.argpartition(away, k - 1)[:k] if k else np.empty(0, int)
-        near[stop] = clients[first[np.argsort(away[first], kind="stable")]]
-    return near
 
 
 @by_reference

@@ -20,6 +20,7 @@ from service.fleet.search.working_plan import (
     WorkingPlan,
     leave_out,
     leg,
+    slot_of,
     unlink,
 )
 from service.jit import compiled, inlined, standalone
@@ -153,7 +154,7 @@ def cross(state: State, first: int, second: int) -> None:
         return
     if problem.ships or problem.grouped or problem.reloads or problem.waits.given:
         return
-    a, b = _slot_of(problem, plan, first), _slot_of(problem, plan, second)
+    a, b = slot_of(problem, plan, first), slot_of(problem, plan, second)
     if a < 0 or b < 0 or a == b or problem.kind[a] != problem.kind[b]:
         return
     if problem.clock >= 0 and not (
@@ -171,13 +172,6 @@ def cross(state: State, first: int, second: int) -> None:
 
 
 @inlined
-def _slot_of(problem: Problem, plan: WorkingPlan, node: int) -> int:
-    """Return the route of a stop, a start or an end; -1 for a stop outside."""
-    n = len(problem.demand)
-    return (node - n) // 2 if node >= n else plan.route[node]
-
-
-@inlined
 def _in_time(problem: Problem, plan: WorkingPlan, slot: int, node: int, after: int) -> bool:
     """Return whether the tail from one node on is in time behind another."""
     place, there = problem.place[node], problem.place[after]
@@ -189,7 +183,7 @@ def _in_time(problem: Problem, plan: WorkingPlan, slot: int, node: int, after: i
 def _exchange_tails(problem: Problem, plan: WorkingPlan, first: int, second: int) -> None:
     """Exchange what follows two nodes, up to the ends. A second time undoes it."""
     n = len(problem.demand)
-    a, b = _slot_of(problem, plan, first), _slot_of(problem, plan, second)
+    a, b = slot_of(problem, plan, first), slot_of(problem, plan, second)
     end_a, end_b = n + 2 * a + 1, n + 2 * b + 1
     next_a, next_b = plan.next[first], plan.next[second]
     last_a, last_b = plan.previous[end_a], plan.previous[end_b]

@@ -130,17 +130,12 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
     longer: then its vehicle cannot leave as late as is assumed here. Breaks do not count.
     """
     problem, plan, direction = state
-    slot, before, via, onward = spot
-    after = plan.next[before]
-    a, b = problem.place[before], problem.place[after]
-    kind, profile, end = problem.kind[slot], problem.profile[slot], 0.0
-    first = way(problem, profile, a, via, stop, 0) + way(problem, profile, stop, onward, b, 0)
-    first -= plan.step[after, 0]
-    if first >= 0.5 * problem.forbidden:
-        return np.inf
-    second = way(problem, profile, a, via, stop, 1) + way(problem, profile, stop, onward, b, 1)
-    second -= plan.step[after, 1]
-    if _legs_too_much(state, slot, first, second, most):
+    slot, before, end = spot.slot, spot.before, 0.0
+    kind = problem.kind[slot]
+    first = second = _detour(problem, plan, stop, spot, 0)
+    if not problem.alike:
+        second = _detour(problem, plan, stop, spot, 1)
+    if first >= 0.5 * problem.forbidden or _legs_too_much(state, slot, first, second, most):
         return np.inf
     loaded = plan.value[slot, LOADED]
     if direction.load_distance > 0 and not problem.reloads:
@@ -164,6 +159,16 @@ def insertion_cost(state: State, stop: int, spot: Spot, most: float) -> float:
         later = _lateness(problem, plan, slot, stop, before)
         return np.inf if later == np.inf else cost + direction.lateness * (later - late)
     return cost
+
+
+@inlined
+def _detour(problem: Problem, plan: WorkingPlan, stop: int, spot: Spot, layer: int) -> float:
+    """Return what a cost of the legs of a route grows by with a stop in a spot."""
+    slot, before, via, onward = spot
+    after, profile = plan.next[before], problem.profile[slot]
+    there = way(problem, profile, problem.place[before], via, stop, layer)
+    away = way(problem, profile, stop, onward, problem.place[after], layer)
+    return there + away - plan.step[after, layer]
 
 
 @inlined

@@ -6,7 +6,15 @@ from typing import NamedTuple
 import numpy as np
 
 from service.fleet.rounding import is_over
-from service.fleet.search.problem import COLUMNS, Array, Direction, Indices, Nodes, Problem
+from service.fleet.search.problem import (
+    COLUMNS,
+    NEIGHBOURS,
+    Array,
+    Direction,
+    Indices,
+    Nodes,
+    Problem,
+)
 from service.jit import by_reference, compiled, inlined
 
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
@@ -70,6 +78,7 @@ class WorkingPlan(NamedTuple):
     removed: Nodes  # (n,), stops to insert
     key: Array  # (n,), by which they are sorted
     buffer: Nodes  # (n,), scratch space
+    places: Nodes  # (2 k + 1,), scratch space: the nodes before places for a stop
     saved: Nodes  # (r,), slots that changed
     saved_size: Nodes  # (r,)
     saved_stops: Nodes  # (n,)
@@ -139,6 +148,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         removed=_nothing(n),
         key=np.zeros(n),
         buffer=_nothing(n),
+        places=_nothing(2 * NEIGHBOURS + 1),
         saved=_nothing(r),
         saved_size=_nothing(r),
         saved_stops=_nothing(n),
@@ -165,6 +175,13 @@ def _nothing(size: int) -> Nodes:
 def _mixed(seed: int) -> int:
     """Return the first state of the random numbers of a seed: odd, and not small."""
     return int(np.random.default_rng(seed).integers(2**20, 2**62)) | 1
+
+
+@inlined
+def slot_of(problem: Problem, plan: WorkingPlan, node: int) -> int:
+    """Return the route of a stop, a start or an end; -1 for a stop outside."""
+    n = len(problem.demand)
+    return (node - n) // 2 if node >= n else plan.route[node]
 
 
 @inlined
