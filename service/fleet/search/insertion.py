@@ -79,12 +79,13 @@ def _beside(state: State, stop: int, best: Place) -> tuple[int, Place]:
 
 @inlined
 def _beside_if_simple(state: State, stop: int, best: Place) -> tuple[int, Place]:
-    """Do the same where loads and times alone rule places out: most of them, and all at first.
+    """Return the same, sooner, where only loads and times forbid places.
 
-    No branch of the first loop depends on the plan: a processor would predict half of them wrongly.
+    First all places are found that these may allow, then each is tried.
     """
     problem, plan, _ = state
     inside = found = 0
+    # No branch of this loop depends on the plan: a processor would predict half of them wrongly.
     for number in range(min(NEIGHBOURS, problem.near.shape[1])):
         node = problem.near[stop, number]
         slot = plan.route[node]
@@ -94,16 +95,12 @@ def _beside_if_simple(state: State, stop: int, best: Place) -> tuple[int, Place]
         for dimension in range(plan.load.shape[1]):
             load = plan.load[slot, dimension] + problem.demand[stop, dimension]
             fits &= load <= problem.capacity[problem.kind[slot], dimension]
-        here, back = (
-            problem.extras.times_beside[stop, number, 0],
-            problem.extras.times_beside[stop, number, 1],
-        )
-        there, away = problem.extras.least_times[stop, 0], problem.extras.least_times[stop, 1]
+        beside, least = problem.extras.times_beside[stop, number], problem.extras.least_times[stop]
         plan.places[found] = node
-        found += fits & _may_be_in_time(problem, plan, stop, slot, node, (here, away))
+        found += fits & _may_be_in_time(problem, plan, stop, slot, node, (beside[0], least[1]))
         before = max(plan.previous[node], 0)
         plan.places[found] = before
-        found += fits & _may_be_in_time(problem, plan, stop, slot, before, (there, back))
+        found += fits & _may_be_in_time(problem, plan, stop, slot, before, (least[0], beside[1]))
     for place in range(found):
         before = plan.places[place]
         if not _passes_by(plan, before):
@@ -120,7 +117,7 @@ def _may_be_in_time(
     before: int,
     legs: tuple[float, float],
 ) -> bool:
-    """Return whether a stop after a node may be in time, for all that bounds on its legs say."""
+    """Return whether a stop after a node may be in time, if its legs took as little as is given."""
     if problem.clock < 0:
         return True
     begin = max(plan.head[before, 0] + plan.head[before, 1] + legs[0], problem.opens[stop])

@@ -87,7 +87,7 @@ class Problem(NamedTuple):
     visited: Flags  # (n,), whether each stop is one of them
     tasks: Nodes  # (t,), those that are inserted: all but deliveries, which come with pick-ups
     ships: bool  # whether there are shipments
-    simple: bool  # whether loads alone say which stops a route has room for
+    simple: bool  # whether only loads and times forbid places for stops
     shipped: Flags  # (n,), whether each stop is in one
     delivery: Nodes  # (n,), where the load of each pick-up goes; -1 for other stops
     pickup: Nodes  # (n,), where the load of each delivery is from
