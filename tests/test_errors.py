@@ -2,7 +2,8 @@
 
 import ast
 import pickle
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 from string import Formatter
 from typing import Any
@@ -33,9 +34,21 @@ OF_PYDANTIC = {
 }
 
 
-def codes_in(tree: ast.AST) -> Iterator[str]:
+@cache
+def nodes() -> dict[Path, list[ast.AST]]:
+    """The syntax of each module of the service: to read all takes a second and more."""
+    paths = (path for path in SERVICE.rglob("*.py") if "client" not in path.parts)
+    return {path: list(ast.walk(ast.parse(path.read_text()))) for path in paths}
+
+
+def all_nodes() -> Iterator[ast.AST]:
+    for each in nodes().values():
+        yield from each
+
+
+def codes_in(syntax: Iterable[ast.AST]) -> Iterator[str]:
     """The literal codes in calls of Refusal and in the attribute `code` of its classes."""
-    for node in ast.walk(tree):
+    for node in syntax:
         match node:
             case (
                 ast.Call(func=ast.Name("Refusal"), args=[ast.Constant(str(code)), *_])
@@ -50,21 +63,15 @@ def codes_in(tree: ast.AST) -> Iterator[str]:
 
 
 def test_every_code_of_the_table_is_raised_and_every_code_raised_is_in_it() -> None:
-    raised = {
-        code
-        for path in SERVICE.rglob("*.py")
-        if "client" not in path.parts
-        for code in codes_in(ast.parse(path.read_text()))
-    }
-    assert raised == set(PROBLEMS)
+    assert set(codes_in(all_nodes())) == set(PROBLEMS)
 
 
 def test_no_code_is_raised_that_is_not_written_out() -> None:
     """The test above sees literal codes alone."""
-    for path in SERVICE.rglob("*.py"):
-        if path.parent.name == "errors" or path.name == "openapi.py" or "client" in path.parts:
+    for path, syntax in nodes().items():
+        if path.parent.name == "errors" or path.name == "openapi.py":
             continue
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in syntax:
             match node:
                 case ast.Call(func=ast.Name("Refusal"), args=arguments):
                     assert isinstance(arguments[0], ast.Constant), (path, node.lineno)
@@ -89,9 +96,9 @@ def test_a_refusal_travels_between_processes(refusal: Refusal) -> None:
     assert copy.document("id") == refusal.document("id")
 
 
-def faults_in(tree: ast.AST) -> Iterator[tuple[str, set[str] | None]]:
+def faults_in(syntax: Iterable[ast.AST]) -> Iterator[tuple[str, set[str] | None]]:
     """The literal codes of faults, with the names of their values; None where these come by **."""
-    for node in ast.walk(tree):
+    for node in syntax:
         if not isinstance(node, ast.Call):
             continue
         name = getattr(node.func, "id", getattr(node.func, "attr", ""))
@@ -104,9 +111,9 @@ def faults_in(tree: ast.AST) -> Iterator[tuple[str, set[str] | None]]:
                     yield each.value, None if None in named else {str(each) for each in named}
 
 
-def unknown_in(tree: ast.AST) -> Iterator[str]:
+def unknown_in(syntax: Iterable[ast.AST]) -> Iterator[str]:
     """The texts that are given for the code of a fault or of an obstacle, and are none."""
-    for node in ast.walk(tree):
+    for node in syntax:
         match node:
             case ast.Call(
                 func=ast.Name("invalid" | "uncoverable" | "invalid_header"), args=[_, code]
@@ -125,21 +132,14 @@ def unknown_in(tree: ast.AST) -> Iterator[str]:
 
 def test_every_sentence_of_a_fault_is_used_with_its_values() -> None:
     """Codes that are chosen before are looked for as texts; pydantic's are not in the code."""
-    sources = [p.read_text() for p in SERVICE.rglob("*.py") if "client" not in p.parts]
-    used = {
-        str(node.value)
-        for source in sources
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.Constant)
-    }
+    used = {str(node.value) for node in all_nodes() if isinstance(node, ast.Constant)}
     assert {code for code in SENTENCES if code not in used} == OF_PYDANTIC
     assert {code for code in OBSTACLES if code not in used} == set()
-    assert [text for source in sources for text in unknown_in(ast.parse(source))] == []
-    for source in sources:
-        for code, given in faults_in(ast.parse(source)):
-            fields = {name for _, name, _, _ in Formatter().parse(SENTENCES[code]) if name}
-            optional = {"near", "values", "part", "pointer", "parameter", "row", "column"}
-            assert given is None or "values" in given or fields <= given <= fields | optional, code
+    assert list(unknown_in(all_nodes())) == []
+    for code, given in faults_in(all_nodes()):
+        fields = {name for _, name, _, _ in Formatter().parse(SENTENCES[code]) if name}
+        optional = {"near", "values", "part", "pointer", "parameter", "row", "column"}
+        assert given is None or "values" in given or fields <= given <= fields | optional, code
 
 
 @pytest.mark.parametrize(

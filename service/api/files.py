@@ -12,7 +12,7 @@ from service.api.body import receive_files
 from service.api.body_budget import BodyBudget
 from service.api.responses import compressed, json_bytes, problem_responses
 from service.api.task_parser import TaskParser
-from service.files.reading import Kind, NamedFile
+from service.files.reading import ColumnItem, DetailItem, Kind, NamedFile, NoteItem
 from service.files.upload import Upload
 from service.requests.fields import Maybe, optional
 
@@ -32,32 +32,6 @@ _FORM = {
     "required": ["file"],
 }
 _BODY = {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}
-
-
-class NoteItem(BaseModel):
-    """One assumption about the files."""
-
-    file: str
-    text: str
-    code: str = Field(description="tells notes apart")
-
-
-class ColumnItem(BaseModel):
-    """A column of a table."""
-
-    file: str
-    name: str
-    taken_for: str = Field(description="a field of stops or vehicles, or `detail`, or `ignored`")
-
-
-class DetailItem(BaseModel):
-    """A column that is not used for planning, but tells drivers something, as a phone number."""
-
-    column: str = Field(description="its name in the file")
-    texts: list[str] = Field(
-        description='of each stop of the request, in its order; "" where there is none. At most'
-        " 200 characters each"
-    )
 
 
 class FileAnswer(BaseModel):

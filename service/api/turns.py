@@ -1,13 +1,20 @@
 """Turns at a process that does one thing at a time: clients that wait get them in turn."""
 
 import asyncio
-from collections import deque
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
 
 from service.errors import QueueFull
+from service.jobs.fair_queue import FairQueue
 
-_REMEMBERED = 1000  # clients whose latest turn is remembered
+
+@dataclass(frozen=True, eq=False)
+class _Waiting:
+    """A client that waits for a turn, until the future has a result."""
+
+    client: str
+    came: asyncio.Future[None]
 
 
 class FairTurns:
@@ -22,9 +29,7 @@ class FairTurns:
 
     def __init__(self, most: int, most_of_client: int) -> None:
         self._most, self._most_of_client = most, most_of_client
-        self._waiting: dict[str, deque[asyncio.Future[None]]] = {}
-        self._latest: dict[str, int] = {}  # the number of each client's latest turn, ascending
-        self._number = 0
+        self._queue = FairQueue[_Waiting]()
         self._taken = False
 
     @asynccontextmanager
@@ -41,51 +46,33 @@ class FairTurns:
             self._pass_on()
 
     async def _wait(self, client: str, seconds: float) -> None:
-        if not self._taken:
-            self._taken = True
-            self._note_turn(client)
-            return
-        mine = self._waiting.get(client, ())
-        others = sum(map(len, self._waiting.values()))
-        if others >= self._most or len(mine) >= self._most_of_client:
+        mine = sum(each.client == client for each in self._queue)
+        if self._taken and (len(self._queue) >= self._most or mine >= self._most_of_client):
             raise QueueFull
-        came: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiting.setdefault(client, deque()).append(came)
+        waiting = _Waiting(client, asyncio.get_running_loop().create_future())
+        self._queue.append(waiting)
+        if not self._taken:
+            self._pass_on()
         try:
             async with asyncio.timeout(seconds):
-                await came
+                await waiting.came
         except BaseException as error:
-            self._give_up(client, came)
+            self._give_up(waiting)
             if isinstance(error, TimeoutError):
                 raise QueueFull from None
             raise
 
-    def _give_up(self, client: str, came: asyncio.Future[None]) -> None:
+    def _give_up(self, waiting: _Waiting) -> None:
         """Take back a place in the queue, or a turn that came at the same moment."""
-        if came.done() and not came.cancelled():
+        if waiting.came.done() and not waiting.came.cancelled():
             self._pass_on()
-            return
-        with suppress(KeyError, ValueError):
-            self._waiting[client].remove(came)
-            if not self._waiting[client]:
-                del self._waiting[client]
+        else:
+            self._queue.remove(waiting)
 
     def _pass_on(self) -> None:
         """Give the turn to the next that waits."""
-        self._taken = False
-        while self._waiting and not self._taken:
-            client = min(self._waiting, key=lambda each: self._latest.get(each, -1))
-            came = self._waiting[client].popleft()
-            if not self._waiting[client]:
-                del self._waiting[client]
-            if not came.done():
-                came.set_result(None)
-                self._taken = True
-                self._note_turn(client)
-
-    def _note_turn(self, client: str) -> None:
-        self._latest.pop(client, None)
-        self._latest[client] = self._number
-        self._number += 1
-        if len(self._latest) > _REMEMBERED:
-            del self._latest[next(iter(self._latest))]
+        following = self._queue.next(able=lambda each: not each.came.done())
+        self._taken = following is not None
+        if following is not None:
+            self._queue.take(following)
+            following.came.set_result(None)

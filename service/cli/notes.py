@@ -6,12 +6,12 @@ from paretour import RequestNote
 from typer import echo
 
 from service.errors.printable import printable
-from service.files.reading import FileNote
+from service.files.reading import NoteItem
 
 _printed: set[str] = set()  # of the files that this command has read
 
 
-def print_file_notes(notes: Iterable[FileNote]) -> None:
+def print_file_notes(notes: Iterable[NoteItem]) -> None:
     """Print what was assumed when files were read."""
     _printed.clear()
     for note in notes:

@@ -20,7 +20,7 @@ from service.files.column_names import (
     is_about_vehicles,
     plain_name,
 )
-from service.files.reading import LONGEST_NAME, Column, Source, WrongCell, quoted
+from service.files.reading import LONGEST_NAME, ColumnItem, Source, WrongCell, quoted
 from service.files.tables import ColumnLeftOut, Table, number_in, plain_numbers
 
 Read = TypeVar("Read")
@@ -172,9 +172,10 @@ class Columns:
         """Return whether any field of a column is a number, with any signs."""
         return any(map(is_number, self.table.texts(column)))
 
-    def listed(self) -> list[Column]:
+    def listed(self) -> list[ColumnItem]:
         """Return what each column in the file is taken for."""
-        return [Column(self.source.name, n[:LONGEST_NAME], field) for n, field, _ in self._placed()]
+        file = self.source.name
+        return [ColumnItem(file, name[:LONGEST_NAME], field) for name, field, _ in self._placed()]
 
     def _placed(self) -> list[ColumnLeftOut]:
         """Return all columns in the order of the file; the texts only of those that are not used.

@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from paretour.members import CoverageRequest, FleetRequest, FrontRequest
+from pydantic import Field
 
 from service.errors import Fault
 from service.errors import faults as faults_
@@ -70,33 +71,37 @@ class NamedFile:
 
 
 @dataclass(frozen=True)
-class FileNote:
-    """One thing that was assumed, as a sentence, with a code for programs."""
+class NoteItem:
+    """One assumption about the files."""
 
     file: str
     text: str
-    code: str
+    code: Annotated[str, Field(description="tells notes apart")]
 
 
 @dataclass(frozen=True)
-class Column:
-    """A column of a table, and the field that it was taken for, or `detail`, or `ignored`."""
+class ColumnItem:
+    """A column of a table."""
 
     file: str
     name: str
-    taken_for: str
+    taken_for: Annotated[
+        str, Field(description="a field of stops or vehicles, or `detail`, or `ignored`")
+    ]
 
 
 @dataclass(frozen=True)
-class Detail:
-    """A column of a table of stops that is not used for planning, but tells drivers something.
+class DetailItem:
+    """A column that is not used for planning, but tells drivers something, as a phone number."""
 
-    `texts` are those of the stops of the request, in their order; "" where there is none. There are
-    at most ten such columns, and a text has at most 200 characters.
-    """
-
-    column: str
-    texts: list[str]
+    column: Annotated[str, Field(description="its name in the file")]
+    texts: Annotated[
+        list[str],
+        Field(
+            description='of each stop of the request, in its order; "" where there is none. At most'
+            " 200 characters each"
+        ),
+    ]
 
 
 class UnreadableFile(ValueError):
@@ -108,7 +113,7 @@ class UnreadableFile(ValueError):
         choices: What they may be taken for instead, by file.
     """
 
-    columns: Sequence[Column] = ()
+    columns: Sequence[ColumnItem] = ()
     choices: Mapping[str, Sequence[str]] = MappingProxyType({})
 
     def __init__(self, *faults: Fault, least: str = "") -> None:
@@ -135,12 +140,12 @@ class Reading:
     kind: Kind
     request: Request
     name: str
-    notes: tuple[FileNote, ...] = ()
-    columns: tuple[Column, ...] = ()
+    notes: tuple[NoteItem, ...] = ()
+    columns: tuple[ColumnItem, ...] = ()
     choices: Mapping[str, Sequence[str]] = field(default_factory=dict)
     planes: list[list[float]] | None = None  # rows of x, y, x, y, if distances are to be rounded
     unknown_cells: list[list[int]] | None = None  # of a map: rows of 0, and 1 where it is unknown
-    details: tuple[Detail, ...] = ()
+    details: tuple[DetailItem, ...] = ()
 
     @property
     def document(self) -> Mapping[str, Any]:
@@ -181,10 +186,10 @@ class Source:
     bounds: Bounds
     work: Work = field(default_factory=Work)
     rows: list[tuple[int, list[str]]] | None = None  # of a sheet that was read
-    notes: list[FileNote] = field(default_factory=list)
-    columns: list[Column] = field(default_factory=list)
+    notes: list[NoteItem] = field(default_factory=list)
+    columns: list[ColumnItem] = field(default_factory=list)
     choices: list[str] = field(default_factory=list)  # fields that its columns may be taken for
-    supposed: list[Column] = field(default_factory=list)  # columns, while they are being read
+    supposed: list[ColumnItem] = field(default_factory=list)  # columns, while they are being read
     # The names of columns that are details, with their texts by the ids of stops.
     details: list[tuple[str, Mapping[str, str]]] = field(default_factory=list)
     # The faults of cells that cannot be read, by the numbers of their rows and columns.
@@ -198,7 +203,12 @@ class Source:
 
     def note(self, code: str, text: str) -> None:
         """Add a note on something that is assumed."""
-        self.notes.append(FileNote(self.name, printable(text), code))
+        self.notes.append(NoteItem(self.name, printable(text), code))
+
+    def note_once(self, code: str, begin: str, rest: str = "") -> None:
+        """Add a note, unless there is one that begins alike."""
+        if not any(note.text.startswith(begin) for note in self.notes):
+            self.note(code, f"{begin}{rest}")
 
     def note_left_out(self, what: str) -> None:
         """Note something in the file that is not supported for fleets."""
@@ -300,7 +310,7 @@ def reading_of_several(
     name = ", ".join(source.name for source in sources)
     found = [detail for source in sources for detail in source.details]
     ids = _ids_in(request) if found else []
-    details = tuple(Detail(each, [texts.get(i, "") for i in ids]) for each, texts in found)
+    details = tuple(DetailItem(each, [texts.get(i, "") for i in ids]) for each, texts in found)
     choices = choices_of(sources)
     return Reading(kind, request, name, notes, columns, choices, planes, details=details)
 

@@ -59,7 +59,7 @@ class TsplibFile:
         """Return the first word of a keyword's value; comments may follow it."""
         return (self.header.get(keyword, "").split() or ["nothing"])[0]
 
-    @property
+    @cached_property
     def dimension(self) -> int:
         """The number of cities.
 
@@ -79,11 +79,6 @@ class TsplibFile:
     def listed(self, section: str) -> list[str]:
         """Return the words of a section that is a list, which -1 may end."""
         return list(takewhile(lambda word: word != "-1", self.words(section)))
-
-    @cached_property
-    def nodes(self) -> int:
-        """The number of cities, as `dimension`, which is checked once."""
-        return self.dimension
 
     @cached_property
     def first_node(self) -> int:
@@ -144,12 +139,6 @@ def is_tsplib(text: str) -> bool:
 def split_tsplib(source: Source, text: str) -> TsplibFile:
     """Return the keywords and sections of a text. A section ends at the next keyword."""
     file = TsplibFile(source)
-    _fill(file, text)
-    return file
-
-
-def _fill(file: TsplibFile, text: str) -> None:
-    """Read the lines of a text into the keywords and sections of a file."""
     lines: list[list[str]] | None = None  # the words in each line of the current section
     for line in map(str.strip, text.split("\n")):
         line = _COMMENT.sub("", line)
@@ -170,6 +159,7 @@ def _fill(file: TsplibFile, text: str) -> None:
         else:
             _add(file, file.sections, name, lines)
             lines.extend([value.split()] if value else [])
+    return file
 
 
 def _add(file: TsplibFile, found: dict[str, Any], name: str, value: Any) -> None:

@@ -14,9 +14,9 @@ from service.files.maps.reader import with_grid
 from service.files.reader import read_files
 from service.files.reading import (
     Bounds,
-    FileNote,
     FileTooLarge,
     NamedFile,
+    NoteItem,
     Reading,
     UnreadableFile,
     WrongCell,
@@ -119,5 +119,5 @@ def _without_details(reading: Reading) -> Reading:
         for each in reading.columns
     ]
     text = "The columns for drivers were left out: they are too long. Ignore some of them."
-    note = FileNote(reading.name, text, "details")
+    note = NoteItem(reading.name, text, "details")
     return replace(reading, details=(), columns=tuple(columns), notes=(*reading.notes, note))

@@ -1,15 +1,22 @@
-"""A queue that takes submissions in turn by client."""
+"""A queue that takes submissions, or whatever else clients wait for, in turn by client."""
 
 from collections import deque
 from collections.abc import Callable, Container, Iterator
 from itertools import chain, count
-
-from service.jobs.submission import Submission
+from typing import Generic, Protocol, TypeVar
 
 _REMEMBERED = 1000  # clients whose latest turn is remembered
 
 
-class FairQueue:
+class _OfClient(Protocol):
+    @property
+    def client(self) -> str: ...
+
+
+Item = TypeVar("Item", bound=_OfClient)
+
+
+class FairQueue(Generic[Item]):
     """Waiting submissions, which clients have planned in turn.
 
     Clients without a running submission come first. Of these a newcomer is next, the earliest if
@@ -18,8 +25,8 @@ class FairQueue:
     """
 
     def __init__(self) -> None:
-        self._first: deque[Submission] = deque()
-        self._by_client: dict[str, deque[Submission]] = {}
+        self._first: deque[Item] = deque()
+        self._by_client: dict[str, deque[Item]] = {}
         self._turns: dict[str, int] = {}  # the number of each client's latest turn, ascending
         self._numbers = count()
 
@@ -27,21 +34,21 @@ class FairQueue:
         """Return how many wait."""
         return len(self._first) + sum(map(len, self._by_client.values()))
 
-    def __iter__(self) -> Iterator[Submission]:
+    def __iter__(self) -> Iterator[Item]:
         """Iterate over those that wait, client by client."""
         return chain(self._first, *self._by_client.values())
 
-    def append(self, submission: Submission) -> None:
+    def append(self, submission: Item) -> None:
         """Add a submission behind those of the same client."""
         self._by_client.setdefault(submission.client, deque()).append(submission)
 
-    def put_first(self, submission: Submission) -> None:
+    def put_first(self, submission: Item) -> None:
         """Add a submission before all others."""
         self._first.appendleft(submission)
 
     def next(
-        self, served: Container[str] = (), able: Callable[[Submission], bool] = lambda _: True
-    ) -> Submission | None:
+        self, served: Container[str] = (), able: Callable[[Item], bool] = lambda _: True
+    ) -> Item | None:
         """Return the next submission, which stays; None if none waits that can be run.
 
         Args:
@@ -57,7 +64,7 @@ class FairQueue:
             default=None,
         )
 
-    def take(self, submission: Submission) -> None:
+    def take(self, submission: Item) -> None:
         """Remove a waiting submission to run it: a turn of its client, unless it was put first."""
         if submission not in self._first:
             self._note_turn(submission.client)
@@ -69,7 +76,7 @@ class FairQueue:
         if len(self._turns) > _REMEMBERED:
             del self._turns[next(iter(self._turns))]
 
-    def remove(self, submission: Submission) -> None:
+    def remove(self, submission: Item) -> None:
         """Remove a submission, if it waits."""
         if submission in self._first:
             self._first.remove(submission)

@@ -73,8 +73,6 @@ HOSTILE = [
     "[" + "0," * 5000 + "0]",
     '"' + "x" * 20_000 + '"',
 ]
-ZEROS = bytes(50 * 2**20)
-ZIPPED = gzip.compress(ZEROS, 1)
 
 ANY_JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
@@ -252,18 +250,18 @@ def test_ten_megabytes_of_brackets_are_refused(client: httpx.Client, opening: st
     problem(answer, 413, "body-too-complex")
 
 
-@pytest.mark.parametrize(
-    ("coding", "bomb"),
-    [
-        ("gzip", ZIPPED),
-        ("deflate", zlib.compress(ZEROS, 1)),
-        ("gzip, gzip", gzip.compress(ZIPPED)),
-        ("br", b"\x0b\x02\x80"),
-    ],
-)
-def test_nothing_compressed_is_opened(client: httpx.Client, coding: str, bomb: bytes) -> None:
-    headers = {**JSON, "Content-Encoding": coding}
-    problem(client.post("/front", content=bomb, headers=headers), 415, "not-plain")
+def test_nothing_compressed_is_opened(client: httpx.Client) -> None:
+    zeros = bytes(50 * 2**20)
+    zipped = gzip.compress(zeros, 1)
+    bombs = {
+        "gzip": zipped,
+        "deflate": zlib.compress(zeros, 1),
+        "gzip, gzip": gzip.compress(zipped),
+        "br": b"\x0b\x02\x80",
+    }
+    for coding, bomb in bombs.items():
+        headers = {**JSON, "Content-Encoding": coding}
+        problem(client.post("/front", content=bomb, headers=headers), 415, "not-plain")
 
 
 @pytest.mark.parametrize("headers", ["Content-Length: 100", "Transfer-Encoding: chunked"])

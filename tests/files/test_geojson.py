@@ -145,3 +145,13 @@ def test_a_property_id_beside_another_id_is_a_detail() -> None:
     reading = read_files([file], Bounds(), wanted=None)
     assert [stop["id"] for stop in reading.request["stops"]] == ["0", "1", "2"]
     assert "id (property)" in {each.name for each in reading.columns}
+
+
+def test_dates_of_stops_count_as_in_a_table() -> None:
+    days = [{"from": f"2026-03-0{day} 8:00", "to": f"2026-03-0{day} 10:00"} for day in (2, 3, 4)]
+    reading = read(*days, vehicles=VANS)
+    begins = [stop["window"][0] for stop in reading.request["stops"]]
+    assert begins == [28800, 28800 + 86400, 28800 + 2 * 86400]
+    assert [note.text for note in reading.notes if note.code == "dates"] == [
+        "Times count from 2026-03-02 0:00, the first date: 2026-03-04 0:00 is 48:00."
+    ]

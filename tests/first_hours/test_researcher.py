@@ -36,7 +36,9 @@ def test_instances_are_planned_a_search_is_compared_and_rows_are_printed(
     found = json.loads(own.stdout)
     assert found["actor"]["name"] == "my-nearest"
     request = json.loads((tmp_path / "my-request.json").read_text())
-    (tmp_path / "plain.json").write_text(json.dumps({**request, "actor": "pa-one", "time_limit": 30}))
+    (tmp_path / "plain.json").write_text(
+        json.dumps({**request, "actor": "pa-one", "time_limit": 30})
+    )
     plain = json.loads(paretour("front", "plain.json", "--json", folder=tmp_path).stdout)
     # Of six cities Paretour's front is exact.
     assert plain["terminated"] == "converged"

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ class Manifest:
 
     name: str
 
-    @property
+    @cached_property
     def objects(self) -> list[dict[str, Any]]:
         """All objects of the file."""
         return list(yaml.load_all((DEPLOY / self.name).read_text(), yaml.CSafeLoader))
@@ -46,7 +47,7 @@ class ComposeFile:
 
     name: str
 
-    @property
+    @cached_property
     def document(self) -> dict[str, Any]:
         """The whole file."""
         text = (DEPLOY / self.name).read_text()

@@ -12,7 +12,7 @@ from tests.helpers.scripted_runner import task
 from tests.helpers.turns import EVENTS, clients_by_policy
 
 
-def take_next(queue: FairQueue, served: Sequence[str] = ()) -> Submission:
+def take_next(queue: FairQueue[Submission], served: Sequence[str] = ()) -> Submission:
     """Take the submission whose turn it is."""
     following = queue.next(served)
     assert following is not None
@@ -31,7 +31,7 @@ def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) ->
     """
 
     async def take() -> str:
-        queue = FairQueue()
+        queue = FairQueue[Submission]()
         for number, client in enumerate(before):
             queue.append(Submission(number, task(), lambda: None, client))
         order = [take_next(queue).client for _ in range(taken)]
@@ -67,7 +67,7 @@ def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
 @example("aaa.b.-.c..")
 def test_turns_follow_the_policy(events: str) -> None:
     async def take() -> str:
-        queue, running, turns = FairQueue(), list[str](), ""
+        queue, running, turns = FairQueue[Submission](), list[str](), ""
         for number, event in enumerate(events):
             if event == "-":
                 del running[:1]
@@ -83,7 +83,7 @@ def test_turns_follow_the_policy(events: str) -> None:
 
 def test_who_cannot_be_served_yet_is_overtaken_and_keeps_the_turn() -> None:
     async def take() -> list[int]:
-        queue = FairQueue()
+        queue = FairQueue[Submission]()
         for number, client in enumerate("aab"):
             queue.append(Submission(number, task(), lambda: None, client))
         order = []
@@ -100,7 +100,7 @@ def test_who_cannot_be_served_yet_is_overtaken_and_keeps_the_turn() -> None:
 
 def test_turns_of_many_clients_take_little_memory() -> None:
     async def take() -> int:
-        queue = FairQueue()
+        queue = FairQueue[Submission]()
         for number in range(3000):
             submission = Submission(number, task(), lambda: None, str(number))
             queue.append(submission)

@@ -1,6 +1,7 @@
 """The schemas of requests, as OpenAPI has them: which members go together, under which limits."""
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import jsonschema_rs
@@ -9,8 +10,6 @@ import pytest
 from service.api.request_bodies import request_schemas
 from tests.helpers.serving import LIMITS
 
-SCHEMAS = request_schemas(LIMITS, ["pa-one"])
-WITH_TRAFFIC = request_schemas(replace(LIMITS, roads=True, traffic=True), ["pa-one"])
 CITIES = {"coordinates": [[0, 0, 0, 0]] * 2}
 MATRICES = {"matrices": [[[0, 1], [1, 0]]] * 2}
 WAY = {"name": "way", "from": "great_circle"}
@@ -20,9 +19,15 @@ STOPS = {"stops": [{"id": "a"}, {"id": "b"}], "objectives": [WAY, MATRIX]}
 ONLY_STOPS = {"stops": STOPS["stops"]}
 
 
-def fits(name: str, value: Any, schemas: dict[str, Any] = SCHEMAS) -> bool:
+@cache
+def schemas(traffic: bool = False) -> dict[str, Any]:
+    """The components of the OpenAPI document."""
+    return request_schemas(replace(LIMITS, roads=traffic, traffic=traffic), ["pa-one"])
+
+
+def fits(name: str, value: Any, traffic: bool = False) -> bool:
     """Whether a value fits a component of the OpenAPI document."""
-    document = {"$ref": f"#/components/schemas/{name}", "components": {"schemas": schemas}}
+    document = {"$ref": f"#/components/schemas/{name}", "components": {"schemas": schemas(traffic)}}
     return jsonschema_rs.is_valid(document, value)
 
 
@@ -86,9 +91,9 @@ def test_an_objective_has_one_source(name: str, objective: dict[str, Any], fit: 
 )
 def test_traffic_is_of_times_by_road(source: str, fit: bool) -> None:
     objective = {"name": "x", "from": source}
-    assert fits("DayObjectiveItem", objective, WITH_TRAFFIC)
+    assert fits("DayObjectiveItem", objective, traffic=True)
     traffic = {"traffic": {"date": "2026-11-27", "at": [0]}}
-    assert fits("DayObjectiveItem", {**objective, **traffic}, WITH_TRAFFIC) == fit
+    assert fits("DayObjectiveItem", {**objective, **traffic}, traffic=True) == fit
 
 
 def test_every_reference_leads_to_a_schema_and_no_default_is_null() -> None:
@@ -96,16 +101,16 @@ def test_every_reference_leads_to_a_schema_and_no_default_is_null() -> None:
         if isinstance(value, dict):
             assert value.get("default", 0) is not None
             if "$ref" in value:
-                assert value["$ref"].removeprefix("#/components/schemas/") in SCHEMAS
+                assert value["$ref"].removeprefix("#/components/schemas/") in schemas()
         if isinstance(value, dict | list):
             for each in value.values() if isinstance(value, dict) else value:
                 check(each)
 
-    check(SCHEMAS)
+    check(schemas())
 
 
 def test_the_schemas_have_the_limits_and_the_actors() -> None:
-    fields = SCHEMAS["FrontRequest"]["properties"]
+    fields = schemas()["FrontRequest"]["properties"]
     for rows in (fields["coordinates"], fields["matrices"]["items"], fields["stops"]):
         assert rows["maxItems"] == LIMITS.cities
     assert fields["actor"]["enum"] == ["pa-one"]

@@ -10,6 +10,7 @@ from service.actor import RELEASED, OnnxActor
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.preferences import fan, from_angles
+from service.search import enumeration
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import improve
 from service.watch import Watch
@@ -219,7 +220,11 @@ def test_a_front_is_empty_where_every_tour_has_a_forbidden_leg() -> None:
     assert not reports
 
 
-def test_enumeration_stops_in_time_and_keeps_what_it_found() -> None:
+def test_enumeration_stops_in_time_and_keeps_what_it_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # No tour dominates another, so that a block takes longer than the one before it.
+    monkeypatch.setattr(enumeration, "LEAST_BLOCKS", 5)
     first = np.random.default_rng(7).random((9, 9))
     instance = Instance(matrices=np.stack([first, 1 - first]), closed=False)
     found = improve(instance, no_tours(9), watch=Watch(0.0))

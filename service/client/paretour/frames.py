@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from paretour.arrays import plain_array
-from paretour.labels import Labelled, aligned, check_same
+from paretour.labels import Labelled, aligned, check_same, texts_of
 
 COSTS = ("matrices", "matrix", "second_matrix", "costs")  # members that hold costs
 _IDS = ("id", "name")
@@ -197,13 +197,11 @@ def _labels(frame: Any) -> list[Any]:
 
 
 def _ids(cells: _Cells) -> list[str]:
-    """Return ids as texts. If all are whole, 1.0 becomes 1: a gap makes a column one of floats."""
+    """Return ids as texts. A gap makes a column of whole numbers one of floats."""
     for where, cell in cells:
         if _is_empty(cell):
             raise _wrong(where, "an id", cell)
-    floats = [cell for _, cell in cells if isinstance(cell, float)]
-    whole = all(each.is_integer() for each in floats)
-    return [str(int(each) if whole and isinstance(each, float) else each) for _, each in cells]
+    return texts_of([cell for _, cell in cells])
 
 
 def _of_fleet(name: str, cell: Any, where: str) -> Any:

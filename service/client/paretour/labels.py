@@ -31,7 +31,7 @@ def aligned(name: str, matrix: Labelled, ids: Sequence[str]) -> Labelled:
     if matrix.cells.shape != (len(matrix.rows), len(matrix.columns)):
         return matrix
     known = set(ids)
-    rows, columns = (_texts(each) for each in (matrix.rows, matrix.columns))
+    rows, columns = (texts_of(each) for each in (matrix.rows, matrix.columns))
     by_row = not _is_counted(matrix.rows)
     by_column = not _is_counted(matrix.columns) and (by_row or bool(known & {*columns}))
     for side, texts, is_used in (("row", rows, by_row), ("column", columns, by_column)):
@@ -67,7 +67,7 @@ def check_same(name: str, labels: Sequence[Sequence[Any]]) -> None:
         name: The member that has the matrices.
         labels: The labels of the rows of each matrix.
     """
-    named = [_texts(each) for each in labels if not _is_counted(each)]
+    named = [texts_of(each) for each in labels if not _is_counted(each)]
     if any(each != named[0] for each in named[1:]):
         raise ValueError(
             f"{name} must have the same labels in the same order, as there are no stops whose ids"
@@ -96,8 +96,8 @@ def _is_counted(labels: Sequence[Any]) -> bool:
     return all(isinstance(each, int) for each in labels) and [*labels] == [*range(len(labels))]
 
 
-def _texts(labels: Sequence[Any]) -> list[str]:
-    """Return labels as ids are sent: whole numbers without a fraction."""
+def texts_of(labels: Sequence[Any]) -> list[str]:
+    """Return labels as ids are sent: whole numbers without a fraction, so that 1.0 becomes 1."""
     floats = [each for each in labels if isinstance(each, float)]
     whole = all(each.is_integer() for each in floats)
     return [str(int(each) if whole and isinstance(each, float) else each) for each in labels]

@@ -77,14 +77,13 @@ def vehicles_of(
     """
     count = _count(file)
     rows = _Rows(file, count)
-    rows.check()
     unit = _unit_cost(rows)
     kinds, alike = _alike(rows, depots, windows, unit)
     if count is None:
         text = "The file does not say how many vehicles: as many as needed."
         file.source.note("vehicle", text)
         alike = [max(1, len(clients))]
-    used = {each for at, *_ in kinds for each in rows.lists("VEHICLES_RELOAD_DEPOT")[at]}
+    used = {each for at, *_ in kinds for each in rows.reloads[at]}
     for (at, vehicle, _), number in zip(kinds, alike, strict=True):
         vehicle["count"] = number
         if len(kinds) > 1:
@@ -103,9 +102,9 @@ def _alike(
     """Return the first of each kind of equal vehicles, and how many there are of each kind."""
     kinds: dict[str, tuple[int, Vehicle, frozenset[int]]] = {}
     counts: dict[str, int] = {}
-    clients_of = rows.lists("VEHICLES_ALLOWED_CLIENTS")
     for at in range(rows.several):
-        vehicle, allowed = _vehicle(rows, depots, windows, unit, at), clients_of[at]
+        allowed = rows.clients[at]
+        vehicle = _vehicle(rows, depots, windows, unit, at)
         key = repr((vehicle, sorted(allowed)))
         kinds.setdefault(key, (at, vehicle, allowed))
         counts[key] = counts.get(key, 0) + 1
@@ -135,24 +134,32 @@ def _sections(file: TsplibFile) -> list[str]:
     ]
 
 
-@dataclass(frozen=True)
 class _Rows:
-    """What keywords and sections say of each vehicle."""
+    """What keywords and sections say of each vehicle.
 
-    file: TsplibFile
-    count: int | None
-    parsed: dict[str, list[list[float]]] = field(default_factory=dict)
-    listed: dict[str, list[frozenset[int]]] = field(default_factory=dict)
+    Attributes:
+        differ: Whether vehicles may differ.
+        several: How many vehicles there are that may differ; 1 if all are equal.
 
-    @property
-    def differ(self) -> bool:
-        """Whether vehicles may differ."""
-        return bool(_sections(self.file))
+    Raises:
+        UnreadableFile: There are more vehicles than rows of their sections.
+    """
 
-    @property
-    def several(self) -> int:
-        """How many vehicles there are that may differ; 1 if all are equal."""
-        return (self.count or 1) if self.differ else 1
+    def __init__(self, file: TsplibFile, count: int | None) -> None:
+        self.file, self.count = file, count
+        self._rows = {section: self._by_vehicle(section) for section in _sections(file)}
+        self.differ = bool(self._rows)
+        self.several = (count or 1) if self.differ else 1
+
+    @cached_property
+    def clients(self) -> list[frozenset[int]]:
+        """The stops, by position, that each vehicle may visit."""
+        return self._stops_in("VEHICLES_ALLOWED_CLIENTS_SECTION")
+
+    @cached_property
+    def reloads(self) -> list[frozenset[int]]:
+        """The stops, by position, at which each vehicle may load again."""
+        return self._stops_in("VEHICLES_RELOAD_DEPOT_SECTION")
 
     @cached_property
     def unit_costs(self) -> frozenset[float]:
@@ -160,11 +167,6 @@ class _Rows:
         if not self.has(_UNIT_COST):
             return frozenset((1.0,))
         return frozenset(self.number(_UNIT_COST, at) or 0.0 for at in range(self.several))
-
-    def check(self) -> None:
-        """Raise UnreadableFile if there are more vehicles than rows of their sections."""
-        for section in _sections(self.file):
-            self._by_vehicle(section)
 
     def has(self, name: str) -> bool:
         """Return whether a keyword or its section stands in the file."""
@@ -187,26 +189,17 @@ class _Rows:
             if value is None:
                 raise self.file.source.refusal("no-number", name, came=self.file.word(name))
             return [value]
-        return self._by_vehicle(section)[at] if section in self.file.sections else []
+        return self._rows[section][at] if section in self._rows else []
 
-    def lists(self, name: str) -> list[frozenset[int]]:
+    def _stops_in(self, section: str) -> list[frozenset[int]]:
         """Return the positions of the stops in the row of each vehicle."""
-        if name not in self.listed:
-            self.listed[name] = self._lists(f"{name}_SECTION")
-        return self.listed[name]
-
-    def _lists(self, section: str) -> list[frozenset[int]]:
-        if section not in self.file.sections:
-            return [frozenset()] * self.several
         return [
             frozenset(_index(self.file, section, each) for each in row if each != -1)
-            for row in self._by_vehicle(section)
+            for row in self._rows.get(section, [[]] * self.several)
         ]
 
     def _by_vehicle(self, section: str) -> list[list[float]]:
         """Return the rows of a section by the numbers of their vehicles, which come first."""
-        if section in self.parsed:
-            return self.parsed[section]
         file = self.file
         rows = [file.parsed(section, words).tolist() for words in file.sections[section]]
         if rows and rows[-1] == [-1]:
@@ -215,8 +208,7 @@ class _Rows:
         if not rows or len(rows) != self.count or numbers != list(range(1, len(rows) + 1)):
             last = self.count or "the last"
             raise file.source.refusal("row-each-vehicle", section, last=last, came=len(rows))
-        self.parsed[section] = [row[1:] for row in sorted(rows)]
-        return self.parsed[section]
+        return [row[1:] for row in sorted(rows)]
 
 
 def _vehicle(rows: _Rows, depots: Depots, windows: Array | None, unit: float, at: int) -> Vehicle:
@@ -254,7 +246,7 @@ def _longest(rows: _Rows, at: int) -> float | None:
 def _add_reloads(rows: _Rows, depots: Depots, at: int, vehicle: Vehicle) -> None:
     """Add where a vehicle may load again, and how often."""
     file, section, most = rows.file, "VEHICLES_RELOAD_DEPOT_SECTION", "VEHICLES_MAX_RELOADS"
-    found = sorted(rows.lists("VEHICLES_RELOAD_DEPOT")[at])
+    found = sorted(rows.reloads[at])
     reloads = rows.number(most, at)
     if not found:
         if reloads and section not in file.sections:
@@ -282,7 +274,7 @@ def _start(rows: _Rows, depots: Depots, at: int) -> int:
         return start
     first, *others = depots.stops
     if others and at == 0:
-        reloads = {each for row in rows.lists("VEHICLES_RELOAD_DEPOT") for each in row}
+        reloads = {each for row in rows.reloads for each in row}
         if not {*others} <= reloads:
             came = " ".join(map(depots.name, depots.stops))
             raise source.refusal("several-depots", "DEPOT_SECTION", came=came)
@@ -339,8 +331,8 @@ def _allow(
 def _index(file: TsplibFile, section: str, number: float | None, word: str = "") -> int:
     """Return the position of the stop that a number of a section names."""
     at = -1 if number is None or number % 1 else int(number) - file.first_node
-    if not 0 <= at < file.nodes:
-        nodes = {"first": file.first_node, "last": file.first_node + file.nodes - 1}
+    if not 0 <= at < file.dimension:
+        nodes = {"first": file.first_node, "last": file.first_node + file.dimension - 1}
         raise file.source.refusal("no-such-node", section, **nodes, came=word or f"{number:g}")
     return at
 

@@ -241,8 +241,7 @@ def _window_in(columns: Columns, row: int, at: int, begin: str, end: str) -> lis
 def _noted_open(columns: Columns, row: int, at: int | None) -> int:
     """Note once that windows without an end are open until midnight; return their column."""
     begin = "Windows without an end are open until midnight"
-    if not any(note.text.startswith(begin) for note in columns.source.notes):
-        columns.source.note("times", f"{begin}, as that of row {columns.table.rows[row][0]}.")
+    columns.source.note_once("times", begin, f", as that of row {columns.table.rows[row][0]}.")
     return at or 0
 
 
@@ -342,10 +341,9 @@ def _seconds_of_day(columns: Columns, at: int, text: str) -> float | None:
 def note_whole_day(columns: Columns, at: int, date: str, ends: bool) -> None:
     """Note once for each column that a date without a time is the end of that day, or its begin."""
     name = quoted(columns.names[at])
+    which = "end" if ends else "begin"
     begin = f"{name} has dates without times: "
-    if not any(note.text.startswith(begin) for note in columns.source.notes):
-        which = "end" if ends else "begin"
-        columns.source.note("dates", f"{begin}{date} is the {which} of that day.")
+    columns.source.note_once("dates", begin, f"{date} is the {which} of that day.")
 
 
 def read_calendar(tables: Sequence[Columns]) -> None:

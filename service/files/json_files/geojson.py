@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple, cast
 
+from service.files.cells.times import read_calendar
 from service.files.chosen import IGNORED
 from service.files.column_names import FLEET, field_of_each
 from service.files.columns import Columns, columns_of, place_in
@@ -76,6 +77,7 @@ def _stops(columns: Columns) -> list[Stop]:
 def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the request of a fleet, with the vehicles and objectives that are given."""
     stops, _ = visits_of(columns)
+    read_calendar([columns])
     add_visits(columns, stops)
     groups = groups_of(columns, stops)
     waits = have_waits(groups)

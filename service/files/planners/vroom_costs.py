@@ -7,7 +7,6 @@ speeds of their own.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from service.files.fleets import Objective, Stop, Vehicle, have_times, measured, speed_between
@@ -23,30 +22,21 @@ from service.files.planners.vroom_matrices import (
 )
 from service.files.planners.vroom_members import note_others, note_unused
 from service.files.planners.vroom_mixed import (
-    PER_HOUR,
-    PER_KM,
+    OF_COSTS,
     Layers,
+    Ride,
     is_cost,
     mixed_objectives,
     nameless,
+    note_rates,
     rides_of,
 )
 from service.files.reading import Source, quoted
 
-_OF = "costs of vehicles"
 _SAME = "all vehicles have the same one, and the objectives are metres and seconds"
 _LIMITS = ("max_travel_time", "max_distance")
 Objectives = list[Objective]
 _Limit = Literal["max_distance", "max_driving", "longest"]
-
-
-@dataclass(frozen=True)
-class VroomRates:
-    """What VROOM's vehicles cost: for an hour, for a kilometre, and each at all."""
-
-    per_hour: float
-    per_km: float
-    fixed: bool
 
 
 def objectives_of(
@@ -71,8 +61,8 @@ def objectives_of(
     items = problem["vehicles"]
     rides = rides_of(source, items)
     costs = [each.get("costs") or {} for each in items]
-    note_others(source, costs, _OF)
-    rates = VroomRates(rides[0].per_hour, rides[0].per_km, any(each.get("fixed") for each in costs))
+    note_others(source, costs, OF_COSTS)
+    fixed = any(each.get("fixed") for each in costs)
     cuts = cuts_of(source, problem, *located)
     if not cuts:
         _check_places(source, located[0])
@@ -84,9 +74,9 @@ def objectives_of(
         found = mixed_objectives(source, rides, vehicles, layers), 1.0
     elif not cuts:
         by_time = timed or any(each.get("max_travel_time") is not None for each in items)
-        found = _by_places(source, located[0], rates, rides[0].speed, by_time)
+        found = _by_places(source, located[0], rides[0], fixed, by_time)
     else:
-        found = _by_matrices(source, cuts[0], rates, rides[0].speed)
+        found = _by_matrices(source, cuts[0], rides[0], fixed)
     objectives, unit = found
     for vehicle in vehicles:
         if "fixed" in vehicle and unit != 1:
@@ -128,25 +118,26 @@ def _measured(source: Source, stops: Sequence[Stop]) -> Layers:
 
 
 def _by_places(
-    source: Source, stops: Sequence[Stop], rates: VroomRates, factor: float, timed: bool
+    source: Source, stops: Sequence[Stop], ride: Ride, fixed: bool, timed: bool
 ) -> tuple[Objectives, float]:
     """Return the objectives of stops on the earth, and VROOM's cost of a unit of the first."""
+    factor = ride.speed
     if source.bounds.roads and factor != 1:
         note_unused(source, "speed_factor", "vehicles", "times are by road")
         factor = 1
-    if not rates.fixed:  # at one speed, any rates have the same best plans
-        _note_rates(source, rates, _SAME)
+    if not fixed:  # at one speed, any rates have the same best plans
+        note_rates(source, [ride], _SAME)
         if factor != 1 and not timed:
             note_unused(source, "speed_factor", "vehicles", "nothing here takes time")
         return measured(source, timed, stops, factor), 1
-    distance, time = measured(source, rates.per_hour > 0 or timed, stops, factor)
-    per_second, per_metre = rates.per_hour / 3600, rates.per_km / 1000
+    distance, time = measured(source, ride.per_hour > 0 or timed, stops, factor)
+    per_second, per_metre = ride.per_hour / 3600, ride.per_km / 1000
     if not per_second and per_metre:
         return [distance, time], _noted(source, "distance", per_metre)
     total: Objective = {**time, "name": "total time", "over": "sum"}
     if source.bounds.roads:
         if per_metre:
-            note_unused(source, "per_km", _OF, "times by road are not distances")
+            note_unused(source, "per_km", OF_COSTS, "times by road are not distances")
     else:
         per_second += per_metre * speed_between(stops) * factor / 3.6
     return [total, time], _noted(source, "total time", per_second)
@@ -155,76 +146,61 @@ def _by_places(
 def _noted(source: Source, name: str, unit: float) -> float:
     """Note how fixed costs were converted, and return the cost of a unit of an objective."""
     if unit <= 0:
-        note_unused(source, "per_hour", _OF, "nothing costs anything but the vehicles")
+        note_unused(source, "per_hour", OF_COSTS, "nothing costs anything but the vehicles")
         unit = 1
     was = "" if unit == 1 else f", and was divided by {unit:g}, the cost of its unit"
-    source.note("fixed", f"fixed of {_OF} is added to the first objective, {name}{was}.")
+    source.note("fixed", f"fixed of {OF_COSTS} is added to the first objective, {name}{was}.")
     return unit
 
 
-def _by_matrices(
-    source: Source, cut: Cut, rates: VroomRates, factor: float
-) -> tuple[Objectives, float]:
+def _by_matrices(source: Source, cut: Cut, ride: Ride, fixed: bool) -> tuple[Objectives, float]:
     """Return the objectives of matrices, and VROOM's cost of a unit of the first."""
-    durations = cut.matrix("durations", 1 / factor)
+    durations = cut.matrix("durations", 1 / ride.speed)
     longest: Objective = {"name": "longest route", "unit": "s", "matrix": durations, "over": "max"}
     total: Objective = {"name": "total time", "unit": "s", "matrix": durations, "over": "sum"}
     if cut.given.get("costs"):
-        _note_beside_costs(source, cut, rates)
+        why = "there are matrices of costs"
+        note_rates(source, [ride], why)
+        if cut.given.get("distances"):
+            note_unused(source, "distances", "matrices", why)
         return [{"name": "cost", "matrix": cut.matrix("costs"), "over": "sum"}, longest], 1
     if not cut.given.get("distances"):
-        if rates.per_km:
-            note_unused(source, "per_km", _OF, "there are no matrices of distances")
-        return [total, longest], _unit(source, "total time", replace(rates, per_km=0))
+        if ride.per_km:
+            note_unused(source, "per_km", OF_COSTS, "there are no matrices of distances")
+        return [total, longest], _unit(source, "total time", ride._replace(per_km=0), fixed)
     distances = cut.matrix("distances")
     distance: Objective = {"name": "distance", "matrix": distances, "over": "sum"}
-    if rates.per_hour and rates.per_km:
+    if ride.per_hour and ride.per_km:
         source.note("objectives", "The first objective is VROOM's cost: per_hour and per_km.")
-        costs = _costs(durations, distances, rates)
+        costs = _costs(durations, distances, ride)
         return [{"name": "cost", "matrix": costs, "over": "sum"}, longest], 1
-    if rates.fixed and not rates.per_km:
-        return [total, longest], _unit(source, "total time", rates)
-    return [distance, longest], _unit(source, "distance", rates)
+    if fixed and not ride.per_km:
+        return [total, longest], _unit(source, "total time", ride, fixed)
+    return [distance, longest], _unit(source, "distance", ride, fixed)
 
 
-def _unit(source: Source, name: str, rates: VroomRates) -> float:
+def _unit(source: Source, name: str, ride: Ride, fixed: bool) -> float:
     """Return VROOM's cost of a unit of the first objective, time or distance, with a note."""
-    if not rates.fixed:
-        if not rates.per_km:
-            _note_rates(source, rates, _SAME)
+    if not fixed:
+        if not ride.per_km:
+            note_rates(source, [ride], _SAME)
         return 1
-    return _noted(source, name, rates.per_km / 1000 if rates.per_km else rates.per_hour / 3600)
+    return _noted(source, name, ride.per_km / 1000 if ride.per_km else ride.per_hour / 3600)
 
 
-def _note_beside_costs(source: Source, cut: Cut, rates: VroomRates) -> None:
-    """Note what a matrix of costs stands for."""
-    why = "there are matrices of costs"
-    _note_rates(source, rates, why)
-    if cut.given.get("distances"):
-        note_unused(source, "distances", "matrices", why)
-
-
-def _note_rates(source: Source, rates: VroomRates, why: str) -> None:
-    """Note rates that are not the defaults, and are not used."""
-    if rates.per_hour != PER_HOUR:
-        note_unused(source, "per_hour", _OF, why)
-    if rates.per_km != PER_KM:
-        note_unused(source, "per_km", _OF, why)
-
-
-def _costs(durations: Matrix, distances: Matrix, rates: VroomRates) -> Matrix:
+def _costs(durations: Matrix, distances: Matrix, ride: Ride) -> Matrix:
     """Return what legs cost by their time and their length."""
     return [
-        [_sum(second, metre, rates) for second, metre in zip(*rows, strict=True)]
+        [_sum(second, metre, ride) for second, metre in zip(*rows, strict=True)]
         for rows in zip(durations, distances, strict=True)
     ]
 
 
-def _sum(second: Any, metre: Any, rates: VroomRates) -> Any:
+def _sum(second: Any, metre: Any, ride: Ride) -> Any:
     """Return the cost of a leg; None forbids it."""
     if not is_cost(second) or not is_cost(metre):
         return None
-    return round(second * rates.per_hour / 3600 + metre * rates.per_km / 1000, 6)
+    return round(second * ride.per_hour / 3600 + metre * ride.per_km / 1000, 6)
 
 
 def _add_limits(

@@ -49,6 +49,4 @@ def note_others(source: Source, items: Iterable[Mapping[str, Any]], of: str) -> 
 def note_unused(source: Source, name: str, of: str, why: str = "") -> None:
     """Note a member that is not used, and why, if that is not the same for all fleets."""
     because = f": {why}." if why else ": it is not supported for fleets."
-    text = f"{name[:_LONGEST_SHOWN]} of {of} was not used{because}"
-    if not any(note.text == text for note in source.notes):
-        source.note("left-out", text)
+    source.note_once("left-out", f"{name[:_LONGEST_SHOWN]} of {of} was not used{because}")

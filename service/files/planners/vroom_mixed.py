@@ -8,8 +8,8 @@ from service.files.json_files.records import is_number
 from service.files.planners.vroom_members import note_unused
 from service.files.reading import Source
 
-PER_HOUR, PER_KM = 3600, 0  # the defaults of VROOM
-_OF = "costs of vehicles"
+_PER_HOUR, _PER_KM = 3600, 0  # the defaults of VROOM
+OF_COSTS = "costs of vehicles"
 _HOURS = "per_hour of costs of vehicles is for the whole time of a route, with service and waiting."
 
 
@@ -51,7 +51,7 @@ def rides_of(source: Source, items: Sequence[Mapping[str, Any]]) -> list[Ride]:
         if not is_cost(speed) or not speed:
             note_unused(source, "speed_factor", "vehicles", "it must be a number over 0")
             speed = 1
-        rates = costs.get("per_hour", PER_HOUR), costs.get("per_km", PER_KM)
+        rates = costs.get("per_hour", _PER_HOUR), costs.get("per_km", _PER_KM)
         rides.append(Ride(*rates, float(speed)))
     return rides
 
@@ -67,7 +67,8 @@ def mixed_objectives(
         if ride.speed != 1:
             vehicle["speed_factor"] = ride.speed
     if layers.cost is not None:
-        first = _costs(source, rides, layers.cost)
+        note_rates(source, rides, "there are matrices of costs")
+        first = layers.cost
     elif any(ride.per_km for ride in rides) and layers.distance is not None:
         first = _by_distance(source, rides, vehicles, layers.distance)
     else:
@@ -75,12 +76,11 @@ def mixed_objectives(
     return [{**first, "name": "cost", "over": "sum"}, {**layers.time, "over": "max"}]
 
 
-def _costs(source: Source, rides: Sequence[Ride], costs: Objective) -> Objective:
-    """Return costs of matrices, and note rates beside them."""
-    for name, usual in (("per_hour", PER_HOUR), ("per_km", PER_KM)):
+def note_rates(source: Source, rides: Sequence[Ride], why: str) -> None:
+    """Note what hours and kilometres cost, where that is not the default and is not used."""
+    for name, usual in (("per_hour", _PER_HOUR), ("per_km", _PER_KM)):
         if any(getattr(ride, name) != usual for ride in rides):
-            note_unused(source, name, _OF, "there are matrices of costs")
-    return costs
+            note_unused(source, name, OF_COSTS, why)
 
 
 def _by_distance(
@@ -100,7 +100,7 @@ def _by_time(
 ) -> Objective:
     """Return travel times, at the prices of hours; the faster a vehicle, the less it pays."""
     if any(ride.per_km for ride in rides):
-        note_unused(source, "per_km", _OF, "there are no matrices of distances")
+        note_unused(source, "per_km", OF_COSTS, "there are no matrices of distances")
     _set_prices(vehicles, [ride.per_hour / 3600 / ride.speed for ride in rides])
     return time
 

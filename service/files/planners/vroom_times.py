@@ -51,9 +51,7 @@ def add_services(
             each.stop["services"] = [{"vehicle": name, "service": time} for name, time in own]
         if any(setups.values()) and (shared[each.place] > 1 or each.place in depots):
             text = "is part of each service here, also where tasks at one place follow each other"
-            note = f"setup of {each.of} {text}."
-            if all(known.text != note for known in source.notes):
-                source.note("times", note)
+            source.note_once("times", f"setup of {each.of} {text}.")
 
 
 def _times(source: Source, task: VroomTask, name: str, types: Sequence[str]) -> dict[str, Any]:

@@ -83,7 +83,7 @@ class WorkerPool:
         self._roads = roads
         self._stop_seconds = stop_seconds
         self._on_front = on_front
-        self._queue = FairQueue()
+        self._queue = FairQueue[Submission]()
         self._reserved: set[Submission] = set()
         self._measuring: set[asyncio.Task[None]] = set()
         self._numbers = count()
@@ -133,7 +133,7 @@ class WorkerPool:
         self._closed = True
         for submission in [*self._reserved, *self._queue, *self.running]:
             submission.fail(ShuttingDown())
-        self._queue = FairQueue()
+        self._queue = FairQueue[Submission]()
         await self._workers.close()
         if self._roads is not None:
             await self._roads.close()
