@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 
 
 def planned(
-    day: Day, earlier: EarlierTours | None = None, time_limit: float = 5.0, start: int = 0
+    day: Day, earlier: EarlierTours | None = None, time_limit: float = 60.0, start: int = 0
 ) -> Front:
     options = PlanOptions(
         directions=np.empty((0, len(day.costs))), size=5_000, time_limit=time_limit, start=start
