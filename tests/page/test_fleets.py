@@ -196,8 +196,11 @@ def test_the_list_of_stops_says_until_when_a_vehicle_waits(window: Page) -> None
 def test_routes_follow_the_streets_of_a_routing_engine(browser: Browser) -> None:
     places = [[24.941, 60.171], [24.952, 60.169], [24.933, 60.165], [24.925, 60.18], [24.96, 60.17]]
     request = {
-        "stops": [{"id": f"s{at}", "location": place} for at, place in enumerate(places)],
-        "vehicles": [{"id": "van", "count": 2, "start": "s0", "end": "s0"}],
+        "stops": [
+            {"id": f"s{at}", "location": place, **({"demand": [1]} if at else {})}
+            for at, place in enumerate(places)
+        ],
+        "vehicles": [{"id": "van", "count": 2, "capacity": [2], "start": "s0", "end": "s0"}],
         "objectives": [
             {"name": "distance", "from": "great_circle"},
             {"name": "time", "unit": "min", "matrix": [[7] * 5] * 5, "over": "max"},
