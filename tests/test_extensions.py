@@ -33,7 +33,7 @@ from service.preferences import fan, from_angles
 from tests.guide.pages import GUIDE, blocks
 from tests.guide.sessions import run_page
 from tests.helpers.command import paretour
-from tests.helpers.processes import serve_process
+from tests.helpers.serving import serving_settings
 
 PAGE = GUIDE / "use-your-own-constructor-or-search.md"
 FILES = {block.title: block.text for block in blocks(PAGE) if block.title}
@@ -91,18 +91,16 @@ def guide_package(packages: Path) -> Iterator[dict[str, str]]:
 def test_the_package_of_the_guide_plans_in_a_service(packages: Path) -> None:
     with (
         guide_package(packages) as named,
-        serve_process({"PARETOUR_WORKERS": "1", **named}) as service,
+        serving_settings({"PARETOUR_WORKERS": "1", **named}) as url,
     ):
-        [answer] = run_page(PAGE, packages, service.url)
+        [answer] = run_page(PAGE, packages, url)
         front = json.loads(answer)
         assert front["actor"]["name"] == "my-nearest"
-        alone = httpx.post(
-            f"{service.url}/front", json={**REQUEST, "time_limit": 0}, timeout=60
-        ).json()
+        alone = httpx.post(f"{url}/front", json={**REQUEST, "time_limit": 0}, timeout=60).json()
         assert front["hypervolume"] >= alone["hypervolume"] > 0
         [listed] = [
             each
-            for each in httpx.get(f"{service.url}/actors").json()["actors"]
+            for each in httpx.get(f"{url}/actors").json()["actors"]
             if each["name"] == "my-nearest"
         ]
     assert listed["commit"] == "my_tours 1.0"
@@ -210,10 +208,10 @@ def test_what_a_search_returns_is_checked(
 def test_the_service_says_whose_fault_it_is(packages: Path, quick_actors: dict[str, str]) -> None:
     own(packages, "own_fault", "None")
     settings = {"PARETOUR_WORKERS": "1", "PARETOUR_CONSTRUCTORS": "own_fault", **quick_actors}
-    with serve_process(settings) as service:
+    with serving_settings(settings) as url:
         request = {**REQUEST, "actor": "own_fault", "time_limit": 0}
-        refused = httpx.post(f"{service.url}/front", json=request, timeout=60)
-        again = httpx.post(f"{service.url}/front", json={**request, "actor": "pa-one"}, timeout=60)
+        refused = httpx.post(f"{url}/front", json=request, timeout=60)
+        again = httpx.post(f"{url}/front", json={**request, "actor": "pa-one"}, timeout=60)
     assert refused.status_code == 500
     assert refused.json()["code"] == "extension-failed"
     assert again.status_code == 200

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,9 @@ from service.cli.errors import UsageError
 from service.cli.progress import LOADING
 from service.jobs import compiled_code
 from service.library import local_planner
+from service.requests import road_measurer
+from service.requests.road_measurer import BlockingMeasurer
+from service.roads.client import RoadClient
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
@@ -91,7 +95,7 @@ def request_of(kind: str, folder: Path) -> list[object]:
 
 @pytest.mark.parametrize(
     ("kind", "remote"),
-    few(4, [(kind, remote) for remote in (False, True) for kind in ("front", "fleet", "robots")]),
+    few(2, [(kind, remote) for kind in ("front", "fleet", "robots") for remote in (False, True)]),
 )
 def test_ctrl_c_ends_the_search_with_the_best_front_so_far(
     url: str, kind: str, remote: bool, tmp_path: Path
@@ -128,6 +132,23 @@ def test_ctrl_c_ends_a_call_of_the_network_in_this_process(tmp_path: Path) -> No
     os.close(terminal)
 
 
+@pytest.fixture
+def closing(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Close connections to a routing engine, as the end of the command's own process does."""
+    opened: list[BlockingMeasurer] = []
+
+    class Closing(BlockingMeasurer):
+        def __init__(self, client: RoadClient) -> None:
+            super().__init__(client)
+            opened.append(self)
+
+    monkeypatch.setattr(road_measurer, "BlockingMeasurer", Closing)
+    yield
+    for each in opened:
+        each.close()
+
+
+@pytest.mark.usefixtures("closing")
 @pytest.mark.parametrize("command", ["front", "fleet"])
 def test_this_process_asks_the_routing_engine_as_the_service_does(
     command: str, tmp_path: Path

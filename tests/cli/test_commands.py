@@ -122,8 +122,9 @@ def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "people.csv", layer, delimiter=",", fmt="%.17g")
     by_row_sums(tmp_path / "sums.onnx")
     given = ["--cost-layer", tmp_path / "people.csv", "--cell-size=0.5", "--spacing=1"]
+    options = ["--json", "--paths", "--time-limit=30"]  # far more than it takes to converge
     of_grid, of_picture = (
-        paretour("coverage", *asked, "--json", "--paths", PARETOUR_ACTORS=str(tmp_path))
+        paretour("coverage", *asked, *options, PARETOUR_ACTORS=str(tmp_path))
         for asked in ([tmp_path / "map.json"], [tmp_path / "map.png", *given])
     )
     answer = json.loads(of_picture.stdout)
@@ -164,6 +165,7 @@ def test_a_map_of_ros_is_covered_as_the_same_map_in_a_message(tmp_path: Path) ->
     np.savetxt(tmp_path / "people.csv", layer, delimiter=",", fmt="%.17g")
     by_row_sums(tmp_path / "sums.onnx")
     given = ["--cost-layer", tmp_path / "people.csv", "--spacing=1", "--start-pose=-1.9,1.1"]
+    given.append("--time-limit=30")  # far more than it takes to converge
     picture = tmp_path / "picture.png"
     of_yaml, of_message = (
         paretour("coverage", tmp_path / name, *given, *more, PARETOUR_ACTORS=str(tmp_path))

@@ -29,7 +29,7 @@ from tests.files.test_examples import FOLDER as WHOLE
 from tests.files.test_fuzz import FILES, broken, harmless
 from tests.helpers.answers import events, progress, status
 from tests.helpers.fleet_requests import fleet_request
-from tests.helpers.sampled import tenth
+from tests.helpers.sampled import few, tenth
 from tests.helpers.serving import LIMITS
 
 COUNT = tenth(1000)
@@ -227,7 +227,8 @@ JOB, STREAM = {"id": "f", "status": "queued"}, [progress(0.5), status("done")]
 
 def hostile_services(answers: dict[str, Any]) -> Iterator[tuple[str, Service]]:
     """Services, each with one hostile text, and the commands that ask them."""
-    for kind in ("front", "named", "coverage", "fleet", "robots", "actors"):
+    # By day those that have most texts.
+    for kind in few(4, ("named", "fleet", "robots", "actors", "front", "coverage")):
         commands = kind if kind in COMMANDS else "front"
         document = {**answers[kind], "status": "done"} if kind != "actors" else answers[kind]
         for path in places_of_texts(document):

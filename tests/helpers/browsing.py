@@ -28,10 +28,12 @@ from tests.helpers.sampled import IS_WHOLE
 WITHOUT_WINDOW, WHOLE = Path("/usr/bin/chromium-headless-shell"), Path("/usr/bin/chromium")
 CHROMIUM = WITHOUT_WINDOW if WITHOUT_WINDOW.exists() else WHOLE
 DESK, PHONE = 1440, 375  # widths of a window in pixels
-DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.05  # of search: as the page asks, and as tests need
+# Of search: those that the page and its examples ask for, and as many as tests need.
+DEFAULT_SECONDS, SHORT_SECONDS = [1, 2, 3], 0.2
 SECOND = 1000.0  # in milliseconds, playwright's unit
 CLIPBOARD = ["clipboard-read", "clipboard-write"]  # permissions
 NOTHING = "about:blank"  # the address of a new window
+SETTINGS = "page/settings.json"  # the end of the path of what the page is told of the service
 FREE = "/page/icon.svg#free"  # of the site: what a window shows between tests
 # Pages share a process, which keeps their modules compiled: a new one takes half a second.
 ONE_PROCESS = (
@@ -48,13 +50,18 @@ SVG = "{http://www.w3.org/2000/svg}"  # before the names of elements
 # request that a test aborts: one that fails by itself has a reason, as net::ERR_CONNECTION_REFUSED.
 EXPECTED = ("server responded with a status of", "net::ERR_FAILED")
 
-# In the page rather than by a route, since playwright turns the cache off where there is one.
+# In the page rather than by a route, since playwright turns the cache off where there is one,
+# and a page without it takes four times as much of the processor to be loaded.
 SHORTEN_SEARCH = f"""
 const sent = globalThis.fetch;
 globalThis.fetch = (path, options) => {{
-  if (/\\/(front|coverage|fleet)$/.test(path) && options?.body) {{
+  const known = Object.entries(JSON.parse(window.name || "{{}}"));
+  const [, answer] = known.find(([end]) => String(path).endsWith(end)) ?? [];
+  if (answer === null) return Promise.reject(new TypeError("Failed to fetch"));
+  if (answer) return Promise.resolve(Response.json(answer));
+  if (/^(front|coverage|fleet)$|\\/replan$/.test(path) && options?.body) {{
     const asked = JSON.parse(options.body);
-    if (asked.time_limit === {DEFAULT_SECONDS})
+    if ({DEFAULT_SECONDS}.includes(asked.time_limit))
       options = {{ ...options, body: JSON.stringify({{ ...asked, time_limit: {SHORT_SECONDS} }}) }};
   }}
   return sent(path, options);
@@ -132,8 +139,17 @@ DRAFT = json.dumps(
     }
 )
 
-# Have a page keep nothing of what it shows in its window.
-FORGET_DRAFT = "sessionStorage.clear(); localStorage.clear(); Storage.prototype.setItem = () => {}"
+# Have a page keep nothing when it is left, and a window nothing of the pages before.
+KEEP_NOTHING = "Storage.prototype.setItem = () => {}"
+FORGET = "sessionStorage.clear(); localStorage.clear(); name = ''"
+
+# Have a page open a link as it is when it is loaded: nothing is said, and nothing is unfolded.
+OPEN_LINK = """named => {
+  for (const each of document.querySelectorAll("details")) each.open = false;
+  document.getElementById("status").textContent = "";
+  history.replaceState(null, "", location.pathname);
+  location.hash = named;
+}"""
 
 expect.set_options(timeout=60 * SECOND)  # five seconds are too few on a busy machine
 
@@ -150,7 +166,11 @@ def chromium(*options: str) -> Iterator[Browser]:
     Until then an event loop is under way in this thread, so that `asyncio.run` is refused.
     """
     with sync_playwright() as playwright:
-        yield playwright.chromium.launch(executable_path=CHROMIUM, args=[*ONE_PROCESS, *options])
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=[*ONE_PROCESS, *options]
+        )
+        browser.new_context(permissions=CLIPBOARD)  # of the windows that tests share
+        yield browser
 
 
 @contextmanager
@@ -184,9 +204,7 @@ def open_page(
     yield page
     if not page.is_closed():
         page.unroute_all()
-        page.evaluate(FORGET_DRAFT)
-        if page.url != NOTHING:
-            page.goto(page.evaluate("location.origin") + FREE)
+        _free(page)
         page.remove_listener("pageerror", note_error)
         page.remove_listener("console", note_line)
     unexpected = [error for error in errors if not any(line in error for line in EXPECTED)]
@@ -194,26 +212,70 @@ def open_page(
 
 
 @contextmanager
-def open_unplanned(browser: Browser, address: str, width: int = DESK) -> Iterator[Page]:
+def open_unplanned(browser: Browser, address: str) -> Iterator[Page]:
     """Open the page with three stops and no plan, which takes half as long as with an example."""
-    with open_page(browser, address + FREE, width) as page:
-        page.evaluate("draft => sessionStorage.setItem('paretour-draft', draft)", DRAFT)
-        page.goto(address)
-        expect(page.locator("#count")).to_have_text("3 stops")
+    with open_page(browser, address + FREE) as page:
+        show_unplanned(page, address)
         yield page
 
 
+def show_unplanned(page: Page, address: str) -> None:
+    """Have a window that was opened free show the page with three stops and no plan."""
+    page.evaluate("draft => sessionStorage.setItem('paretour-draft', draft)", DRAFT)
+    page.goto(address)
+    expect(page.locator("#count")).to_have_text("3 stops")
+
+
+def _free(page: Page) -> None:
+    """Leave a window as if nothing had been shown in it."""
+    if page.url != NOTHING and not page.url.endswith(FREE):
+        page.evaluate(KEEP_NOTHING)
+        page.goto(page.evaluate("location.origin") + FREE)
+    if page.url != NOTHING:
+        page.evaluate(FORGET)
+
+
+def know(page: Page, answers: dict[str, Any]) -> None:
+    """Have a window get these answers by the ends of their paths; None is no answer.
+
+    They are its name until its test ends, or others take their place.
+    """
+    page.evaluate("answers => { name = JSON.stringify(answers) }", answers)
+
+
+def follow(page: Page, link: str) -> None:
+    """Have a page that is shown open a link, which takes a third as long as to load the page."""
+    page.evaluate(OPEN_LINK, link.partition("#")[2])
+
+
+def open_link(page: Page, link: str) -> None:
+    """Have a page that is shown open a link, and wait until it shows the front."""
+    follow(page, link)
+    wait_until_planned(page)
+
+
+@contextmanager
+def running_first(page: Page, script: str) -> Iterator[None]:
+    """Run a script before those of each page that this window opens, until the block ends."""
+    devtools = page.context.new_cdp_session(page)
+    devtools.send("Page.enable")
+    added = devtools.send("Page.addScriptToEvaluateOnNewDocument", {"source": script})
+    yield
+    devtools.send("Page.removeScriptToEvaluateOnNewDocument", added)
+    devtools.detach()
+
+
 def _free_window(browser: Browser) -> Page:
-    for context in browser.contexts:
-        for page in context.pages:
-            if page.url == NOTHING or page.url.endswith(FREE):
-                return page
-    return new_window(browser)
+    """Return a window of the context that tests share, with what is loaded and compiled in it."""
+    for page in browser.contexts[0].pages:
+        if page.url == NOTHING or page.url.endswith(FREE):
+            return page
+    return new_tab(browser)
 
 
-def new_window(browser: Browser, **options: Any) -> Page:
-    """Return a window of its own, with these options of playwright, which searches as shortly."""
-    page = browser.new_page(permissions=CLIPBOARD, **options)
+def new_tab(browser: Browser) -> Page:
+    """Return another window of the context that tests share."""
+    page = browser.contexts[0].new_page()
     page.set_default_timeout(120 * SECOND)
     page.add_init_script(SHORTEN_SEARCH)
     if IS_WHOLE:
@@ -222,7 +284,7 @@ def new_window(browser: Browser, **options: Any) -> Page:
 
 
 def plan_by_network_alone(page: Page, path: str) -> None:
-    """Have requests for a path answered with the plans of the network, whatever their time."""
+    """Have requests for such paths answered with the network's plans, whatever their time."""
 
     def without_time(route: Route) -> None:
         body = json.loads(route.request.post_data or "{}")
@@ -295,6 +357,21 @@ def open_files(page: Page, files: dict[str, str]) -> None:
     wait_until_read(page)
 
 
+def note_texts(part: Locator) -> None:
+    """Have a part of the page note the texts that it has from now on, maybe for a moment each."""
+    part.evaluate("""part => {
+      part.noted = [];
+      const note = () => part.noted.push(part.textContent);
+      new MutationObserver(note).observe(part, { childList: true, subtree: true });
+    }""")
+
+
+def noted_texts(part: Locator) -> list[str]:
+    """Return the texts that a part of the page has had since then."""
+    texts: list[str] = part.evaluate("part => part.noted")
+    return texts
+
+
 class Held:
     """Requests that are held back until they are released, as are all later ones."""
 
@@ -311,7 +388,7 @@ class Held:
 
     def wait(self) -> None:
         """Wait until there is one: what ends it before that ends a request that is not sent."""
-        for _ in range(1000):
+        for _ in range(3000):
             if self._routes:
                 break
             self._page.wait_for_timeout(20)

@@ -1,14 +1,14 @@
-"""The command `paretour`, run in a process of its own."""
+"""The command `paretour`, run in this process, or in one of its own."""
 
 import os
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
-from multiprocessing import get_context
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from unittest.mock import patch
 
 from service.__main__ import main
 
@@ -22,30 +22,28 @@ def paretour(
 ) -> subprocess.CompletedProcess[str]:
     """Run the command to its end in a folder, with settings from the environment.
 
-    It is forked like a worker of the service, with the compiled search in memory: to start Python
-    and to load that takes as long as the rest of most commands.
+    It runs in this process: to import what plans takes another longer than most commands.
     """
-    command = ["paretour", *map(str, arguments)]
-    with TemporaryDirectory() as written:
-        streams = [Path(written, name) for name in ("stdout", "stderr")]
-        process = get_context("forkserver").Process(
-            target=_run, args=(command, folder, {**os.environ, **settings}, streams)
-        )
-        process.start()
-        process.join()
-        stdout, stderr = (stream.read_text() for stream in streams)
-    assert process.exitcode is not None
-    return subprocess.CompletedProcess(command, process.exitcode, stdout, stderr)
+    command = [str(argument) for argument in arguments]
+    stdout, stderr = (TextIOWrapper(BytesIO(), encoding="utf-8") for _ in range(2))
+    status: object = 0
+    with (
+        patch.dict(os.environ, settings),  # and without what the command sets
+        chdir(folder),
+        redirect_stdout(stdout),
+        redirect_stderr(stderr),
+    ):
+        try:
+            main(command)
+        except SystemExit as ended:
+            status = ended.code or 0
+    assert isinstance(status, int), status
+    return subprocess.CompletedProcess(command, status, _written(stdout), _written(stderr))
 
 
-def _run(command: list[str], folder: Path, settings: dict[str, str], streams: list[Path]) -> None:
-    os.environ.clear()
-    os.environ.update(settings)
-    os.chdir(folder)
-    for descriptor, stream in enumerate(streams, start=1):
-        os.dup2(os.open(stream, os.O_WRONLY | os.O_CREAT), descriptor)
-    sys.argv = command
-    main()
+def _written(stream: TextIOWrapper) -> str:
+    stream.seek(0)
+    return stream.read()
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from playwright.sync_api import Page
 
 # Notes each shift that no input caused, and when the first front is drawn, from the page's start.
-_WATCH = """
+WATCH = """
 globalThis.shifts = [];
 globalThis.firstFront = null;
 new PerformanceObserver((list) => {
@@ -22,7 +22,7 @@ requestAnimationFrame(look);
 
 def watch_layout_shifts(page: Page) -> None:
     """Have every page that is opened from now on note its layout shifts."""
-    page.add_init_script(_WATCH)
+    page.add_init_script(WATCH)
 
 
 def shifts_after_the_first_front(page: Page) -> list[tuple[float, list[str]]]:

@@ -10,10 +10,9 @@ from tests.helpers.browsing import (
     FEW_THREADS,
     chromium,
     copied,
-    open_page,
+    open_link,
     open_unplanned,
     plan_city_deliveries,
-    wait_until_planned,
 )
 from tests.helpers.node import Node, node_process
 
@@ -32,19 +31,13 @@ def node() -> Iterator[Node]:
         yield node
 
 
-@pytest.fixture
-def width() -> int:
-    """The width of the window in pixels; a test at several widths is parametrised by them."""
-    return DESK
-
-
 @pytest.fixture(scope="package")
 def planned(browser: Browser, released: str) -> Iterator[Page]:
     """The page with its example of two planes planned, in one window for all tests that only look.
 
     They may select tours; stops, fields and front stay as they are.
     """
-    with open_page(browser, released) as page:
+    with open_unplanned(browser, released) as page:
         plan_city_deliveries(page)
         yield page
 
@@ -55,17 +48,19 @@ def link(planned: Page) -> str:
     return copied(planned, "link")
 
 
-@pytest.fixture
-def page(width: int, browser: Browser, link: str) -> Iterator[Page]:
-    """The page with its example of two planes planned, to do anything with."""
-    with open_page(browser, link, width) as page:
-        wait_until_planned(page)
-        expect(page.locator("#count")).to_have_text("61 stops")
-        yield page
-
-
 @pytest.fixture(scope="module")
 def window(browser: Browser, released: str) -> Iterator[Page]:
     """A page for all tests of a module, each of which opens its own stops."""
     with open_unplanned(browser, released) as page:
         yield page
+
+
+@pytest.fixture
+def page(window: Page, link: str) -> Iterator[Page]:
+    """The page with its example of two planes planned, to do anything with."""
+    window.set_viewport_size({"width": DESK, "height": 900})
+    window.emulate_media(color_scheme="light")
+    open_link(window, link)
+    expect(window.locator("#count")).to_have_text("61 stops")
+    yield window
+    window.unroute_all()

@@ -9,10 +9,19 @@ from service.api.app import Edge
 from service.api.auth import Access
 from service.api.keys import KeyHash, new_key
 from service.settings import Settings
-from tests.helpers.browsing import SECOND, needs_chromium, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    FREE,
+    SECOND,
+    know,
+    needs_chromium,
+    open_files,
+    open_page,
+    wait_until_planned,
+)
 from tests.helpers.serving import app_of, runner_of, serving, workers_of
 
 LIMITS = Settings().limits
+STOPS = {"stops.csv": "id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"}
 
 pytestmark = needs_chromium
 
@@ -42,7 +51,7 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
         expect(page.get_by_label("A choice of")).to_be_visible()
 
 
-def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
+def test_the_page_asks_for_a_key_and_uses_it_for_files_as_well(browser: Browser) -> None:
     key, digest = new_key()
     access = Access([KeyHash(caller="dispatch", digest=digest)])
     app = app_of(limits=LIMITS, edge=Edge(access=access))
@@ -50,6 +59,10 @@ def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
         field = page.get_by_label("API key")
         expect(page.locator("#key-fault")).to_contain_text("key")
         expect(field).to_be_focused()
+        with page.expect_response("**/files") as answered:
+            open_files(page, STOPS)
+        assert answered.value.status == 401
+        expect(page.locator("#key-fault")).to_contain_text("key")
         field.fill("nobody's")
         field.press("Enter")
         expect(page.locator("#key-fault")).to_contain_text("key")
@@ -59,13 +72,15 @@ def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
         wait_until_planned(page)
         expect(page.locator("#key-fault")).to_be_empty()
         expect(page.get_by_label("A choice of")).to_be_visible()
+        open_files(page, STOPS)
+        expect(page.locator("#count")).to_have_text("2 stops")
 
 
 def test_the_page_says_that_the_service_is_away_when_it_opens(
     browser: Browser, released: str
 ) -> None:
-    with open_page(browser, "about:blank") as page:
-        page.route("**/examples/index.json", lambda route: route.abort())
+    with open_page(browser, released + FREE) as page:
+        know(page, {"examples/index.json": None})
         page.goto(released)
         expect(page.locator("#request-fault")).to_have_text("The service does not answer.")
         expect(page.locator("#status")).to_be_empty()

@@ -1,13 +1,12 @@
 """Help to choose on the page: three cards, one click each, until a tour or plan is selected."""
 
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.accessibility import load_axe, violations
 from tests.helpers.browsing import (
@@ -16,7 +15,6 @@ from tests.helpers.browsing import (
     needs_chromium,
     number_in,
     open_files,
-    open_unplanned,
     wait_until_planned,
 )
 
@@ -50,14 +48,8 @@ def fleet() -> dict[str, Any]:
             {"name": "total", "from": "great_circle"},
             {"name": "longest", "from": "great_circle", "over": "max"},
         ],
-        "time_limit": 3,  # it ends once nothing more is found: on a busy machine later
+        "time_limit": 0,  # the network finds several plans, however busy the machine
     }
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    with open_unplanned(browser, released) as page:
-        yield page
 
 
 @pytest.mark.parametrize(
@@ -76,7 +68,7 @@ def test_three_picks_select_what_the_service_leads_to(
     window.get_by_role("button", name="Help me choose").click()
     expect(window.locator("#options button").first).to_be_focused()
     load_axe(window)
-    assert violations(window, part=".front") == []
+    assert violations(window, ".front") == []
     if not by_keyboard:
         window.locator("#options button").nth(1).click()
         expect_question(window, 2)

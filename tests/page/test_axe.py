@@ -129,7 +129,7 @@ def findings(page: Page, looks: Looks = LOOKS, part: str = "html") -> list[Any]:
     found = []
     for width, scheme in looks:
         look(page, width, scheme)
-        for rule in violations(page, part=part):
+        for rule in violations(page, part):
             where = rule["nodes"][0]["target"]
             found.append((rule["impact"], rule["id"], where, width, scheme))
     return found

@@ -12,6 +12,7 @@ from tests.helpers.browsing import (
     CUT_OFF,
     needs_chromium,
     open_unplanned,
+    plan_by_network_alone,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -83,6 +84,7 @@ CROSSED = """() => {
 def example(request: pytest.FixtureRequest, browser: Browser, released: str) -> Iterator[Page]:
     """The page with an example planned, for tests that only look."""
     with open_unplanned(browser, released) as page:
+        plan_by_network_alone(page, "(front|fleet|coverage)")  # which finds several, however busy
         page.get_by_label("Example").select_option(request.param)
         wait_until_planned(page)
         page.evaluate("document.fonts.ready")

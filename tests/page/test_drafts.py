@@ -1,16 +1,15 @@
 """What a tab shows is there after a reload and the guide, and once a change is taken back."""
 
-from collections.abc import Iterator
-
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Error, Page, expect
 
 from tests.helpers.browsing import (
+    FREE,
     needs_chromium,
-    new_window,
     open_files,
     open_page,
     open_unplanned,
+    running_first,
     wait_until_planned,
 )
 from tests.helpers.sampled import few
@@ -20,6 +19,9 @@ pytestmark = needs_chromium
 TOUR = "id,x,y,u,v\n" + "".join(f"order-{k},{k},{k % 3},{k % 4},{k % 5}\n" for k in range(9))
 FLEET = "id,lat,lon,demand\ndepot,60.1,24.9,0\n" + "".join(
     f"order-{k},{60.1 + k / 100:.2f},{24.9 + k % 3 / 50:.2f},{k}\n" for k in range(1, 9)
+)
+NOTHING_KEPT = (
+    "Object.defineProperty(window, 'sessionStorage', { get() { throw new Error('none'); } })"
 )
 # As many characters as a tab may keep.
 FILL = """
@@ -47,12 +49,11 @@ def choice(page: Page) -> str:
 
 
 @pytest.fixture
-def page(own: str, browser: Browser, released: str) -> Iterator[Page]:
+def page(own: str, window: Page) -> Page:
     """The page with those stops planned."""
-    with open_unplanned(browser, released) as page:
-        open_files(page, {"orders.csv": own})
-        plan(page)
-        yield page
+    open_files(window, {"orders.csv": own})
+    plan(window)
+    return window
 
 
 def write(page: Page, text: str) -> str:
@@ -96,7 +97,7 @@ def test_a_tab_left_before_anything_is_shown_opens_an_example(
     with open_page(browser, released) as page:
         page.goto(released, wait_until="commit")
         page.goto(released)
-        wait_until_planned(page)
+        expect(page.locator("#count")).to_have_text("60 stops")
         expect(page.locator("#example")).not_to_have_value("")
 
 
@@ -116,15 +117,15 @@ def test_leaving_asks_first_where_a_browser_cannot_keep_so_much(
 def test_a_browser_that_keeps_nothing_shows_the_page_all_the_same(
     browser: Browser, released: str
 ) -> None:
-    page = new_window(browser)
-    page.add_init_script(
-        "Object.defineProperty(window, 'sessionStorage', { get() { throw new Error('none'); } })"
-    )
-    page.goto(released)
-    wait_until_planned(page)
-    page.reload()
-    wait_until_planned(page)
-    page.close()
+    with open_page(browser, released + FREE) as page:
+        with running_first(page, NOTHING_KEPT):
+            page.goto(released)
+            wait_until_planned(page)
+            with pytest.raises(Error, match="none"):
+                page.evaluate("sessionStorage")
+            page.reload()
+            expect(page.locator("#count")).to_have_text("60 stops")
+        page.goto(released + FREE)
 
 
 def test_a_plan_stays_while_a_typo_is_mended_and_is_there_again_once_a_change_is_taken_back(

@@ -14,7 +14,7 @@ from playwright.sync_api import Browser, Page, expect
 from tests.helpers.browsing import (
     needs_chromium,
     open_files,
-    open_page,
+    open_unplanned,
     saved,
     wait_until_planned,
 )
@@ -124,8 +124,8 @@ WHY = "Sets off at 8:05, to be at A when its window opens at 8:15. The shift beg
 @pytest.fixture(scope="module")
 def stored(browser: Browser, released: str) -> Iterator[Page]:
     """The page with the stored plan, for tests that only look."""
-    with open_page(browser, "about:blank") as page:
-        open_stored_answer(page, released, REQUEST, ANSWER)
+    with open_unplanned(browser, released) as page:
+        open_stored_answer(page, REQUEST, ANSWER)
         yield page
 
 
@@ -216,14 +216,12 @@ def test_breaks_are_said_of_a_stop_and_of_the_longest_route(stored: Page) -> Non
     )
 
 
-def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(
-    browser: Browser, released: str
-) -> None:
+def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(window: Page) -> None:
     """Each drive takes ten minutes; the breaks are between a stop at eight and one at eleven."""
     windows = [span("8:00", "8:30"), *[span(f"{8 + k % 3}:00", "12:00") for k in range(5)]]
     stops: list[dict[str, Any]] = [
-        {"id": f"s{k}", "service": 60 * (k % 4), "window": window}
-        for k, window in enumerate([*windows, span("11:00", "12:00")])
+        {"id": f"s{k}", "service": 60 * (k % 4), "window": opens}
+        for k, opens in enumerate([*windows, span("11:00", "12:00")])
     ]
     breaks = [
         {"window": span("9:00", "9:30"), "length": 900},
@@ -240,11 +238,10 @@ def test_a_vehicle_of_any_plan_drives_from_leaving_to_the_next_arrival(
         "clock": "time",
         "time_limit": 0.3,
     }
-    with open_page(browser, released) as page:
-        open_files(page, {"fleet.json": json.dumps(request)})
-        page.get_by_role("button", name="Plan", exact=True).click()
-        wait_until_planned(page)
-        rows = list(csv.DictReader(io.StringIO(given(page, "Save the stops of the selected tour"))))
+    open_files(window, {"fleet.json": json.dumps(request)})
+    window.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(window)
+    rows = list(csv.DictReader(io.StringIO(given(window, "Save the stops of the selected tour"))))
     assert len(rows) == len(stops) + 2
     assert sum(row["break"].count(" to ") for row in rows) == len(breaks)
     for row, following in pairwise(rows):

@@ -212,7 +212,7 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
     expected = json.loads(ended.stdout)
     assert expected["terminated"] == "converged"
     page.get_by_label("Open files").set_input_files(tsplib_files)
-    page.get_by_text("More settings").click()
+    page.locator("#more").evaluate("details => details.open = true")
     page.get_by_label("Seed").fill("3")
     page.get_by_label("Seconds of planning").fill("50")
     page.get_by_role("button", name="Plan", exact=True).click()
@@ -244,7 +244,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
 def test_a_list_of_angles_in_a_file_is_asked_for(opened: Page) -> None:
     open_files(opened, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
     assert curl_body(opened)["preferences"] == [10, 80]
-    opened.get_by_text("More settings").click()
+    opened.locator("#more").evaluate("details => details.open = true")
     opened.get_by_label("Trade-offs for the network").fill("7")
     assert curl_body(opened)["preferences"] == 7
 

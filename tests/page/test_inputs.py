@@ -10,12 +10,16 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
+    FREE,
+    SETTINGS,
     curl_body,
+    know,
     needs_chromium,
     open_files,
     open_page,
     open_unplanned,
     saved,
+    show_unplanned,
     stops_as_text,
     wait_until_planned,
 )
@@ -188,11 +192,10 @@ def test_straight_lines_are_times_at_a_speed_that_is_typed(opened: Page) -> None
 def test_places_alone_are_measured_by_road_where_the_service_has_roads(
     browser: Browser, released: str
 ) -> None:
-    with open_page(browser, f"{released}/page/icon.svg") as page:
-        known = {"tiles": None, "credit": "", "roads": True, "seconds": 60}
-        page.route("**/page/settings.json", lambda route: route.fulfill(json=known))
-        page.goto(released)
-        wait_until_planned(page)
+    told = {"tiles": None, "credit": "", "roads": True, "seconds": 60}
+    with open_page(browser, released + FREE) as page:
+        know(page, {SETTINGS: told})
+        show_unplanned(page, released)
         open_files(page, {"stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
         expect(page.locator("#file-notes")).to_contain_text("time by road")
         assert curl_body(page)["objectives"][1] == {"name": "time", "from": "road_time"}
@@ -205,14 +208,10 @@ def commit(page: Page, label: str, text: str) -> None:
     field.press("Tab")
 
 
-def test_a_cell_shows_a_tenth_of_a_metre_and_is_sent_in_full(
-    browser: Browser, released: str
-) -> None:
+def test_a_cell_shows_a_tenth_of_a_metre_and_is_sent_in_full(opened: Page) -> None:
     longitude = 24.919999999999998
     text = f"id,lat,lon,demand\ndepot,60.1,24.9,0\na,60.2,{longitude},3\nb,60.3,25,3\n"
     for table, path in ((text, "fleet"), (text.replace(",demand", ",risk"), "front")):
-        with open_page(browser, released) as page:
-            wait_until_planned(page)
-            open_files(page, {"orders.csv": table})
-            expect(page.get_by_label("Longitude of a", exact=True)).to_have_value("24.92")
-            assert curl_body(page, path)["stops"][1]["location"][0] == longitude
+        open_files(opened, {"orders.csv": table})
+        expect(opened.get_by_label("Longitude of a", exact=True)).to_have_value("24.92")
+        assert curl_body(opened, path)["stops"][1]["location"][0] == longitude

@@ -12,7 +12,7 @@ from tests.helpers.browsing import (
     CUT_OFF,
     needs_chromium,
     open_files,
-    open_page,
+    open_unplanned,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -81,8 +81,8 @@ def answer(request: dict[str, Any], stops: list[str] = STOPS) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def shown(browser: Browser, released: str) -> Iterator[Page]:
     """The page with a plan that is full and late in some windows."""
-    with open_page(browser, "about:blank") as page:
-        open_stored_answer(page, released, REQUEST, answer(REQUEST))
+    with open_unplanned(browser, released) as page:
+        open_stored_answer(page, REQUEST, answer(REQUEST))
         yield page
 
 
@@ -139,23 +139,19 @@ def test_a_vehicle_says_the_most_that_it_carries_of_what_it_can(shown: Page) -> 
     ids=["load at start", "shipments"],
 )
 def test_loads_at_the_start_and_on_the_way_are_counted(
-    browser: Browser, released: str, vehicle: dict[str, Any], others: dict[str, Any], said: str
+    window: Page, vehicle: dict[str, Any], others: dict[str, Any], said: str
 ) -> None:
     van = {"id": "van", "start": "depot", "end": "depot", "capacity": [20, 1_500], **vehicle}
     request = {**REQUEST, "vehicles": [van], **others}
-    with open_page(browser, "about:blank") as page:
-        open_stored_answer(page, released, request, answer(request))
-        assert loads(page) == [said]
+    open_stored_answer(window, request, answer(request))
+    assert loads(window) == [said]
 
 
-def test_vehicles_without_a_capacity_have_no_column_of_loads(
-    browser: Browser, released: str
-) -> None:
+def test_vehicles_without_a_capacity_have_no_column_of_loads(window: Page) -> None:
     request = {**REQUEST, "vehicles": [{"id": "van", "start": "depot", "end": "depot"}]}
-    with open_page(browser, "about:blank") as page:
-        open_stored_answer(page, released, request, answer(request))
-        titles = page.locator("#fleet-legend thead th").all_inner_texts()
-        assert titles == ["Vehicle", "Stops", "Sets off", "Back", "Time", "Whole route"]
+    open_stored_answer(window, request, answer(request))
+    titles = window.locator("#fleet-legend thead th").all_inner_texts()
+    assert titles == ["Vehicle", "Stops", "Sets off", "Back", "Time", "Whole route"]
 
 
 def test_a_time_says_what_it_counts(shown: Page) -> None:
@@ -173,10 +169,10 @@ def test_neither_loads_nor_windows_are_cut_off(shown: Page) -> None:
     check_on_a_phone(shown, "#fleet")
 
 
-def test_a_fleet_is_only_searched(browser: Browser, released: str) -> None:
+def test_a_fleet_is_only_searched(window: Page) -> None:
     """The network may have no plan for it, and its refusal would be an error in the console."""
-    window = [8 * HOUR, 8 * HOUR + 30 * MINUTE]
-    stops = [{**each, "demand": [1], "window": window} for each in REQUEST["stops"][1:]]
+    half_an_hour = [8 * HOUR, 8 * HOUR + 30 * MINUTE]
+    stops = [{**each, "demand": [1], "window": half_an_hour} for each in REQUEST["stops"][1:]]
     objectives = [
         {"name": "distance", "from": "great_circle"},
         {"name": "time", "from": "great_circle", "speed": 30, "over": "max"},
@@ -197,16 +193,14 @@ def test_a_fleet_is_only_searched(browser: Browser, released: str) -> None:
         if each.status >= 400:
             refused.append(each.url)
 
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        open_files(page, {"fleet.json": json.dumps(request)})
-        page.on("request", note_request)
-        page.on("response", note_response)
-        page.get_by_role("button", name="Plan", exact=True).click()
-        expect(page.locator("#fleet")).to_be_visible()
-        wait_until_planned(page)
-        page.remove_listener("request", note_request)
-        page.remove_listener("response", note_response)
-        expect(page.locator("#will-plan")).to_contain_text("Distance against longest route")
+    open_files(window, {"fleet.json": json.dumps(request)})
+    window.on("request", note_request)
+    window.on("response", note_response)
+    window.get_by_role("button", name="Plan", exact=True).click()
+    expect(window.locator("#fleet")).to_be_visible()
+    wait_until_planned(window)
+    window.remove_listener("request", note_request)
+    window.remove_listener("response", note_response)
+    expect(window.locator("#will-plan")).to_contain_text("Distance against longest route")
     assert sent == [0.2]
     assert refused == []

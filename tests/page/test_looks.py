@@ -1,6 +1,7 @@
 """How the page looks: on a phone and on a desk, in light and in dark, whatever is planned on it."""
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,16 @@ from playwright.sync_api import Browser, Page, expect
 from tests.helpers.accessibility import unfold
 from tests.helpers.browsing import (
     DESK,
+    FREE,
     PHONE,
     needs_chromium,
     open_page,
+    running_first,
     stops_as_text,
     wait_for_next_frame,
     wait_until_planned,
 )
-from tests.helpers.layout_shifts import shifts_after_the_first_front, watch_layout_shifts
+from tests.helpers.layout_shifts import WATCH, shifts_after_the_first_front
 from tests.helpers.sampled import IS_WHOLE, few
 
 EXAMPLES = ["Helsinki deliveries", "City deliveries", "Warehouse cleaning"]
@@ -60,23 +63,21 @@ LINES = """() => {
 }"""
 
 
-def test_nothing_sticks_out_at_either_width(browser: Browser, released: str) -> None:
-    with open_page(browser, released, PHONE) as page:
-        seconds, fault = page.get_by_label("Seconds of planning"), page.locator("#time_limit-fault")
-        for example in EXAMPLES:
-            wait_until_planned(page)
-            page.get_by_label("Example").select_option(example)
-            wait_until_planned(page)
-            unfold(page)
-            for width in (PHONE, DESK):
-                assert_that_nothing_sticks_out(page, width, example)
-            seconds.fill("as long as it takes, if that is not forever")
-            page.get_by_role("button", name="Plan", exact=True).click()
-            expect(fault).not_to_be_empty()
-            for width in (DESK, PHONE):
-                assert_that_nothing_sticks_out(page, width, example)
-            seconds.fill("0.1")
-            page.get_by_role("button", name="Plan", exact=True).click()
+def test_nothing_sticks_out_at_either_width(window: Page) -> None:
+    seconds, fault = window.get_by_label("Seconds of planning"), window.locator("#time_limit-fault")
+    window.set_viewport_size({"width": PHONE, "height": 900})
+    for example in EXAMPLES:
+        seconds.fill("0.1")
+        window.get_by_label("Example").select_option(example)
+        wait_until_planned(window)
+        unfold(window)
+        for width in (PHONE, DESK):
+            assert_that_nothing_sticks_out(window, width, example)
+        seconds.fill("as long as it takes, if that is not forever")
+        window.get_by_role("button", name="Plan", exact=True).click()
+        expect(fault).not_to_be_empty()
+        for width in (DESK, PHONE):
+            assert_that_nothing_sticks_out(window, width, example)
 
 
 def assert_that_nothing_sticks_out(page: Page, width: int, example: str) -> None:
@@ -89,40 +90,42 @@ def assert_that_nothing_sticks_out(page: Page, width: int, example: str) -> None
 def test_nothing_moves_by_itself_once_a_front_is_drawn(
     browser: Browser, released: str, width: int
 ) -> None:
-    with open_page(browser, "about:blank", width) as page:
-        watch_layout_shifts(page)
+    with open_page(browser, released + FREE, width) as page, running_first(page, WATCH):
         page.goto(released)
         wait_until_planned(page)
         expect(page.locator("#plane-1 canvas.streets")).to_be_visible()
         wait_for_next_frame(page)
         assert page.evaluate("firstFront") > 0
         assert shifts_after_the_first_front(page) == []
-        page.close()  # what watches would go on in the tests that follow
 
 
-def test_what_is_said_of_the_lines_stays_in_its_place(browser: Browser, released: str) -> None:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        place = "text => (lines.textContent = text, lines.getBoundingClientRect().toJSON())"
-        for width in (DESK, PHONE):
-            page.set_viewport_size({"width": width, "height": 900})
-            wait_for_next_frame(page)
-            straight, along = (page.evaluate(place, each) for each in OF_LINES)
-            assert straight == along
-
-
-def test_every_text_is_legible_against_what_lies_behind_it(browser: Browser, released: str) -> None:
+@pytest.fixture(scope="module")
+def example(browser: Browser, released: str) -> Iterator[Page]:
+    """The page as it opens, in the dark, with its first example planned."""
     with open_page(browser, released, scheme="dark") as page:
         wait_until_planned(page)
-        page.get_by_role("button", name="Keep to compare").click()
-        page.get_by_label("Seconds of planning").fill("soon")
-        page.get_by_role("button", name="Plan", exact=True).click()
-        expect(page.locator("#time_limit-fault")).not_to_be_empty()
-        unfold(page)
-        assert_that_texts_are_legible(page, dark=True)
-        page.emulate_media(color_scheme="light")
-        wait_for_next_frame(page)
-        assert_that_texts_are_legible(page, dark=False)
+        yield page
+
+
+def test_what_is_said_of_the_lines_stays_in_its_place(example: Page) -> None:
+    place = "text => (lines.textContent = text, lines.getBoundingClientRect().toJSON())"
+    for width in (PHONE, DESK):
+        example.set_viewport_size({"width": width, "height": 900})
+        wait_for_next_frame(example)
+        straight, along = (example.evaluate(place, each) for each in OF_LINES)
+        assert straight == along
+
+
+def test_every_text_is_legible_against_what_lies_behind_it(example: Page) -> None:
+    example.get_by_role("button", name="Keep to compare").click()
+    example.get_by_label("Seconds of planning").fill("soon")
+    example.get_by_role("button", name="Plan", exact=True).click()
+    expect(example.locator("#time_limit-fault")).not_to_be_empty()
+    unfold(example)
+    assert_that_texts_are_legible(example, dark=True)
+    example.emulate_media(color_scheme="light")
+    wait_for_next_frame(example)
+    assert_that_texts_are_legible(example, dark=False)
 
 
 def assert_that_texts_are_legible(page: Page, dark: bool) -> None:
@@ -134,30 +137,22 @@ def assert_that_texts_are_legible(page: Page, dark: bool) -> None:
     assert (ground == "rgb(16, 21, 28)") == dark
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_cities_and_tours_stand_out_from_the_maps(browser: Browser, link: str, scheme: Any) -> None:
-    with open_page(browser, link, scheme=scheme) as page:
-        wait_until_planned(page)
-        page.get_by_role("slider", name="Balance").press("Home")
-        page.get_by_role("button", name="Keep to compare").click()
-        page.get_by_role("slider", name="Balance").press("End")
-        wait_for_next_frame(page)
-        lines = page.evaluate(LINES)
-        assert len(lines) == 6  # cities, the selected tour and the pinned one, in either plane
-        for (*colour, alpha), ground in lines:
-            assert alpha == 255
-            assert contrast(colour, ground) >= SEEN
-
-
-def test_the_maps_follow_when_the_page_turns_dark(browser: Browser, link: str) -> None:
-    with open_page(browser, link) as page:
-        wait_until_planned(page)
-        wait_for_next_frame(page)
-        before = page.evaluate(LINES)
-        page.emulate_media(color_scheme="dark")
-        wait_for_next_frame(page)
-        after = page.evaluate(LINES)
-        assert all(one[0] != other[0] for one, other in zip(before, after, strict=True))
+def test_cities_and_tours_stand_out_from_the_maps_which_follow_when_it_turns_dark(
+    page: Page,
+) -> None:
+    page.get_by_role("slider", name="Balance").press("Home")
+    page.get_by_role("button", name="Keep to compare").click()
+    page.get_by_role("slider", name="Balance").press("End")
+    wait_for_next_frame(page)
+    light = page.evaluate(LINES)
+    page.emulate_media(color_scheme="dark")
+    wait_for_next_frame(page)
+    dark = page.evaluate(LINES)
+    assert len(light) == len(dark) == 6  # cities, both tours, in either plane
+    for (*colour, alpha), ground in light + dark:
+        assert alpha == 255
+        assert contrast(colour, ground) >= SEEN
+    assert all(one[0] != other[0] for one, other in zip(light, dark, strict=True))
 
 
 def front_of(cities: int, count: int) -> dict[str, Any]:
@@ -176,27 +171,23 @@ def front_of(cities: int, count: int) -> dict[str, Any]:
     }
 
 
-def test_many_cities_and_their_front_are_shown(browser: Browser, link: str) -> None:
+def test_many_cities_and_their_front_are_shown(page: Page) -> None:
     n, count = 1000 if IS_WHOLE else 300, 40
     cities = np.random.default_rng(0).random((n, 4)).round(4)
-    with open_page(browser, link) as page:
-        wait_until_planned(page)
-        stops_as_text(page).fill("\n".join(",".join(map(str, r)) for r in cities))
-        expect(page.locator("#count")).to_have_text(f"{n:,} stops")
-        page.route("**/front", lambda route: route.fulfill(json=front_of(n, count)))
-        page.get_by_label("Seconds of planning").fill("0")
-        page.get_by_role("button", name="Plan", exact=True).click()
-        wait_until_planned(page)
-        slider = page.get_by_role("slider", name="Balance")
-        shown = set()
-        for key, place in {"Home": 1, "PageUp": 11, "End": count}.items():
-            slider.press(key)
-            expect(slider).to_have_attribute(
-                "aria-valuetext", re.compile(f"tour {place} of {count}")
-            )
-            wait_for_next_frame(page)
-            shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
-        assert len(shown) == 3
+    stops_as_text(page).fill("\n".join(",".join(map(str, r)) for r in cities))
+    expect(page.locator("#count")).to_have_text(f"{n:,} stops")
+    page.route("**/front", lambda route: route.fulfill(json=front_of(n, count)))
+    page.get_by_label("Seconds of planning").fill("0")
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    slider = page.get_by_role("slider", name="Balance")
+    shown = set()
+    for key, place in {"Home": 1, "PageUp": 11, "End": count}.items():
+        slider.press(key)
+        expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {place} of {count}"))
+        wait_for_next_frame(page)
+        shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
+    assert len(shown) == 3
 
 
 def contrast(one: list[float], other: list[float]) -> float:

@@ -1,6 +1,5 @@
 """The maps of the page: streets under stops, and which way a tour goes."""
 
-import json
 import math
 import re
 from urllib.parse import parse_qs, urlsplit
@@ -9,7 +8,10 @@ from xml.etree import ElementTree
 from playwright.sync_api import Browser, FloatRect, Page, Route, expect
 
 from tests.helpers.browsing import (
+    FREE,
+    SETTINGS,
     SVG,
+    know,
     needs_chromium,
     open_files,
     open_page,
@@ -44,8 +46,8 @@ COLOURS = """(canvas) => {
 def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) -> None:
     tiles = f"{released}/page/icon.svg?z={{z}}&x={{x}}&y={{y}}"
     told = {"tiles": tiles, "credit": "© somebody", "roads": False, "seconds": 60}
-    with open_page(browser, "about:blank") as page:
-        page.route("**/page/settings.json", lambda route: route.fulfill(body=json.dumps(told)))
+    with open_page(browser, released + FREE) as page:
+        know(page, {SETTINGS: told})
         page.goto(released)
         wait_until_planned(page)
         expect(page.locator("#credit")).to_have_text("© somebody")
@@ -106,11 +108,11 @@ def test_tours_of_the_example_follow_its_streets_and_those_of_a_routing_engine(
         line = {"type": "LineString", "coordinates": [[24.94, 60.17], [24.95, 60.17]]}
         route.fulfill(json={"features": [{"geometry": line}]})
 
-    with open_page(browser, "about:blank") as page:
-        told = {"tiles": None, "credit": "", "roads": True, "seconds": 60}
-        page.route("**/page/settings.json", lambda route: route.fulfill(json=told))
-        page.route("**/tour?*", lead)
+    told = {"tiles": None, "credit": "", "roads": True, "seconds": 60}
+    with open_page(browser, released + FREE) as page:
+        know(page, {SETTINGS: told})
         page.goto(released)
+        page.route("**/tour?*", lead)
         wait_until_planned(page)
         expect(page.locator("#lines")).to_have_text("along the streets")
         drawing = ElementTree.fromstring(saved(page, "SVG"))

@@ -11,7 +11,7 @@ from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     copied,
     needs_chromium,
-    open_page,
+    open_unplanned,
     saved,
     wait_for_next_frame,
 )
@@ -128,22 +128,22 @@ def answer(measure: str, values: list[float]) -> dict[str, Any]:
     }
 
 
-def open_stored(page: Page, released: str, measure: str, values: list[float]) -> None:
+def open_stored(page: Page, measure: str, values: list[float]) -> None:
     """Open a stored front by a link that has its request, and wait until it is shown."""
     objectives = [REQUEST["objectives"][0], {"name": measure, "measure": measure}]
-    open_answer(page, released, objectives, answer(measure, values))
+    open_answer(page, objectives, answer(measure, values))
 
 
-def open_answer(page: Page, released: str, objectives: list[Any], front: dict[str, Any]) -> None:
+def open_answer(page: Page, objectives: list[Any], front: dict[str, Any]) -> None:
     """Open a stored answer by a link that has its request."""
-    open_stored_answer(page, released, {**REQUEST, "objectives": objectives}, front)
+    open_stored_answer(page, {**REQUEST, "objectives": objectives}, front)
 
 
 @pytest.fixture(scope="module")
 def late(browser: Browser, released: str) -> Iterator[Page]:
     """The page with a front of lateness, from one late plan to one that is in time."""
-    with open_page(browser, "about:blank") as page:
-        open_stored(page, released, "lateness", [13.0 * MINUTE, 0.0])
+    with open_unplanned(browser, released) as page:
+        open_stored(page, "lateness", [13.0 * MINUTE, 0.0])
         yield page
 
 
@@ -180,7 +180,7 @@ def test_a_plan_says_its_measures_and_how_much_another_differs(late: Page) -> No
     }
 
 
-def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, released: str) -> None:
+def test_a_total_and_the_longest_route_say_what_they_count(window: Page) -> None:
     """The longest of two routes of 65 minutes has 25 minutes of driving, of 50 in all."""
     objectives = [
         {"name": "driving", "from": "road_time"},
@@ -196,43 +196,39 @@ def test_a_total_and_the_longest_route_say_what_they_count(browser: Browser, rel
     ]
     named = [{**each, "unit": "s"} for each in objectives]
     front = {**answer("lateness", [0.0, 0.0]), "front": plans, "objectives": named}
-    with open_page(browser, "about:blank") as page:
-        open_answer(page, released, objectives, front)
-        select(page, "Home")
-        heads = page.locator("#comparison tbody:first-of-type th").all_inner_texts()
-        assert heads == [
-            "Driving\nall vehicles together",
-            "Longest route\nvan, day 2: 30 min driving, 5 min at stops",
-        ]
-        expect(page.locator("#choice")).to_have_text(
-            "The least driving. Every other plan makes the longest route shorter, for more driving."
-            " The last vehicle is back at day 2, 9:35."
-        )
-        expect(page.get_by_role("button", name="longest route kept short")).to_be_visible()
-        expect(page.locator("#less-2")).to_have_text("longest route shorter")
-        select(page, "End")
-        expect(page.locator("#choice")).to_have_text(
-            "20 % more driving (10 min) than the least,"
-            " and the longest route is 14 % shorter (5 min): the shortest of all plans found."
-            " The last vehicle is back at day 2, 9:35."
-        )
-        titles = page.locator("#fleet-legend thead th").all_inner_texts()
-        assert titles[2:] == ["Sets off", "Back", "Driving", "Whole route"]
-        assert page.locator("#fleet-legend tfoot td").all_inner_texts()[-1] == "30 min, the longest"
+    open_answer(window, objectives, front)
+    select(window, "Home")
+    heads = window.locator("#comparison tbody:first-of-type th").all_inner_texts()
+    assert heads == [
+        "Driving\nall vehicles together",
+        "Longest route\nvan, day 2: 30 min driving, 5 min at stops",
+    ]
+    expect(window.locator("#choice")).to_have_text(
+        "The least driving. Every other plan makes the longest route shorter, for more driving."
+        " The last vehicle is back at day 2, 9:35."
+    )
+    expect(window.get_by_role("button", name="longest route kept short")).to_be_visible()
+    expect(window.locator("#less-2")).to_have_text("longest route shorter")
+    select(window, "End")
+    expect(window.locator("#choice")).to_have_text(
+        "20 % more driving (10 min) than the least,"
+        " and the longest route is 14 % shorter (5 min): the shortest of all plans found."
+        " The last vehicle is back at day 2, 9:35."
+    )
+    titles = window.locator("#fleet-legend thead th").all_inner_texts()
+    assert titles[2:] == ["Sets off", "Back", "Driving", "Whole route"]
+    assert window.locator("#fleet-legend tfoot td").all_inner_texts()[-1] == "30 min, the longest"
 
 
-def test_the_column_of_an_imbalance_is_named_after_what_its_rows_have(
-    browser: Browser, released: str
-) -> None:
-    with open_page(browser, "about:blank") as page:
-        open_stored(page, released, "imbalance", [13.0 * MINUTE, 0.0])
-        page.locator("#balance").press("Home")
-        titles = page.locator("#fleet-legend thead th").all_inner_texts()
-        assert titles[-1].startswith("Whole route")
-        last = page.locator("#fleet-legend tfoot td").last
-        expect(last).to_have_text("13 min, longest minus shortest")
-        head, *_ = saved(page, "CSV").decode().splitlines()
-        assert head.endswith(",route distance (m),whole route (s),leaves,back,stops,selected")
+def test_the_column_of_an_imbalance_is_named_after_what_its_rows_have(window: Page) -> None:
+    open_stored(window, "imbalance", [13.0 * MINUTE, 0.0])
+    window.locator("#balance").press("Home")
+    titles = window.locator("#fleet-legend thead th").all_inner_texts()
+    assert titles[-1].startswith("Whole route")
+    last = window.locator("#fleet-legend tfoot td").last
+    expect(last).to_have_text("13 min, longest minus shortest")
+    head, *_ = saved(window, "CSV").decode().splitlines()
+    assert head.endswith(",route distance (m),whole route (s),leaves,back,stops,selected")
 
 
 def test_lateness_is_said_as_a_time(late: Page) -> None:
@@ -311,43 +307,39 @@ def test_axe_finds_nothing_in_the_lanes(late: Page, scheme: Any) -> None:
     late.emulate_media(color_scheme=scheme)
     select(late, "Home")
     late.locator("#fleet-lanes .visit").nth(2).click()
-    width = late.viewport_size
     check_on_a_phone(late, "#fleet")
-    late.set_viewport_size(width or {"width": 1440, "height": 900})
     late.emulate_media(color_scheme="light")
 
 
-def test_vehicles_are_counted(browser: Browser, released: str) -> None:
-    with open_page(browser, "about:blank") as page:
-        open_stored(page, released, "vehicles", [7.0, 5.0])
-        select(page, "Home")
-        expect(page.locator("#choice")).to_contain_text(
-            "The least distance. Every other plan has fewer vehicles, for more distance."
-        )
-        select(page, "End")
-        expect(page.locator("#choice")).to_contain_text(
-            "25 % more distance (1,000 m) than the least,"
-            " for 2 fewer vehicles: the fewest of all plans found."
-        )
-        expect(page.get_by_role("button", name="fewest vehicles")).to_be_visible()
-        line = page.get_by_role("slider", name="At most this many vehicles")
-        line.press("Home")
-        expect(page.locator("#budget")).to_have_text("Budget: 5 vehicles.")
-        assert rows(page)["Vehicles"][0] == "5"
-        drawing = saved(page, "SVG").decode()
-        assert not re.search(r">[567]\.\d+<", drawing)
+def test_vehicles_are_counted(window: Page) -> None:
+    open_stored(window, "vehicles", [7.0, 5.0])
+    select(window, "Home")
+    expect(window.locator("#choice")).to_contain_text(
+        "The least distance. Every other plan has fewer vehicles, for more distance."
+    )
+    select(window, "End")
+    expect(window.locator("#choice")).to_contain_text(
+        "25 % more distance (1,000 m) than the least,"
+        " for 2 fewer vehicles: the fewest of all plans found."
+    )
+    expect(window.get_by_role("button", name="fewest vehicles")).to_be_visible()
+    line = window.get_by_role("slider", name="At most this many vehicles")
+    line.press("Home")
+    expect(window.locator("#budget")).to_have_text("Budget: 5 vehicles.")
+    assert rows(window)["Vehicles"][0] == "5"
+    drawing = saved(window, "SVG").decode()
+    assert not re.search(r">[567]\.\d+<", drawing)
 
 
-def test_what_is_carried_is_said_in_words(browser: Browser, released: str) -> None:
+def test_what_is_carried_is_said_in_words(window: Page) -> None:
     front = answer("load_distance", [1_234_000.0, 800_000.0])
     front["objectives"][1]["name"] = "load carried"
     asked = [REQUEST["objectives"][0], {"name": "load carried", "measure": "load_distance"}]
     name = "Load carried, load-km"
-    with open_page(browser, "about:blank") as page:
-        open_answer(page, released, asked, front)
-        select(page, "Home")
-        page.get_by_role("button", name="Keep to compare").click()
-        select(page, "End")
-        assert rows(page)[name][:2] == ["800", "1,230"]
-        assert f">{name}<" in saved(page, "SVG").decode()
-        expect(page.locator("#choice")).to_contain_text("less load carried")
+    open_answer(window, asked, front)
+    select(window, "Home")
+    window.get_by_role("button", name="Keep to compare").click()
+    select(window, "End")
+    assert rows(window)[name][:2] == ["800", "1,230"]
+    assert f">{name}<" in saved(window, "SVG").decode()
+    expect(window.locator("#choice")).to_contain_text("less load carried")

@@ -7,23 +7,17 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, Route, expect
 
-from service.api.app import Edge
-from service.api.auth import Access
-from service.api.keys import KeyHash, new_key
-from service.settings import Settings
 from tests.helpers.browsing import (
     Held,
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
     open_unplanned,
     stops_as_text,
     wait_until_planned,
     wait_until_read,
 )
 from tests.helpers.sampled import few
-from tests.helpers.serving import app_of, serving
 
 pytestmark = needs_chromium
 
@@ -254,19 +248,3 @@ def test_a_refusal_is_a_sentence(opened: Page, status: int, code: str, detail: s
     open_files(opened, {"a.csv": "lon,lat\n1,2\n"})
     expect(opened.locator("#file-fault")).to_have_text(f"Not opened: {detail}.")
     opened.unroute_all()
-
-
-def test_a_key_is_sent_with_files(browser: Browser) -> None:
-    key, digest = new_key()
-    access = Access([KeyHash(caller="dispatch", digest=digest)])
-    app = app_of(limits=Settings().limits, edge=Edge(access=access))
-    stops = {"stops.csv": "id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"}
-    with serving(app) as address, open_page(browser, address) as page:
-        expect(page.locator("#key-fault")).to_contain_text("key")
-        with page.expect_response("**/files") as answered:
-            open_files(page, stops)
-        assert answered.value.status == 401
-        expect(page.locator("#key-fault")).to_contain_text("key")
-        page.get_by_label("API key").fill(key)
-        open_files(page, stops)
-        expect(page.locator("#count")).to_have_text("2 stops")

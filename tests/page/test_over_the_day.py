@@ -6,14 +6,13 @@ import json
 import re
 from typing import Any
 
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
     saved,
     wait_until_planned,
 )
@@ -60,28 +59,25 @@ def asked(page: Page) -> dict[str, Any]:
     }
 
 
-def test_the_hours_of_a_tour_stand_beside_its_stops_and_in_files(
-    browser: Browser, released: str
-) -> None:
-    with open_page(browser, released) as page:
-        page.get_by_label("Example").select_option("Helsinki, rush hour")
-        wait_until_planned(page)
-        body = curl_body(page)
-        assert body["departure"] == {"earliest": 25200, "latest": 30600}
-        assert body["stops"][1]["service"] == 45
-        assert len(body["objectives"][0]["over_the_day"]) == 5
-        hours = page.locator("#comparison")
-        expect(hours).to_contain_text(re.compile(r"Leaves at\s*[78]:\d\d"))
-        page.locator("#order > summary").click()
-        order = page.locator("#order li")
-        expect(order).to_have_count(len(body["stops"]) + 1)
-        expect(order.first).to_have_text(re.compile(r"^depot [78]:\d\d$"))
-        expect(order.last).to_have_text(re.compile(r"^depot (9|10):\d\d$"))
-        rows = list(csv.DictReader(io.StringIO(saved(page, "CSV").decode())))
-        assert all(25200 <= float(row["departure"]) <= 30600 for row in rows)
-        chart = page.get_by_role("img", name=re.compile("^Times of travel over the day"))
-        expect(chart).to_contain_text("1.9")
-        check_on_a_phone(page, "#request")
+def test_the_hours_of_a_tour_stand_beside_its_stops_and_in_files(window: Page) -> None:
+    window.get_by_label("Example").select_option("Helsinki, rush hour")
+    wait_until_planned(window)
+    body = curl_body(window)
+    assert body["departure"] == {"earliest": 25200, "latest": 30600}
+    assert body["stops"][1]["service"] == 45
+    assert len(body["objectives"][0]["over_the_day"]) == 5
+    hours = window.locator("#comparison")
+    expect(hours).to_contain_text(re.compile(r"Leaves at\s*[78]:\d\d"))
+    window.locator("#order > summary").click()
+    order = window.locator("#order li")
+    expect(order).to_have_count(len(body["stops"]) + 1)
+    expect(order.first).to_have_text(re.compile(r"^depot [78]:\d\d$"))
+    expect(order.last).to_have_text(re.compile(r"^depot (9|10):\d\d$"))
+    rows = list(csv.DictReader(io.StringIO(saved(window, "CSV").decode())))
+    assert all(25200 <= float(row["departure"]) <= 30600 for row in rows)
+    chart = window.get_by_role("img", name=re.compile("^Times of travel over the day"))
+    expect(chart).to_contain_text("1.9")
+    check_on_a_phone(window, "#request")
 
 
 def test_stops_get_rush_hours_and_a_departure_by_typing(window: Page) -> None:

@@ -17,7 +17,6 @@ from tests.helpers.browsing import (
     number_in,
     open_files,
     open_page,
-    plan_city_deliveries,
     saved,
     shown_front,
     stops_as_text,
@@ -29,10 +28,9 @@ from tests.helpers.browsing import (
 CITIES = "0, 0, 5, 5\n3.1, 0.4, 9, 1\n5.2, 2, 2, 8\n4, 5.5, 7, 7\n1, 4.2, 1, 2\n2.5, 2.5, 6, 0"
 
 pytestmark = needs_chromium
-at_both_widths = pytest.mark.parametrize("width", [DESK, PHONE])
 
 
-@at_both_widths
+@pytest.mark.parametrize("width", [DESK, PHONE])
 def test_the_page_opens_with_stops_by_road_and_their_front(
     browser: Browser, released: str, width: int
 ) -> None:
@@ -44,16 +42,24 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
         first, second = page.locator(".plane").all()
         expect(first).to_be_visible()
         expect(second).to_be_hidden()
+        check_that_a_phone_has_the_result_above_the_form(page, width)
         body = curl_body(page)
         assert body["stops"][0]["id"] == "depot"
 
 
-def test_an_example_shows_its_front(browser: Browser, released: str) -> None:
-    with open_page(browser, released) as page:
-        plan_city_deliveries(page)
-        shown = page.get_by_label(re.compile(r"A choice of \d+ tours: distance from"))
-        expect(shown).to_be_visible()
-        expect(page.locator("#figures")).to_contain_text("Network alone")
+def check_that_a_phone_has_the_result_above_the_form(page: Page, width: int) -> None:
+    result = page.locator("#result").bounding_box()
+    form = page.locator("#request").bounding_box()
+    assert result is not None
+    assert form is not None
+    assert (result["y"] + result["height"] <= form["y"]) == (width == PHONE)
+    expect(page.locator("#waiting")).to_be_visible(visible=width == PHONE)
+
+
+def test_an_example_shows_its_front(planned: Page) -> None:
+    shown = planned.get_by_label(re.compile(r"A choice of \d+ tours: distance from"))
+    expect(shown).to_be_visible()
+    expect(planned.locator("#figures")).to_contain_text("Network alone")
 
 
 def test_a_front_that_is_done_before_its_stream_says_so_is_shown(page: Page) -> None:
@@ -89,15 +95,15 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
     expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {count - 1} of {count}"))
 
 
-def test_the_slider_stands_at_the_balance_of_the_selected_tour(page: Page) -> None:
+def test_the_slider_stands_at_the_balance_of_the_selected_tour(window: Page) -> None:
     rows = "id,lon,lat,x,y\na,24.941,60.171,0,1\nb,24.952,60.169,5,2\nc,24.933,60.165,2,9\n"
-    open_files(page, {"stops.csv": f"{rows}d,24.925,60.18,8,8\ne,24.96,60.175,3,3\n"})
-    page.get_by_role("button", name="Plan", exact=True).click()
-    wait_until_planned(page)
-    assert [tour["balance"] for tour in shown_front(page)["front"]] == [0, 1]
-    slider = page.get_by_role("slider", name="Balance")
+    open_files(window, {"stops.csv": f"{rows}d,24.925,60.18,8,8\ne,24.96,60.175,3,3\n"})
+    window.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(window)
+    assert [tour["balance"] for tour in shown_front(window)["front"]] == [0, 1]
+    slider = window.get_by_role("slider", name="Balance")
     assert slider.input_value() == "0"
-    page.get_by_role("button", name="least second length").click()
+    window.get_by_role("button", name="least second length").click()
     assert slider.input_value() == "1"
 
 
@@ -272,15 +278,6 @@ def test_the_front_can_be_taken_along(planned: Page, released: str) -> None:
     asked = curl_body(planned)
     found = httpx.post(f"{released}/front", json={**asked, "time_limit": 0}).json()
     assert found["cities"] == 61
-
-
-@at_both_widths
-def test_on_a_phone_the_result_stands_above_the_form(page: Page, width: int) -> None:
-    result, form = page.locator("#result").bounding_box(), page.locator("#request").bounding_box()
-    assert result is not None
-    assert form is not None
-    assert (result["y"] + result["height"] <= form["y"]) == (width == PHONE)
-    expect(page.locator("#waiting")).to_be_visible(visible=width == PHONE)
 
 
 def figure(page: Page, name: str) -> float:

@@ -12,7 +12,7 @@ from tests.helpers.browsing import (
     Held,
     curl_body,
     needs_chromium,
-    new_window,
+    new_tab,
     open_files,
     open_page,
     wait_until_planned,
@@ -140,25 +140,18 @@ def test_a_good_file_takes_the_place_of_an_example_under_way(opened: Page) -> No
     assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["a", "b", "d"]
 
 
-def test_nothing_is_planned_before_the_page_is_loaded(browser: Browser, released: str) -> None:
-    with open_page(browser, f"{released}/page/icon.svg") as page:
-        script = Held(page, "**/main.js")
-        page.goto(released, wait_until="commit")
-        expect(button(page, "Plan")).to_be_disabled()
-        script.release()
-        wait_until_planned(page)
-        expect(button(page, "Plan")).to_be_enabled()
-
-
 @pytest.mark.parametrize(
     "first", [pytest.param("the file", marks=at_night), "the list of examples"]
 )
-def test_a_bad_file_at_the_start_leaves_the_first_example(
+def test_nothing_is_planned_before_the_page_is_loaded_nor_does_a_bad_file_take_the_first_example(
     browser: Browser, released: str, first: str
 ) -> None:
     with open_page(browser, f"{released}/page/icon.svg") as page:
+        script = Held(page, "**/main.js")
         examples, files = Held(page, "**/examples/index.json"), Held(page, "**/files")
-        page.goto(released)
+        page.goto(released, wait_until="commit")
+        expect(button(page, "Plan")).to_be_disabled()
+        script.release()
         expect(page.locator("#front-chart svg")).to_be_attached()
         choose(page, BAD)
         if first == "the file":
@@ -171,12 +164,13 @@ def test_a_bad_file_at_the_start_leaves_the_first_example(
             expect(page.get_by_label("Example").get_by_role("option")).not_to_have_count(1)
             files.release()
         wait_until_planned(page)
+        expect(button(page, "Plan")).to_be_enabled()
         expect(page.locator("#count")).to_have_text("60 stops")
         expect(page.locator("#file-fault")).to_contain_text("east")
 
 
 def test_a_fault_of_the_page_itself_is_none_of_the_file(browser: Browser, released: str) -> None:
-    page = new_window(browser)
+    page = new_tab(browser)
     page.goto(released)
     wait_until_planned(page)
     answer: dict[str, Any] = {"kind": "front", "request": None, "notes": [], "name": "a.csv"}

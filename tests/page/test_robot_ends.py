@@ -10,17 +10,19 @@ from playwright.sync_api import Browser, Page, expect
 
 from service.coverage.frame import MapFrame
 from tests.helpers.browsing import (
+    FREE,
     copied,
     curl_body,
     needs_chromium,
-    new_window,
     open_files,
+    open_page,
     open_unplanned,
     select_last,
+    show_unplanned,
     shown_front,
     wait_until_planned,
 )
-from tests.page.test_stops_on_the_map import slide_finger
+from tests.helpers.touch import slide_finger, tap, touched
 
 pytestmark = needs_chromium
 
@@ -277,23 +279,22 @@ def test_a_radius_that_is_typed_holds_for_ends_at_once(opened: Page) -> None:
 
 
 def test_a_finger_moves_the_start_that_it_has_chosen(browser: Browser, released: str) -> None:
-    page = new_window(browser, viewport={"width": 1440, "height": 1200}, has_touch=True)
-    page.goto(released)
-    wait_until_planned(page)
-    open_office(page)
-    begin, end = pixel(page, (0, 0)), pixel(page, (2, 3))
-    slide_finger(page, begin, end)
-    assert shown_cell(page, "start") == (0, 0)  # it scrolls
-    page.locator("#grid").scroll_into_view_if_needed()
-    begin, end = pixel(page, (0, 0)), pixel(page, (2, 3))
-    page.touchscreen.tap(*begin)
-    slide_finger(page, begin, end)
-    assert shown_cell(page, "start") == (2, 3)
-    page.close()
+    with open_page(browser, released + FREE) as page, touched(page):
+        show_unplanned(page, released)
+        page.set_viewport_size({"width": 1440, "height": 1200})
+        open_office(page)
+        begin, end = pixel(page, (0, 0)), pixel(page, (2, 3))
+        slide_finger(page, begin, end)
+        assert shown_cell(page, "start") == (0, 0)  # it scrolls
+        page.locator("#grid").scroll_into_view_if_needed()
+        begin, end = pixel(page, (0, 0)), pixel(page, (2, 3))
+        tap(page, begin)
+        slide_finger(page, begin, end)
+        assert shown_cell(page, "start") == (2, 3)
 
 
 def test_on_a_large_map_an_end_is_moved_by_one_cell(opened: Page) -> None:
-    side = 900
+    side = 600  # a cell is less than a pixel
     open_office(
         opened,
         grid=np.zeros((side, side), int).tolist(),

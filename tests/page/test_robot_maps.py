@@ -21,6 +21,7 @@ from tests.helpers.browsing import (
     wait_until_planned,
     wait_until_read,
 )
+from tests.helpers.sampled import few
 
 pytestmark = needs_chromium
 
@@ -77,7 +78,7 @@ def pgm(cells: NDArray[np.uint8], white: int = 255, plain: bool = False) -> byte
     return header + (" ".join(map(str, cells.ravel())).encode() if plain else cells.tobytes())
 
 
-@pytest.mark.parametrize("how", HOW, ids=lambda how: f"{how['mode']}-{how['negate']}")
+@pytest.mark.parametrize("how", few(1, HOW), ids=lambda how: f"{how['mode']}-{how['negate']}")
 def test_a_map_of_ros_is_read_as_the_service_reads_it(opened: Page, how: dict[str, Any]) -> None:
     picture = pgm(shades())
     inline = f"origin: {ORIGIN}"
@@ -97,7 +98,7 @@ def test_a_picture_alone_is_read_as_the_service_reads_it(opened: Page) -> None:
         with BytesIO() as file:
             Image.fromarray(array).save(file, "PNG")
             pictures.append(file.getvalue())
-    for picture in pictures:
+    for picture in few(2, pictures[::-1]):
         open_map(opened, {"map.pgm": picture})
         assert curl_body(opened, "coverage")["grid"] == grid_of(picture)
 
@@ -281,11 +282,13 @@ def test_a_map_that_takes_too_long_is_refused_in_the_words_of_the_page(opened: P
 
 
 @pytest.mark.parametrize(
-    "kind",
-    [{"cost_layer": [[1] * 9] * 3}, {"robots": [{"id": "left"}, {"id": "right", "start": 1}]}],
+    ("kind", "seconds"),
+    [
+        ({"cost_layer": [[1] * 9] * 3}, 0.3),
+        ({"robots": [{"id": "left"}, {"id": "right", "start": 1}]}, 0),
+    ],
     ids=["tours", "plans"],
 )
-@pytest.mark.parametrize("seconds", [0, 0.3])
 def test_a_map_is_surveyed_once(opened: Page, kind: dict[str, Any], seconds: float) -> None:
     places = [[0, 0], [2, 3], [0, 8]]
     office = {"grid": [[0] * 9] * 3, "cell_size": 0.5, "places": places, **kind}

@@ -6,13 +6,11 @@ import json
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.browsing import (
     needs_chromium,
     open_files,
-    open_page,
-    open_unplanned,
     saved,
     select_last,
     wait_until_planned,
@@ -38,35 +36,32 @@ def positions(message: dict[str, Any]) -> list[list[float]]:
 
 
 @pytest.mark.parametrize("kind", [LAYER, ROBOTS], ids=["tour", "plan"])
-def test_the_selected_paths_are_saved_for_robots(
-    kind: dict[str, Any], browser: Browser, released: str
-) -> None:
-    with open_unplanned(browser, released) as page:
-        expect(page.get_by_role("button", name="Save the path (CSV)")).to_be_hidden()
-        open_files(page, {"office.json": json.dumps({**OFFICE, **kind})})
-        page.get_by_role("button", name="Plan", exact=True).click()
-        wait_until_planned(page)
-        item = select_last(page)
-        routes = item.get("routes") or [{**item, "robot": None}]
-        messages = json.loads(saved(page, "the path for ROS (JSON)"))
-        by_robot = messages if kind is ROBOTS else {None: messages}
-        rows = list(csv.DictReader(io.StringIO(saved(page, "the path (CSV)").decode())))
-        assert by_robot.keys() == {route["robot"] for route in routes}
-        for route in routes:
-            path = route["path"]
-            assert positions(by_robot[route["robot"]]) == path["points"]
-            mine = [row for row in rows if row.get("robot") == route["robot"]]
-            assert [float(row["yaw"]) for row in mine] == path["yaws"]
-            assert [[float(row["x"]), float(row["y"])] for row in mine] == path["points"]
-            visited = [int(row["place"]) for row in mine if row["place"]]
-            assert visited == [place for _, place in path["visits"]]
+def test_the_selected_paths_are_saved_for_robots(window: Page, kind: dict[str, Any]) -> None:
+    open_files(window, {"stops.csv": "1,2,3,4\n5,6,7,8\n"})
+    expect(window.get_by_role("button", name="Save the path (CSV)")).to_be_hidden()
+    open_files(window, {"office.json": json.dumps({**OFFICE, **kind})})
+    window.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(window)
+    item = select_last(window)
+    routes = item.get("routes") or [{**item, "robot": None}]
+    messages = json.loads(saved(window, "the path for ROS (JSON)"))
+    by_robot = messages if kind is ROBOTS else {None: messages}
+    rows = list(csv.DictReader(io.StringIO(saved(window, "the path (CSV)").decode())))
+    assert by_robot.keys() == {route["robot"] for route in routes}
+    for route in routes:
+        path = route["path"]
+        assert positions(by_robot[route["robot"]]) == path["points"]
+        mine = [row for row in rows if row.get("robot") == route["robot"]]
+        assert [float(row["yaw"]) for row in mine] == path["yaws"]
+        assert [[float(row["x"]), float(row["y"])] for row in mine] == path["points"]
+        visited = [int(row["place"]) for row in mine if row["place"]]
+        assert visited == [place for _, place in path["visits"]]
 
 
-def test_a_map_without_an_origin_has_no_poses_to_save(browser: Browser, released: str) -> None:
-    with open_page(browser, released) as page:
-        plain = {name: value for name, value in OFFICE.items() if name != "origin"}
-        open_files(page, {"office.json": json.dumps({**plain, **LAYER})})
-        page.get_by_role("button", name="Plan", exact=True).click()
-        wait_until_planned(page)
-        page.get_by_role("button", name="Save the path (CSV)").click()
-        expect(page.locator("#link-help")).to_contain_text("its map has no origin")
+def test_a_map_without_an_origin_has_no_poses_to_save(window: Page) -> None:
+    plain = {name: value for name, value in OFFICE.items() if name != "origin"}
+    open_files(window, {"office.json": json.dumps({**plain, **LAYER})})
+    window.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(window)
+    window.get_by_role("button", name="Save the path (CSV)").click()
+    expect(window.locator("#link-help")).to_contain_text("its map has no origin")

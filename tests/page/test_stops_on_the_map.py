@@ -4,37 +4,37 @@ import json
 import math
 import re
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
     DESK,
+    FREE,
     curl_body,
     needs_chromium,
-    new_window,
     open_files,
+    open_page,
+    show_unplanned,
+    wait_for_next_frame,
     wait_until_planned,
 )
 from tests.helpers.sampled import few
+from tests.helpers.touch import Place, slide_finger, tap, touched
 
 pytestmark = needs_chromium
 
 PLANES = "name,x,y,u,v\ndepot,0,0,5,5\nshop,3,1,9,1\nschool,5,2,2,8\n"
 ON_EARTH = "id,lon,lat,risk\ndepot,24.94,60.17,1\nshop,24.95,60.18,2\nschool,24.93,60.16,3\n"
-Place = tuple[float, float]  # pixels from the window's upper left
 
 
 @pytest.fixture(scope="module")
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page on a screen that can be touched, for tests that open stops of their own."""
-    window = {"width": DESK, "height": 1400}
-    page = new_window(browser, viewport=window, has_touch=True)
-    page.goto(released)
-    wait_until_planned(page)
-    yield page
-    page.close()
+    with open_page(browser, released + FREE) as page, touched(page):
+        show_unplanned(page, released)
+        page.set_viewport_size({"width": DESK, "height": 1400})
+        yield page
 
 
 def test_a_stop_is_dragged_by_the_mouse_on_either_plane(opened: Page) -> None:
@@ -171,7 +171,7 @@ def test_a_finger_scrolls_past_stops_and_moves_the_one_it_has_chosen(opened: Pag
     assert curl_body(opened)["coordinates"] == before
     start = place_of_stop(opened, 1)
     opened.keyboard.press("Escape")
-    opened.touchscreen.tap(*start)
+    tap(opened, start)
     expect(opened.locator("#stop-help")).to_contain_text("stop 1 is chosen.")
     slide_finger(opened, start, (start[0] + 24, start[1] + 30))
     after = curl_body(opened)["coordinates"]
@@ -202,28 +202,11 @@ def place_of_stop(page: Page, number: int, plane: str = "#plane-1") -> Place:
     for _ in range(number):
         page.keyboard.press("Enter")
     # The line that names the stop may leave the map less room, which it takes in the next frame.
-    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
+    for _ in range(2):
+        wait_for_next_frame(page)
     ring = page.locator(f"{plane} .ring.highlight").bounding_box()
     assert ring is not None
     return ring["x"] + ring["width"] / 2, ring["y"] + ring["height"] / 2
-
-
-def slide_finger(page: Page, start: Place, end: Place) -> None:
-    """Touch the screen at a place, slide to another, and let go."""
-    session = page.context.new_cdp_session(page)
-
-    def touch(kind: str, *points: dict[str, Any]) -> None:
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": list(points)})
-
-    places = [
-        {"x": start[0] + s * (end[0] - start[0]), "y": start[1] + s * (end[1] - start[1])}
-        for s in (0, 0.4, 0.7, 1)
-    ]
-    touch("touchStart", places[0])
-    for place in places[1:]:
-        touch("touchMove", place)
-    touch("touchEnd")
-    session.detach()
 
 
 def numbers(page: Page, name: str, columns: str) -> list[float]:

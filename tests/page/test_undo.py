@@ -1,14 +1,11 @@
 """Changes of stops and vehicles are taken back, and made again."""
 
-from collections.abc import Iterator
-
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.browsing import (
     needs_chromium,
     open_files,
-    open_unplanned,
     wait_until_planned,
 )
 
@@ -20,11 +17,11 @@ FLEET = "id,lat,lon,demand\ndepot,60.1,24.9,0\n" + "".join(
 
 
 @pytest.fixture
-def page(browser: Browser, released: str) -> Iterator[Page]:
+def page(window: Page) -> Page:
     """The page with a depot and five orders."""
-    with open_unplanned(browser, released) as page:
-        open_files(page, {"orders.csv": FLEET})
-        yield page
+    open_files(window, {"orders.csv": FLEET})
+    expect(window.get_by_label("Demand of order-2", exact=True)).to_have_value("2")
+    return window
 
 
 def undo(page: Page) -> None:
