@@ -1,6 +1,6 @@
 """Requests of `POST /coverage`: their fields, and their parser."""
 
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,9 +184,6 @@ class CoverageRequest(MapRequest):
         return SharedCoverage(self.coverage(), (first, second))
 
 
-AnyCoverageRequest = TypeVar("AnyCoverageRequest", bound=CoverageRequest)
-
-
 def parse_coverage_request(
     body: bytes, limits: Limits, picture: bytes | None = None
 ) -> CoverageRequest:
@@ -195,14 +192,7 @@ def parse_coverage_request(
     Raises:
         Refusal: The body is not JSON, misses the schema, is over a limit or has no map.
     """
-    return parse_coverage_as(CoverageRequest, body, limits, picture)
-
-
-def parse_coverage_as(
-    model: type[AnyCoverageRequest], body: bytes, limits: Limits, picture: bytes | None
-) -> AnyCoverageRequest:
-    """Return a request of a class, as `parse_coverage_request` does."""
-    request = parse_json(model, body).with_map(picture, limits.cells)
+    request = parse_json(CoverageRequest, body).with_map(picture, limits.cells)
     check_unique([item.name for item in request.cost_layers], "cost_layers", "name")
     if request.cost_layer.size and request.cost_layers:
         raise invalid("cost_layers", "or-left-out", member="cost_layer")

@@ -5,7 +5,7 @@ from datetime import date
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Discriminator, Field, JsonValue, Tag
+from pydantic import Field, JsonValue
 
 from service.errors import invalid
 from service.errors.faults import show
@@ -16,6 +16,7 @@ from service.requests.breakpoint_fields import LATEST as _LATEST
 from service.requests.breakpoint_fields import Rows, TimeOfDay, read_breakpoints
 from service.requests.fields import (
     ABSENT,
+    IS_OBJECT,
     NO_WAY,
     CostRows,
     Pair,
@@ -110,10 +111,7 @@ class DepartureRange(StrictModel):
     latest: TimeOfDay = Field(description="in seconds of the day")
 
 
-Departure = Annotated[
-    Annotated[TimeOfDay, Tag("[time]")] | Annotated[DepartureRange, Tag("[range]")],
-    Discriminator(lambda value: "[range]" if isinstance(value, dict) else "[time]"),
-]
+Departure = Annotated[TimeOfDay | DepartureRange, IS_OBJECT]
 
 
 class StopItem(NamedStop):

@@ -1,12 +1,21 @@
 """The types of fields in requests, and the fields that all requests share."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, JsonValue, Tag
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    JsonValue,
+)
 from pydantic.json_schema import SkipJsonSchema
+from pydantic_core.core_schema import CoreSchema, tagged_union_schema
 
 from service.errors import invalid
 from service.front import BOUND_SECONDS, PlanOptions
@@ -80,10 +89,31 @@ CostRows = Items[Items[float | None]]
 NO_WAY = "null where there is no way; the diagonal is ignored"
 
 
-def _form_of_preferences(value: object) -> str:
+@dataclass(frozen=True)
+class Branch:
+    """The annotation of a union: the errors of a value are those of one of its types alone.
+
+    Args:
+        of: Returns the number of that type, or whether it is the second of two.
+    """
+
+    of: Callable[[Any], int]
+
+    def __get_pydantic_core_schema__(self, union: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Return the schema of the union; its brackets are left out of the places of errors."""
+        types = {f"[{k}]": handler.generate_schema(each) for k, each in enumerate(get_args(union))}
+        return tagged_union_schema(types, lambda value: f"[{int(self.of(value))}]")
+
+
+IS_TEXT = Branch(lambda value: isinstance(value, str))
+IS_LIST = Branch(lambda value: isinstance(value, list))
+IS_OBJECT = Branch(lambda value: isinstance(value, dict))
+
+
+def _form_of_preferences(value: object) -> int:
     if not isinstance(value, list):
-        return "[count]"
-    return "[directions]" if value and isinstance(value[0], list) else "[angles]"
+        return 0
+    return 2 if value and isinstance(value[0], list) else 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,10 +224,8 @@ class PlanFields(SearchFields):
     """The fields of every request for a front of tours."""
 
     preferences: Annotated[
-        Annotated[PositiveInteger, Tag("[count]")]
-        | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")]
-        | Annotated[list[Direction], Field(min_length=1, fail_fast=True), Tag("[directions]")],
-        Discriminator(_form_of_preferences),
+        PositiveInteger | SomeItems[Angle] | SomeItems[Direction],
+        Branch(_form_of_preferences),
         Offered(label="Trade-offs for the network", more=1),
     ] = Field(
         default=100,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import inf
 from typing import Annotated, ClassVar
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from service.errors import invalid
 from service.fleet.measures.table import Measure, joined_texts
@@ -14,7 +14,9 @@ from service.reliability.spread import Spread
 from service.requests.day_fields import OF_DAYS, OF_SOURCES, SOURCES, SampledObjectiveItem
 from service.requests.fields import (
     ABSENT,
+    IS_LIST,
     AsInteger,
+    Branch,
     Cost,
     Pair,
     PositiveInteger,
@@ -48,10 +50,7 @@ ServiceFactor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 # A pair in JSON, and a list so that OpenAPI has its length.
 TimeSpan = Pair[Cost]
 Windows = Annotated[list[TimeSpan], Field(max_length=_MOST_WINDOWS, fail_fast=True)]
-Due = Annotated[
-    Annotated[Cost, Tag("[time]")] | Annotated[TimeSpan, Tag("[span]")],
-    Discriminator(lambda value: "[span]" if isinstance(value, list) else "[time]"),
-]
+Due = Annotated[Cost | TimeSpan, IS_LIST]
 
 
 class ServiceItem(StrictModel):
@@ -314,10 +313,7 @@ class ClockItem(TimesItem):
     name: Text = Field(default="time", description="of the times, which are not an objective")
 
 
-Clock = Annotated[
-    Annotated[Text, Tag("[name]")] | Annotated[ClockItem, Tag("[times]")],
-    Discriminator(lambda value: "[name]" if isinstance(value, str) else "[times]"),
-]
+Clock = Annotated[Text | ClockItem, Branch(lambda value: not isinstance(value, str))]
 
 
 class FleetObjectiveItem(TimesItem):

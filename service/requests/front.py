@@ -1,7 +1,7 @@
 """Requests of `POST /front`: their fields, and their parser."""
 
 from functools import cached_property
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -189,23 +189,13 @@ class FrontRequest(DayFields, PlanRequest):
         return Stops(locations, self.sources, self.ends, self.hours, self.spreads)
 
 
-AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
-
-
 def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
     """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema or is over a limit.
     """
-    return parse_front_as(FrontRequest, body, limits, npy)
-
-
-def parse_front_as(
-    model: type[AnyFrontRequest], body: bytes, limits: Limits, npy: bytes | None
-) -> AnyFrontRequest:
-    """Return a request of a class, as `parse_front_request` does."""
-    request = parse_json(model, body)
+    request = parse_json(FrontRequest, body)
     _check_form(request, npy is not None)
     if npy is not None:
         request = request.model_copy(
@@ -274,7 +264,7 @@ def _check_objectives(request: FrontRequest) -> None:
         raise invalid("matrices", "matrix-each", objectives=m, came=len(request.matrices))
 
 
-def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:
+def _by_index(request: FrontRequest) -> FrontRequest:
     """Return the request with the index of a stop in place of every id."""
     if not request.model_fields_set & _REFERENCES:
         return request

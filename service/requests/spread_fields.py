@@ -5,23 +5,20 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
 from service.reliability.spread import Spread
 from service.requests.arrays import costs_between
-from service.requests.fields import AsInteger, CostRows, StrictModel, empty_list, optional
+from service.requests.fields import IS_LIST, AsInteger, CostRows, StrictModel, empty_list, optional
 
 Array = NDArray[np.float64]
 _LEAST_DAYS, _MOST_DAYS = 2, 50
 _MOST_FACTOR = 10.0
 _Factor = Annotated[float, Field(ge=0, le=_MOST_FACTOR, allow_inf_nan=False)]
 Percentile = Annotated[int, Field(ge=50, le=99), AsInteger]
-_SpreadOf = Annotated[
-    Annotated[_Factor, Tag("[factor]")] | Annotated[CostRows, Tag("[matrix]")],
-    Discriminator(lambda value: "[matrix]" if isinstance(value, list) else "[factor]"),
-]
+_SpreadOf = Annotated[_Factor | CostRows, IS_LIST]
 
 
 class MatrixItem(StrictModel):

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Discriminator, Field, JsonValue, Tag
+from pydantic import Field, JsonValue
 
 from service.errors import invalid
 from service.objectives import Objective
 from service.requests.arrays import check_rows, costs_between
 from service.requests.fields import (
+    IS_TEXT,
     NO_WAY,
     CostRows,
     NonNegativeInteger,
@@ -34,10 +35,7 @@ from service.requests.stops import (
 )
 from service.requests.validation import nearest
 
-StopReference = Annotated[
-    Annotated[NonNegativeInteger, Tag("[index]")] | Annotated[Text, Tag("[id]")],
-    Discriminator(lambda value: "[id]" if isinstance(value, str) else "[index]"),
-]
+StopReference = Annotated[NonNegativeInteger | Text, IS_TEXT]
 # In km/h. The least is a metre in an hour, which keeps times finite.
 Speed = Annotated[float, Field(ge=0.001, le=1000, allow_inf_nan=False)]
 Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
@@ -11,6 +11,9 @@ from service.requests.coverage import Cell, RobotPose
 from service.requests.day_fields import DayObjectiveItem
 from service.requests.fields import (
     GEOMETRY,
+    IS_LIST,
+    IS_TEXT,
+    Branch,
     Cost,
     Geometry,
     Items,
@@ -75,11 +78,9 @@ class NewStop(NewCosts):
 class CostEntry(StrictModel):
     """One cost that has changed, in one direction."""
 
-    objective: Annotated[
-        Annotated[int, Field(ge=0, lt=MOST_OBJECTIVES), Tag("[index]")]
-        | Annotated[Text, Tag("[name]")],
-        Discriminator(lambda value: "[name]" if isinstance(value, str) else "[index]"),
-    ] = Field(description="its index, from 0, or its name")
+    objective: Annotated[Annotated[int, Field(ge=0, lt=MOST_OBJECTIVES)] | Text, IS_TEXT] = Field(
+        description="its index, from 0, or its name"
+    )
     origin: StopReference = Field(alias="from", description="the stop that the step leads from")
     destination: StopReference = Field(alias="to", description="the stop that it leads to")
     cost: Cost | None = Field(
@@ -87,24 +88,11 @@ class CostEntry(StrictModel):
     )
 
 
-def _form_of_position(value: object) -> str:
-    if isinstance(value, int | float | str):
-        return "[stop]"
-    return "[cell]" if isinstance(value, list) else "[place]"
-
-
 Position = Annotated[
-    Annotated[StopReference, Tag("[stop]")]
-    | Annotated[NewStop, Tag("[place]")]
-    | Annotated[Cell, Tag("[cell]")],
-    Discriminator(_form_of_position),
+    StopReference | NewStop | Cell,
+    Branch(lambda value: {dict: 1, list: 2}.get(type(value), 0)),
 ]
-_Added = Annotated[
-    Annotated[NewStop, Tag("[place]")] | Annotated[Cell, Tag("[cell]")],
-    Discriminator(lambda value: "[cell]" if isinstance(value, list) else "[place]"),
-]
-
-
+_Added = Annotated[NewStop | Cell, IS_LIST]
 _Cells = Items[Cell]
 
 

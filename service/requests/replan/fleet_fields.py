@@ -4,12 +4,13 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from service.errors import invalid
 from service.fleet.vehicles import Visit
 from service.requests.fields import (
     GEOMETRY,
+    Branch,
     Cost,
     Geometry,
     Items,
@@ -24,10 +25,7 @@ from service.requests.fleet_fields import FleetStopItem, Windows, spans_of
 from service.requests.replan.fields import CostEntry, NewCosts, NewStop
 from service.requests.stop_fields import StopReference, find_index
 
-_Place = Annotated[
-    Annotated[StopReference, Tag("[stop]")] | Annotated[NewStop, Tag("[place]")],
-    Discriminator(lambda value: "[stop]" if isinstance(value, int | float | str) else "[place]"),
-]
+_Place = Annotated[StopReference | NewStop, Branch(lambda value: isinstance(value, dict | list))]
 
 
 class NewFleetStop(FleetStopItem, NewCosts):
