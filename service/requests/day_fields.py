@@ -1,11 +1,11 @@
 """The fields of requests about the time of day, and what they say about stops and costs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from datetime import date
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, JsonValue
+from pydantic import Field
 
 from service.errors import invalid
 from service.errors.faults import show
@@ -15,7 +15,6 @@ from service.requests.arrays import costs_between
 from service.requests.breakpoint_fields import LATEST as _LATEST
 from service.requests.breakpoint_fields import Rows, TimeOfDay, read_breakpoints
 from service.requests.fields import (
-    ABSENT,
     IS_OBJECT,
     NO_WAY,
     CostRows,
@@ -23,11 +22,10 @@ from service.requests.fields import (
     StrictModel,
     Text,
     empty_list,
-    one_of,
     optional,
 )
 from service.requests.spread_fields import DaysFields, SpreadFields
-from service.requests.stop_fields import OF_A_SPEED, NamedStop, ObjectiveItem
+from service.requests.stop_fields import NamedStop, ObjectiveItem
 from service.requests.stops import (
     FixedSource,
     Hours,
@@ -122,25 +120,8 @@ class StopItem(NamedStop):
     )
 
 
-# The members of which an objective has exactly one, and what others of them go with.
-SOURCES = ("matrix", "coordinates", "from", "slices", "breakpoints")
-OF_SOURCES: Mapping[str, JsonValue] = {
-    "speed": OF_A_SPEED,
-    "traffic": {
-        "required": ["from"],
-        "properties": {"from": {"const": "road_time"}, "over_the_day": ABSENT},
-    },
-    "slices": {"properties": {"over_the_day": ABSENT}},
-    "breakpoints": {"properties": {"over_the_day": ABSENT}},
-}
-
-OF_DAYS: JsonValue = {"properties": {"over_the_day": ABSENT, "spread": ABSENT}}
-
-
 class TimedObjectiveItem(ObjectiveItem):
     """An objective, whose costs may change over the day."""
-
-    model_config = one_of(*SOURCES, **OF_SOURCES)
 
     over_the_day: Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)] = (
         empty_list(
@@ -162,14 +143,6 @@ class TimedObjectiveItem(ObjectiveItem):
     traffic: TrafficItem | None = optional(
         "with `from` road_time: the historical traffic of the operator's routing engine"
     )
-
-    choices: ClassVar[str] = "matrix, coordinates, from, slices and breakpoints"
-
-    @property
-    def sources(self) -> list[str]:
-        """The names of the members that are sources of costs."""
-        own = {"slices": self.slices, "breakpoints": self.breakpoints}
-        return [*super().sources, *(name for name, given in own.items() if given)]
 
     @property
     def changes(self) -> bool:
@@ -221,11 +194,6 @@ class TimedObjectiveItem(ObjectiveItem):
 class SampledObjectiveItem(DaysFields, TimedObjectiveItem):
     """An objective, whose costs may be those of several days."""
 
-    @property
-    def sources(self) -> list[str]:
-        """The names of the members that are sources of costs."""
-        return [*super().sources, *(["days"] if self.days else [])]
-
     def fixed_source(self, part: str, stops: Sequence[Stop]) -> FixedSource:
         """Return the source of costs that are the same all day: of several days, their means."""
         if self.sources == ["days"]:
@@ -238,10 +206,6 @@ class DayObjectiveItem(SampledObjectiveItem, SpreadFields):
 
     It has exactly one source of costs: matrix, coordinates, from, slices, breakpoints or days.
     """
-
-    model_config = one_of(*SOURCES, "days", **OF_SOURCES, days=OF_DAYS)
-
-    choices: ClassVar[str] = "matrix, coordinates, from, slices, breakpoints and days"
 
     def spread_of(self, part: str, n: int) -> Spread | None:
         """Return how the costs between n stops spread; None if they do not.

@@ -1,6 +1,6 @@
 """The types of fields in requests, and the fields that all requests share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
@@ -159,10 +159,14 @@ def one_of(*choices: str, **of_some: JsonValue) -> ConfigDict:
         choices: The members; with a `+` between those that belong together.
         of_some: The schema that a form must fit as well if it has a member, by that member.
     """
+    return ConfigDict(json_schema_extra=rules_of(choices, of_some))
+
+
+def rules_of(choices: Iterable[str], of_some: Mapping[str, JsonValue]) -> dict[str, JsonValue]:
+    """Return the parts of a JSON schema that say what `one_of` does."""
     alone: list[JsonValue] = [{"required": [*names.split("+")]} for names in choices]
     # Inside of `allOf`, or generators of clients would make a union of it, and no type.
-    rules: dict[str, JsonValue] = {"allOf": [{"oneOf": alone}], "dependentSchemas": of_some}
-    return ConfigDict(json_schema_extra=rules)
+    return {"allOf": [{"oneOf": alone}], "dependentSchemas": {**of_some}}
 
 
 class StrictModel(BaseModel):

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import inf
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import Field
 
@@ -11,9 +11,8 @@ from service.fleet.measures.table import Measure, joined_texts
 from service.fleet.rules import Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
 from service.reliability.spread import Spread
-from service.requests.day_fields import OF_DAYS, OF_SOURCES, SOURCES, SampledObjectiveItem
+from service.requests.day_fields import SampledObjectiveItem
 from service.requests.fields import (
-    ABSENT,
     IS_LIST,
     AsInteger,
     Branch,
@@ -24,7 +23,6 @@ from service.requests.fields import (
     StrictModel,
     Text,
     empty_list,
-    one_of,
     optional,
     without_default,
 )
@@ -287,10 +285,6 @@ class VehicleItem(StrictModel):
 class TimesItem(SampledObjectiveItem, SpreadOfTimes, ProfileCostsItem):
     """A source of costs by profile, which may spread from day to day if they are times."""
 
-    model_config = one_of(*SOURCES, "matrices", "days", **OF_SOURCES, days=OF_DAYS)
-
-    choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices, breakpoints and days"
-
     def sampled(self, part: str, n: int) -> Spread | None:
         """Return the costs of several days; None if there are none.
 
@@ -322,13 +316,6 @@ class FleetObjectiveItem(TimesItem):
     It has exactly one of matrix, matrices, coordinates, from, slices, breakpoints, days and
     measure.
     """
-
-    model_config = one_of(
-        *(*SOURCES, "matrices", "days", "measure"),
-        **OF_SOURCES,
-        days=OF_DAYS,
-        measure={"properties": {"over": ABSENT, "over_the_day": ABSENT}},
-    )
 
     of_plan: Measure | None = Field(
         default=None,

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,6 @@ from service.errors import invalid
 from service.errors.faults import show
 from service.requests.arrays import costs_between
 from service.requests.day_fields import (
-    OF_SOURCES,
-    SOURCES,
     SliceItems,
     TimedObjectiveItem,
     check_slices,
@@ -75,20 +73,11 @@ class ProfileCostsItem(TimedObjectiveItem):
     It has exactly one of matrix, matrices, coordinates, from, slices and breakpoints.
     """
 
-    model_config = one_of(*SOURCES, "matrices", **OF_SOURCES)
-
     matrices: Annotated[
         list[ProfileMatrixItem], Field(max_length=MOST_PROFILES, fail_fast=True)
     ] = empty_list(
         "in place of one matrix: one for each `profile` of vehicles, as for cars and trucks"
     )
-
-    choices: ClassVar[str] = "matrix, matrices, coordinates, from, slices and breakpoints"
-
-    @property
-    def sources(self) -> list[str]:
-        """The names of the members that are sources of costs."""
-        return [*super().sources, *(["matrices"] if self.matrices else [])]
 
     @property
     def changes(self) -> bool:

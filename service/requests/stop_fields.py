@@ -1,15 +1,16 @@
 """The fields of stops and objectives in requests, and their conversion to stops and sources."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Annotated, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, JsonValue
+from pydantic import ConfigDict, Field, JsonValue
 
 from service.errors import invalid
 from service.objectives import Objective
 from service.requests.arrays import check_rows, costs_between
 from service.requests.fields import (
+    ABSENT,
     IS_TEXT,
     NO_WAY,
     CostRows,
@@ -19,8 +20,8 @@ from service.requests.fields import (
     StrictModel,
     Text,
     empty_list,
-    one_of,
     optional,
+    rules_of,
     without_default,
 )
 from service.requests.stops import (
@@ -39,8 +40,21 @@ StopReference = Annotated[NonNegativeInteger | Text, IS_TEXT]
 # In km/h. The least is a metre in an hour, which keeps times finite.
 Speed = Annotated[float, Field(ge=0.001, le=1000, allow_inf_nan=False)]
 Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
-OF_A_SPEED: JsonValue = {"required": ["from"], "properties": {"from": {"const": "great_circle"}}}
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
+# All members that are sources of costs, in the order of our sentences. A form has some of them.
+_SOURCES = ("matrix", "matrices", "coordinates", "from", "slices", "breakpoints", "days")
+# What goes with a member of an objective, and what does not.
+_RULES: Mapping[str, JsonValue] = {
+    "speed": {"required": ["from"], "properties": {"from": {"const": "great_circle"}}},
+    "traffic": {
+        "required": ["from"],
+        "properties": {"from": {"const": "road_time"}, "over_the_day": ABSENT},
+    },
+    "slices": {"properties": {"over_the_day": ABSENT}},
+    "breakpoints": {"properties": {"over_the_day": ABSENT}},
+    "days": {"properties": {"over_the_day": ABSENT, "spread": ABSENT}},
+    "measure": {"properties": {"over": ABSENT, "over_the_day": ABSENT}},
+}
 
 
 class NamedStop(StrictModel):
@@ -52,10 +66,20 @@ class NamedStop(StrictModel):
     )
 
 
-class ObjectiveItem(StrictModel):
-    """An objective by its name, and the source of its costs: matrix, coordinates or from."""
+def _one_source(schema: dict[str, Any]) -> None:
+    """Add to the schema of an objective that it has one source of costs, or is another measure."""
+    choices = [name for name in schema["properties"] if name in (*_SOURCES, "measure")]
+    of_some = {name: rule for name, rule in _RULES.items() if name in schema["properties"]}
+    schema |= rules_of(choices, of_some)
 
-    model_config = one_of("matrix", "coordinates", "from", speed=OF_A_SPEED)
+
+class ObjectiveItem(StrictModel):
+    """An objective by its name, and the source of its costs: matrix, coordinates or from.
+
+    Forms with more sources have their members too.
+    """
+
+    model_config = ConfigDict(json_schema_extra=_one_source)
 
     name: Text = Field(description="of the objective, in answers and charts")
     unit: Text | None = optional("of its costs, in answers and charts")
@@ -76,13 +100,21 @@ class ObjectiveItem(StrictModel):
         " speed"
     )
 
-    choices: ClassVar[str] = "matrix, coordinates and from"
-
     @property
     def sources(self) -> list[str]:
-        """The names of the members that are sources of costs."""
-        names = {"matrix": "matrix", "coordinates": "coordinates", "measure": "from"}
-        return [shown for name, shown in names.items() if name in self.model_fields_set]
+        """The names of the members that are sources of costs, of those that were given."""
+        # Other lists that are empty count as not given. A matrix without rows is refused as such.
+        return [
+            shown
+            for name, shown in self._choices().items()
+            if name in self.model_fields_set and (getattr(self, name) or name == "matrix")
+        ]
+
+    @classmethod
+    def _choices(cls) -> dict[str, str]:
+        """Return the names of all members that are sources of costs, by those of their fields."""
+        named = {name: each.alias or name for name, each in cls.model_fields.items()}
+        return {name: shown for name, shown in named.items() if shown in _SOURCES}
 
     def objective(self, part: str) -> Objective:
         """Return the objective, in its measure's unit where it has one.
@@ -129,7 +161,9 @@ class ObjectiveItem(StrictModel):
                 return Measured(self.measure, self.speed)
             case sources:
                 came = " and ".join(sources) or "none"
-                raise invalid(part, "not-one-source", sources=self.choices, given=came)
+                *choices, last = sorted(self._choices().values(), key=_SOURCES.index)
+                known = f"{', '.join(choices)} and {last}"
+                raise invalid(part, "not-one-source", sources=known, given=came)
 
 
 def read_stops(items: Sequence[NamedStop]) -> tuple[Stop, ...]:
