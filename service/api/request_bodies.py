@@ -7,15 +7,7 @@ which is JSON, and a file.
 from collections.abc import Iterable
 from typing import Any
 
-from service.requests.json_schemas import (
-    coverage_schemas,
-    fleet_schemas,
-    front_schemas,
-    offers_schemas,
-    reference_to,
-    replan_fleet_schemas,
-    replan_schemas,
-)
+from service.requests.json_schemas import form_schemas, reference_to
 from service.requests.limits import Limits
 
 Schema = dict[str, Any]
@@ -23,16 +15,10 @@ Schema = dict[str, Any]
 
 def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     """Return the schemas that bodies refer to, by name, for these limits and actors."""
-    names = list(actors)
     file = "a .npy file of shape (2, n, n), as numpy.save writes it"
     image = "a PNG or PGM file of the map, dark where there is an obstacle"
     return {
-        **front_schemas(limits, names),
-        **coverage_schemas(limits, names),
-        **replan_schemas(limits, names),
-        **replan_fleet_schemas(limits),
-        **offers_schemas(limits),
-        **fleet_schemas(limits),
+        **form_schemas(limits, actors),
         "FrontForm": _form_schema(reference_to("FrontFileRequest"), "matrices", file),
         "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
     }

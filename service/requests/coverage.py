@@ -28,7 +28,7 @@ from service.requests.fields import (
     empty_list,
     without_default,
 )
-from service.requests.limits import Limits, check_limits, lower_defaults
+from service.requests.limits import Limits, tours_within_limits
 from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_array, stacked
 from service.requests.stop_fields import check_unique
 from service.requests.task import SharedCoverage
@@ -206,9 +206,7 @@ def parse_coverage_request(
         raise invalid("over", "of-robots")
     check_costs(request.second_matrix, "second_matrix")
     # With a spacing, the number of places is not known before the survey.
-    n = len(request.places) or most
-    check_limits(request, n, limits)
-    return lower_defaults(request, n, limits)
+    return tours_within_limits(request, len(request.places) or most, limits)
 
 
 def _check_poses(request: CoverageRequest) -> None:

@@ -1,7 +1,7 @@
 """The types of fields in requests, and the fields that all requests share."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 import numpy as np
@@ -135,6 +135,16 @@ class Offered:
     label: str | None = None
     more: int = 0
     initial: str | None = None
+
+
+def shared_values(form: BaseModel, of: type[Any]) -> dict[str, Any]:
+    """Return the values of the fields that a form shares with a dataclass, by name.
+
+    Lists become tuples. A field that is None has the default of the dataclass.
+    """
+    names = [each.name for each in fields(of) if each.name in type(form).model_fields]
+    given = {name: getattr(form, name) for name in names}
+    return {k: tuple(v) if isinstance(v, list) else v for k, v in given.items() if v is not None}
 
 
 def optional(description: str) -> Any:

@@ -35,7 +35,7 @@ from service.requests.fleet_fields import (
     VehicleItem,
 )
 from service.requests.group_fields import ApartItem, BeforeItem, References
-from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
+from service.requests.limits import Limits, check_limit, within_limits
 from service.requests.profile_fields import (
     Profile,
     check_profiles,
@@ -313,8 +313,7 @@ class FleetRequest(SearchFields):
     def _same_costs(self, first: int, second: int) -> bool:
         """Return whether two objectives have the same costs between the stops."""
         a, b = (self.objectives[index] for index in (first, second))
-        fixed = ("matrix", "matrices", "coordinates", "measure", "speed")
-        names = (*fixed, "over_the_day", "slices", "breakpoints", "traffic", "days")
+        names = TimesItem.model_fields.keys() - {"name", "unit", "spread"}
         return all(getattr(a, name) == getattr(b, name) for name in names)
 
     def _sources(
@@ -359,6 +358,4 @@ def parse_fleet_request(body: bytes, limits: Limits) -> FleetRequest:
     if len(request.stops) > limits.fleet_stops:
         raise too_many_cities("stops", limits.fleet_stops, len(request.stops))
     check_limit("shipments", limits.fleet_stops, len(request.shipments))
-    n, id_bytes = len(request.stops), request.id_bytes
-    check_amounts(request, n, limits, id_bytes)
-    return lower_defaults(request, n, limits, id_bytes)
+    return within_limits(request, len(request.stops), limits, request.id_bytes)

@@ -24,6 +24,7 @@ from service.requests.fields import (
     Text,
     empty_list,
     optional,
+    shared_values,
     without_default,
 )
 from service.requests.profile_fields import ProfileCostsItem
@@ -110,20 +111,14 @@ class FleetStopItem(NamedStop):
             near = nearest(self.vehicle, types)
             raise invalid(f"{part}/vehicle", "not-a-vehicle", came=self.vehicle, near=near)
         wanted, due = self.due if isinstance(self.due, list) else (0.0, self.due)
-        return Visit(
-            demand=tuple(self.demand),
-            pickup=tuple(self.pickup),
-            service=self.service,
-            windows=tuple(spans_of(self.window, self.windows, f"{part}/window")),
-            prize=self.prize,
-            due=inf if due is None else due,
-            release=self.release,
-            skills=tuple(self.skills),
-            vehicles=() if self.vehicle is None else types[self.vehicle],
-            wanted=wanted,
-            urgency=self.urgency,
-            services=self._services(part, types),
-        )
+        own = {
+            "windows": tuple(spans_of(self.window, self.windows, f"{part}/window")),
+            "due": inf if due is None else due,
+            "vehicles": () if self.vehicle is None else types[self.vehicle],
+            "wanted": wanted,
+            "services": self._services(part, types),
+        }
+        return Visit(**{**shared_values(self, Visit), **own})
 
     def _services(self, part: str, types: Mapping[str, tuple[int, ...]]) -> tuple[float, ...]:
         """Return how long the visit takes by each type of vehicles; nothing if all are alike."""
@@ -251,33 +246,15 @@ class VehicleItem(StrictModel):
             None if stop is None else find_index(stop, ids, f"{part}/{name}", len(ids))
             for name, stop in (("start", self.start), ("end", self.end))
         )
-        reload = find_indexes(self.reload, ids, f"{part}/reload")
+        own = {
+            "start": start,
+            "end": end,
+            "reload": find_indexes(self.reload, ids, f"{part}/reload"),
+            "profile": profile,
+            "breaks": tuple((*each.window, each.length) for each in self.breaks),
+        }
         return [
-            VehicleType(
-                start=start,
-                end=end,
-                count=self.count,
-                capacity=tuple(self.capacity),
-                shift=shift,
-                longest=inf if self.longest is None else self.longest,
-                fixed=self.fixed,
-                per_distance=self.per_distance,
-                per_time=self.per_time,
-                max_distance=inf if self.max_distance is None else self.max_distance,
-                max_driving=inf if self.max_driving is None else self.max_driving,
-                speed_factor=self.speed_factor,
-                service_factor=self.service_factor,
-                skills=tuple(self.skills),
-                max_stops=self.max_stops,
-                min_stops=self.min_stops or 0,
-                shortest=self.shortest,
-                reload=reload,
-                max_trips=self.max_trips,
-                initial_load=tuple(self.initial_load),
-                max_overtime=self.max_overtime,
-                profile=profile,
-                breaks=tuple((each.window[0], each.window[1], each.length) for each in self.breaks),
-            )
+            VehicleType(**{**shared_values(self, VehicleType), **own, "shift": shift})
             for shift in spans_of(self.shift, self.shifts, f"{part}/shift")
         ]
 

@@ -33,7 +33,7 @@ from service.requests.fields import (
     one_of,
     optional,
 )
-from service.requests.limits import Limits, check_limits, check_router, lower_defaults
+from service.requests.limits import Limits, check_router, tours_within_limits
 from service.requests.npy import read_npy
 from service.requests.spread_fields import read_spreads
 from service.requests.stop_fields import (
@@ -204,9 +204,8 @@ def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -
     _check_cities(request, limits)
     _check_objectives(request)
     request = _by_index(request)
-    n, id_bytes = request.n, 0 if request.labels is None else request.labels.id_bytes
-    check_limits(request, n, limits, id_bytes)
-    return lower_defaults(request, n, limits, id_bytes)
+    id_bytes = 0 if request.labels is None else request.labels.id_bytes
+    return tours_within_limits(request, request.n, limits, id_bytes)
 
 
 def _check_form(request: FrontRequest, with_file: bool) -> None:

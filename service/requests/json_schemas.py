@@ -3,7 +3,7 @@
 Each is the schema of its form, and of all that is in it. Generators of clients make a type of each.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
@@ -19,11 +19,11 @@ from service.requests.maps.fields import USELESS
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.offers import OffersRequest
+from service.requests.stop_fields import SOURCES
 from service.requests.stops import ROAD_MEASURES
 
 Schema = dict[str, Any]
 RULES = ("allOf", "dependentSchemas")  # the parts of a schema about which members go together
-_SOURCES = ("matrix", "coordinates", "from", "slices", "breakpoints", "days", "speed", "traffic")
 _SECOND = ("second_matrix", "cost_layer", "cost_layers", "second_coordinates")
 
 
@@ -41,78 +41,79 @@ def reference_to(name: str) -> dict[str, str]:
     return {"$ref": f"#/components/schemas/{name}"}
 
 
-def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
-    """Return the schemas of a request for a front, without and with a file of matrices, by name."""
-    schemas = limited_schemas(FrontRequest, limits, actors)
+def form_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
+    """Return the schemas of all requests, and of all that is in them, by name.
+
+    Those of fronts and maps are there without and with a file.
+    """
+    names = sorted(actors)
+    found: dict[str, Schema] = {}
+    for model, most_items in _most_items(limits).items():
+        schemas = limited_schemas(model, limits, names)
+        fields = schemas[model.__name__]["properties"]
+        for name, most in most_items.items():
+            fields[name]["maxItems"] = most
+        if "grid" in fields:
+            fields["grid"]["items"]["items"] = {"enum": [0, 1]}
+        if model is FrontRequest:
+            _complete_fronts(schemas, limits)
+        elif model is CoverageRequest:
+            _complete_maps(schemas, limits)
+        found |= schemas
+    return found
+
+
+def _most_items(limits: Limits) -> Mapping[type[BaseModel], Mapping[str, int]]:
+    """Return how long lists in each request may be, in the order of the OpenAPI document."""
+    of_fleet = dict.fromkeys(("routes", "add", "remove"), limits.fleet_stops)
+    return {
+        FrontRequest: dict.fromkeys(("coordinates", "stops"), limits.cities),
+        CoverageRequest: {"places": limits.most_places(shared=False)},
+        ReplanRequest: {
+            **dict.fromkeys(("blocked", "freed"), limits.cells),
+            **dict.fromkeys(("done", "remove", "tour", "add"), limits.cities),
+        },
+        ReplanFleetRequest: of_fleet,
+        OffersRequest: of_fleet,
+        FleetRequest: dict.fromkeys(("stops", "shipments"), limits.fleet_stops),
+    }
+
+
+def _complete_fronts(schemas: dict[str, Schema], limits: Limits) -> None:
+    """Complete the schemas of a request for a front, and add those beside a file of matrices."""
     whole, objective = schemas["FrontRequest"], schemas["DayObjectiveItem"]
     rows = whole["properties"]["matrices"]["items"]
     rows["minItems"], rows["maxItems"] = 1, limits.most_cities("matrices")
-    _at_most(limits.cities, whole, "coordinates", "stops")
-    named = _beside_a_file(
-        objective, "FileObjectiveItem", "An objective whose costs are in a file.", _SOURCES
-    )
     file = _beside_a_file(
         whole,
         "FrontFileRequest",
         "Cities or stops whose costs are in a file, and the options of their front.",
         ("coordinates", "matrices"),
     )
+    named = _beside_a_file(
+        objective,
+        "FileObjectiveItem",
+        "An objective whose costs are in a file.",
+        (*SOURCES, "speed", "traffic"),
+    )
     objectives = {**whole["properties"]["objectives"], "items": reference_to(named["title"])}
     file["properties"]["objectives"] = objectives
-    return {**schemas, file["title"]: file, named["title"]: named}
+    schemas |= {each["title"]: each for each in (file, named)}
 
 
-def fleet_schemas(limits: Limits) -> dict[str, Schema]:
-    """Return the schema of a request for a fleet, and of all that is in it, by name."""
-    schemas = _limited(FleetRequest, limits)
-    whole = schemas["FleetRequest"]
-    _at_most(limits.fleet_stops, whole, "stops", "shipments")
-    return schemas
-
-
-def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
-    """Return the schema of a request to replan, and of all that is in it, by name."""
-    schemas = limited_schemas(ReplanRequest, limits, actors)
-    whole = schemas["ReplanRequest"]
-    whole["properties"]["grid"]["items"]["items"] = {"enum": [0, 1]}
-    _at_most(limits.cells, whole, "blocked", "freed")
-    _at_most(limits.cities, whole, "done", "remove", "tour", "add")
-    return schemas
-
-
-def replan_fleet_schemas(limits: Limits) -> dict[str, Schema]:
-    """Return the schema of a request to replan a fleet, and of all that is in it, by name."""
-    schemas = _limited(ReplanFleetRequest, limits)
-    whole = schemas["ReplanFleetRequest"]
-    _at_most(limits.fleet_stops, whole, "routes", "add", "remove")
-    return schemas
-
-
-def offers_schemas(limits: Limits) -> dict[str, Schema]:
-    """Return the schema of a request for offers, and of all that is in it, by name."""
-    schemas = _limited(OffersRequest, limits)
-    _at_most(limits.fleet_stops, schemas["OffersRequest"], "routes", "add", "remove")
-    return schemas
-
-
-def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
-    """Return the schemas of a request for a map, without and with a file of it, by name."""
-    schemas = limited_schemas(CoverageRequest, limits, actors)
+def _complete_maps(schemas: dict[str, Schema], limits: Limits) -> None:
+    """Complete the schemas of a request for a map, and add the one beside a file of it."""
     whole, robot = schemas["CoverageRequest"], schemas["RobotItem"]
-    most_places = limits.most_places(shared=False)
-    _at_most(most_places, whole, "places")
-    whole["properties"]["grid"]["items"]["items"] = {"enum": [0, 1]}
     data = schemas["OccupancyGrid"]["properties"]["data"]
     data["items"] = {"type": "integer", "minimum": -1, "maximum": 100}
     data["maxItems"] = limits.cells
     for name in ("start", "end"):
-        robot["properties"][name]["maximum"] = most_places - 1
+        robot["properties"][name]["maximum"] = limits.most_places(shared=False) - 1
     robot["dependentSchemas"] = {place: _absent(pose) for place, pose in ENDS}
     _add_rules_of_maps(whole)
     description = "Places on a map that is a file, and the options of their front."
     file = _beside_a_file(whole, "CoverageFileRequest", description, tuple(USELESS))
-    file |= {"required": ["cell_size"], "allOf": whole["allOf"][1:]}
-    return {**schemas, file["title"]: file}
+    schemas[file["title"]] = file | {"required": ["cell_size"], "allOf": whole["allOf"][1:]}
 
 
 def _add_rules_of_maps(schema: Schema) -> None:
@@ -142,11 +143,37 @@ def _add_rules_of_maps(schema: Schema) -> None:
 
 
 def limited_schemas(
-    model: type[PlanFields], limits: Limits, actors: Iterable[str]
+    model: type[BaseModel], limits: Limits, actors: Sequence[str]
 ) -> dict[str, Schema]:
-    """Return the schemas of a request under these limits, with these actors to choose from."""
-    schemas = _limited(model, limits)
-    fields = schemas[model.__name__]["properties"]
+    """Return the schemas of a request and of its parts, with the limits on its numbers.
+
+    Args:
+        model: The form.
+        limits: The limits.
+        actors: The names of the actors to choose from.
+    """
+    template = reference_to("{model}")["$ref"]
+    whole = model.model_json_schema(ref_template=template, schema_generator=WithoutNull)
+    schemas: dict[str, Schema] = {**whole.pop("$defs", {}), model.__name__: whole}
+    fields = whole["properties"]
+    for name, most in (("size", limits.size), ("time_limit", limits.seconds)):
+        if name in fields:
+            fields[name] |= {"maximum": most, "default": defaults(limits)[name]}
+    if issubclass(model, PlanFields):
+        _limit_tours(fields, limits, actors)
+    if "geometry" in fields and not limits.roads:
+        fields["geometry"]["enum"].remove("roads")
+    if not limits.traffic:
+        _drop_traffic(schemas)
+    for schema in schemas.values():
+        source = schema["properties"].get("from", {})
+        if "enum" in source and not limits.roads:
+            source["enum"] = [each for each in source["enum"] if each not in ROAD_MEASURES]
+    return schemas
+
+
+def _limit_tours(fields: dict[str, Schema], limits: Limits, actors: Sequence[str]) -> None:
+    """Limit the numbers in the fields of a request for a front of tours."""
     count, *lists = fields["preferences"]["oneOf"]
     count["maximum"] = limits.preferences
     for each in lists:
@@ -159,41 +186,14 @@ def limited_schemas(
         index["maximum"] = limits.cities - 1
     if "initial_tours" in fields:
         fields["initial_tours"]["maxItems"] = limits.size
-    return schemas
 
 
-def _limited(model: type[BaseModel], limits: Limits) -> dict[str, Schema]:
-    """Return the schemas of a request and of its parts, with the limits that all requests have."""
-    template = reference_to("{model}")["$ref"]
-    whole = model.model_json_schema(ref_template=template, schema_generator=WithoutNull)
-    schemas: dict[str, Schema] = {**whole.pop("$defs", {}), model.__name__: whole}
-    fields = whole["properties"]
-    for name, most in (("size", limits.size), ("time_limit", limits.seconds)):
-        if name in fields:
-            fields[name] |= {"maximum": most, "default": defaults(limits)[name]}
-    if "geometry" in fields and not limits.roads:
-        fields["geometry"]["enum"].remove("roads")
-    if "TrafficItem" in schemas and not limits.traffic:
-        del schemas["TrafficItem"]
-        _drop(schemas, "traffic")
-    for schema in schemas.values():
-        source = schema["properties"].get("from", {})
-        if "enum" in source and not limits.roads:
-            source["enum"] = [each for each in source["enum"] if each not in ROAD_MEASURES]
-    return schemas
-
-
-def _drop(schemas: dict[str, Schema], member: str) -> None:
-    """Leave a member out of all schemas that have it."""
+def _drop_traffic(schemas: dict[str, Schema]) -> None:
+    """Leave traffic out of all schemas."""
+    schemas.pop("TrafficItem", None)
     for schema in schemas.values():
         for part in ("properties", "dependentSchemas"):
-            schema.get(part, {}).pop(member, None)
-
-
-def _at_most(most: int, schema: Schema, *names: str) -> None:
-    """Limit the length of lists in a schema."""
-    for name in names:
-        schema["properties"][name]["maxItems"] = most
+            schema.get(part, {}).pop("traffic", None)
 
 
 def _beside_a_file(schema: Schema, name: str, description: str, in_file: Sequence[str]) -> Schema:

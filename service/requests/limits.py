@@ -15,6 +15,7 @@ from service.requests.validation import too_many_cities
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
 _ID_BYTES = 40  # of ids that count as one cell of an answer: a UUID in quotation marks
 AnyRequest = TypeVar("AnyRequest", bound=SearchFields)
+AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanRequest)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,14 +112,17 @@ def check_structure(body: bytes, limits: Limits) -> None:
             raise Refusal("body-too-complex", demand=demand, limit=limit, actual=actual)
 
 
-def check_amounts(request: SearchFields, n: int, limits: Limits, id_bytes: int = 0) -> None:
-    """Raise a refusal where a request about n cities asks for more than the limits allow.
+def within_limits(request: AnyRequest, n: int, limits: Limits, id_bytes: int = 0) -> AnyRequest:
+    """Return a request about n cities, with each default above its limit lowered to it.
 
     Args:
         request: The request.
         n: The number of cities.
         limits: The limits.
         id_bytes: Bytes of the ids in one tour, or one plan, of the answer.
+
+    Raises:
+        Refusal: It asks for more than the limits allow.
     """
     for name, limit in limits.of_options.items():
         if name in request.model_fields_set:
@@ -129,16 +133,31 @@ def check_amounts(request: SearchFields, n: int, limits: Limits, id_bytes: int =
         by_ids = most < limits.most_tours(n)
         code = "size-too-large-for-ids" if by_ids else "size-too-large"
         raise invalid("size", code, limit=most, cities=n, came=request.size)
+    return _lowered(request, defaults(limits, n, id_bytes))
 
 
-def check_limits(request: PlanRequest, n: int, limits: Limits, id_bytes: int = 0) -> None:
-    """Raise a refusal where the fields of a request about n cities go beyond these or the limits.
+def _lowered(request: AnyRequest, values: Mapping[str, float]) -> AnyRequest:
+    """Return a request in which no default is above these."""
+    given = request.model_fields_set
+    lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k, v)}
+    if not lowered:
+        return request
+    copied = request.model_copy(update=lowered)
+    # A field with a lower default still counts as not given.
+    copied.model_fields_set.difference_update(lowered)
+    return copied
+
+
+def tours_within_limits(
+    request: AnyPlanRequest, n: int, limits: Limits, id_bytes: int = 0
+) -> AnyPlanRequest:
+    """Return a request for tours of n cities as `within_limits` does, with its tours checked.
 
     Raises:
         Refusal: Over a limit, or a start or an initial tour that does not fit n cities.
     """
     _check_ends(request, n)
-    check_amounts(request, n, limits, id_bytes)
+    found = within_limits(request, n, limits, id_bytes)
     check_limit("initial_tours", limits.size, len(request.initial_tours))
     ends = request.ends
     for index, tour in enumerate(request.initial_tours):
@@ -148,6 +167,7 @@ def check_limits(request: PlanRequest, n: int, limits: Limits, id_bytes: int = 0
             if city is not None and tour[place] != city:
                 values = {"end": name, "city": city, "came": tour[place]}
                 raise invalid(f"initial_tours/{index}", "not-at-the-end", **values)
+    return found
 
 
 def _check_ends(request: PlanRequest, n: int) -> None:
@@ -199,10 +219,7 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
         ("preferences", not options.fewer),
     ):
         if asked:
-            most = limits.network_cities
-            raise Refusal(
-                "too-many-for-network", name=part, pointer=f"/{part}", limit=most, actual=n
-            )
+            raise _over("too-many-for-network", part, limits.network_cities, n)
     return replace(options, directions=options.directions[:0])
 
 
@@ -241,25 +258,7 @@ def check_fleet(
     if not are_straight(stops.sources):
         raise too_many_cities(part, most, stops.n, code)
     if time_limit == 0:
-        raise Refusal(
-            "too-many-for-network",
-            name="time_limit",
-            pointer="/time_limit",
-            limit=most,
-            actual=stops.n,
-        )
-
-
-def lower_defaults(request: AnyRequest, n: int, limits: Limits, id_bytes: int = 0) -> AnyRequest:
-    """Return a request in which each default above its limit is lowered to it, as in `defaults`."""
-    given, values = request.model_fields_set, defaults(limits, n, id_bytes)
-    lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k, v)}
-    if not lowered:
-        return request
-    copied = request.model_copy(update=lowered)
-    # A field with a lower default still counts as not given.
-    copied.model_fields_set.difference_update(lowered)
-    return copied
+        raise _over("too-many-for-network", "time_limit", most, stops.n)
 
 
 def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
@@ -278,4 +277,8 @@ def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
 def check_limit(name: str, limit: float, actual: float) -> None:
     """Raise a refusal where a field is over its limit."""
     if actual > limit:
-        raise Refusal("over-limit", name=name, pointer=f"/{name}", limit=limit, actual=actual)
+        raise _over("over-limit", name, limit, actual)
+
+
+def _over(code: str, part: str, limit: float, actual: float) -> Refusal:
+    return Refusal(code, name=part, pointer=f"/{part}", limit=limit, actual=actual)

@@ -42,7 +42,7 @@ Speed = Annotated[float, Field(ge=0.001, le=1000, allow_inf_nan=False)]
 Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 # All members that are sources of costs, in the order of our sentences. A form has some of them.
-_SOURCES = ("matrix", "matrices", "coordinates", "from", "slices", "breakpoints", "days")
+SOURCES = ("matrix", "matrices", "coordinates", "from", "slices", "breakpoints", "days")
 # What goes with a member of an objective, and what does not.
 _RULES: Mapping[str, JsonValue] = {
     "speed": {"required": ["from"], "properties": {"from": {"const": "great_circle"}}},
@@ -68,7 +68,7 @@ class NamedStop(StrictModel):
 
 def _one_source(schema: dict[str, Any]) -> None:
     """Add to the schema of an objective that it has one source of costs, or is another measure."""
-    choices = [name for name in schema["properties"] if name in (*_SOURCES, "measure")]
+    choices = [name for name in schema["properties"] if name in (*SOURCES, "measure")]
     of_some = {name: rule for name, rule in _RULES.items() if name in schema["properties"]}
     schema |= rules_of(choices, of_some)
 
@@ -114,7 +114,7 @@ class ObjectiveItem(StrictModel):
     def _choices(cls) -> dict[str, str]:
         """Return the names of all members that are sources of costs, by those of their fields."""
         named = {name: each.alias or name for name, each in cls.model_fields.items()}
-        return {name: shown for name, shown in named.items() if shown in _SOURCES}
+        return {name: shown for name, shown in named.items() if shown in SOURCES}
 
     def objective(self, part: str) -> Objective:
         """Return the objective, in its measure's unit where it has one.
@@ -161,7 +161,7 @@ class ObjectiveItem(StrictModel):
                 return Measured(self.measure, self.speed)
             case sources:
                 came = " and ".join(sources) or "none"
-                *choices, last = sorted(self._choices().values(), key=_SOURCES.index)
+                *choices, last = sorted(self._choices().values(), key=SOURCES.index)
                 known = f"{', '.join(choices)} and {last}"
                 raise invalid(part, "not-one-source", sources=known, given=came)
 

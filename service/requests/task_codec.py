@@ -2,64 +2,45 @@
 
 The bytes are a line with the version, the length of the header, the header, and the arrays one
 after another as .npy. The header is JSON: the members of the task. In it the number of an array
-stands for the array, and a value of one of `_TYPES` comes with the name of its type.
+stands for the array, and a dataclass of a task comes with the name of its type.
 """
 
 import struct
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from io import BytesIO
-from typing import Any
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
-from service.coverage.coverage import Coverage, Robot
-from service.day.breakpoints import Breakpoints
-from service.fleet.groups import Groups
-from service.fleet.plans import Route
-from service.fleet.rules import Rules
-from service.fleet.vehicles import Shipment, VehicleType, Visit
-from service.front import PlanOptions
 from service.instance import RouteEnds
-from service.objectives import Objective
-from service.reliability.spread import Spread
-from service.replanning.earlier_tours import EarlierTours
-from service.requests.notes.note import Note
-from service.requests.stops import (
-    Changed,
-    Hours,
-    Labels,
-    Matrix,
-    Measured,
-    OverTheDay,
-    Plane,
-    Slices,
-    Stop,
-    Stops,
-    Traffic,
-)
-from service.requests.task import SharedCoverage, Task, UnmeasuredFleet, VehicleName
+from service.requests.task import Task
 
 _FIRST_LINE = b"paretour task 4\n"
 _LENGTH = struct.Struct("!Q")
+
+
+def _annotations_in(annotation: Any) -> Iterator[Any]:
+    """Yield an annotation, and those inside it and in the members of its dataclasses."""
+    yield annotation
+    is_class = is_dataclass(annotation)
+    inside = get_type_hints(annotation).values() if is_class else get_args(annotation)
+    for each in inside:
+        yield from _annotations_in(each)
+
+
+_ANNOTATIONS = tuple(_annotations_in(Task))
 _TYPES: Mapping[str, type[Any]] = {
-    each.__name__: each
-    for each in (
-        *(Task, PlanOptions, EarlierTours, Labels),
-        *(Stops, Matrix, Plane, Measured, Changed),
-        *(OverTheDay, Slices, Breakpoints, Traffic, Hours, Spread),
-        *(Coverage, SharedCoverage, UnmeasuredFleet, Rules, Groups, Objective),
-    )
+    each.__name__: each for each in _ANNOTATIONS if isinstance(each, type) and is_dataclass(each)
 }
-# A task may hold thousands of these. Their members are numbers, texts, and tuples of numbers.
+# The dataclasses of which members are tuples of any length: a task may hold thousands of these.
+# Their own members are numbers, texts, and tuples of numbers.
 _FLAT_TYPES: Mapping[str, type[Any]] = {
-    each.__name__: each
-    for each in (
-        *(Stop, Objective, Visit, Shipment, VehicleType, Robot),
-        *(VehicleName, Route, Note),
-    )
+    of.__name__: of
+    for each in _ANNOTATIONS
+    if get_origin(each) is tuple and isinstance(of := get_args(each)[0], type) and is_dataclass(of)
 }
 _NUMBERS = "biuf"  # kinds of NumPy's types: booleans, integers and floats
 

@@ -10,7 +10,7 @@ from PIL import Image
 
 from service.errors import Refusal
 from service.requests.coverage import parse_coverage_request
-from service.requests.json_schemas import coverage_schemas
+from service.requests.json_schemas import form_schemas
 from tests.helpers.serving import LIMITS
 
 GRID = [
@@ -125,7 +125,7 @@ def test_a_map_may_come_as_a_png_and_not_as_a_grid_as_well() -> None:
 
 
 def test_the_schema_asks_for_places_and_a_second_objective_in_one_form_each() -> None:
-    schema = coverage_schemas(LIMITS, ["pa-one-matrix"])["CoverageRequest"]
+    schema = form_schemas(LIMITS, ["pa-one-matrix"])["CoverageRequest"]
     ways = [[each["required"] for each in choice["oneOf"]] for choice in schema["allOf"]]
     assert ways == [
         [["grid", "cell_size"], ["occupancy_grid"]],

@@ -12,7 +12,7 @@ from service.errors import Refusal
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.kinds.parsing import parse_task
 from service.requests.fleet import parse_fleet_request
-from service.requests.json_schemas import fleet_schemas
+from service.requests.json_schemas import form_schemas
 from service.requests.limits import Limits
 from service.requests.task import TaskSource
 from tests.helpers.fleet_requests import LIMITS, fleet_of, fleet_request
@@ -326,7 +326,7 @@ def test_times_are_refused_without_a_clock() -> None:
 
 
 def test_schemas_have_names_and_limits() -> None:
-    schemas = fleet_schemas(LIMITS)
+    schemas = form_schemas(LIMITS, [])
     assert set(schemas) == {
         "FleetStopItem",
         "ShipmentItem",

@@ -8,7 +8,7 @@ import pytest
 from service.errors import Refusal
 from service.requests.fields import PlanRequest
 from service.requests.json_schemas import limited_schemas
-from service.requests.limits import check_limits, lower_defaults, within_network
+from service.requests.limits import tours_within_limits, within_limits, within_network
 from tests.helpers.serving import LIMITS
 
 N = 12
@@ -26,7 +26,7 @@ N = 12
 )
 def test_more_than_a_limit_names_the_limit(member: str, value: Any, limit: float) -> None:
     with pytest.raises(Refusal) as refused:
-        check_limits(PlanRequest.model_validate({member: value}), N, LIMITS)
+        tours_within_limits(PlanRequest.model_validate({member: value}), N, LIMITS)
     assert (refused.value.status, refused.value.code) == (422, "over-limit")
     assert (refused.value.limit, refused.value.actual) == (limit, limit + 1)
     assert refused.value.errors[0].pointer == f"/{member}"
@@ -34,11 +34,11 @@ def test_more_than_a_limit_names_the_limit(member: str, value: Any, limit: float
 
 def test_tours_are_bounded_by_the_stops_of_all() -> None:
     limits = replace(LIMITS, size=100, path_cells=10 * (N + 1))
-    check_limits(PlanRequest(size=10), N, limits)
+    tours_within_limits(PlanRequest(size=10), N, limits)
     with pytest.raises(Refusal, match="size must be at most 10 with 12 cities, got 11"):
-        check_limits(PlanRequest(size=11), N, limits)
-    assert lower_defaults(PlanRequest(), N, limits).size == 10
-    assert lower_defaults(PlanRequest(), 10**6, limits).size == 1
+        tours_within_limits(PlanRequest(size=11), N, limits)
+    assert within_limits(PlanRequest(), N, limits).size == 10
+    assert within_limits(PlanRequest(), 10**6, limits).size == 1
 
 
 @pytest.mark.parametrize("members", [{"time_limit": 0}, {"preferences": 3}, {"preferences": [9]}])
@@ -60,9 +60,9 @@ def test_of_more_cities_than_a_network_serves_the_search_is_alone() -> None:
 
 def test_preferences_that_are_lowered_still_count_as_not_given() -> None:
     few = replace(LIMITS, preferences=7)
-    silent = lower_defaults(PlanRequest(time_limit=0.1), N, few).options()
+    silent = within_limits(PlanRequest(time_limit=0.1), N, few).options()
     assert (len(silent.directions), silent.fewer) == (7, True)
-    asked = lower_defaults(PlanRequest(preferences=5), N, few).options()
+    asked = within_limits(PlanRequest(preferences=5), N, few).options()
     assert (len(asked.directions), asked.fewer) == (5, False)
 
 
@@ -70,13 +70,13 @@ def test_preferences_that_are_lowered_still_count_as_not_given() -> None:
 def test_an_initial_tour_that_is_no_tour_is_named(tour: list[int]) -> None:
     request = PlanRequest(initial_tours=[list(range(N)), tour])
     with pytest.raises(Refusal, match=r"initial_tours/1 must visit each city, 0 to 11, once"):
-        check_limits(request, N, LIMITS)
+        tours_within_limits(request, N, LIMITS)
 
 
 def test_a_start_must_be_a_city() -> None:
-    check_limits(PlanRequest(start=N - 1), N, LIMITS)
+    tours_within_limits(PlanRequest(start=N - 1), N, LIMITS)
     with pytest.raises(Refusal, match="start must be a city, 0 to 11, got 12"):
-        check_limits(PlanRequest(start=N), N, LIMITS)
+        tours_within_limits(PlanRequest(start=N), N, LIMITS)
 
 
 @pytest.mark.parametrize(
@@ -98,27 +98,27 @@ def test_a_start_must_be_a_city() -> None:
 )
 def test_ends_that_no_route_can_have_are_refused(members: Any, sentence: str) -> None:
     with pytest.raises(Refusal, match=sentence):
-        check_limits(PlanRequest.model_validate(members), N, LIMITS)
+        tours_within_limits(PlanRequest.model_validate(members), N, LIMITS)
 
 
 @pytest.mark.parametrize("ends", [(None, None), (0, None), (None, N - 1), (0, N - 1)])
 def test_ends_that_a_route_can_have_are_those_of_the_request(ends: tuple[Any, Any]) -> None:
     start, end = ends
     request = PlanRequest(closed=False, start=start, end=end, initial_tours=[list(range(N))])
-    check_limits(request, N, LIMITS)
+    tours_within_limits(request, N, LIMITS)
     assert request.ends == (False, start, end)
 
 
 def test_of_one_city_both_ends_are_the_same_and_closed_tours_have_none() -> None:
-    check_limits(PlanRequest(closed=False, start=0, end=0), 1, LIMITS)
+    tours_within_limits(PlanRequest(closed=False, start=0, end=0), 1, LIMITS)
     assert PlanRequest(start=3).ends == (True, None, None)
 
 
 def test_a_default_over_a_limit_is_lowered_and_what_was_asked_for_is_not() -> None:
-    silent = lower_defaults(PlanRequest(), N, LIMITS)
+    silent = within_limits(PlanRequest(), N, LIMITS)
     assert (silent.preferences, silent.size) == (LIMITS.preferences, LIMITS.size)
     assert silent.time_limit == LIMITS.seconds
-    asked = lower_defaults(PlanRequest(size=7), N, replace(LIMITS, preferences=1000))
+    asked = within_limits(PlanRequest(size=7), N, replace(LIMITS, preferences=1000))
     assert (asked.size, asked.preferences) == (7, 100)
 
 

@@ -27,6 +27,7 @@ from service.requests.fields import (
     Text,
     empty_list,
     optional,
+    shared_values,
     without_default,
 )
 from service.requests.maps.occupancy_grid import OccupancyGrid
@@ -202,12 +203,7 @@ class MapRequest(PlanRequest):
         mode = self.mode if {"mode", "free_thresh"} & given else None
         if mode in ("trinary", "scale"):
             self._check_thresholds()
-        return Interpretation(
-            mode=mode,
-            negate=self.negate,
-            occupied_thresh=self.occupied_thresh,
-            free_thresh=self.free_thresh,
-        )
+        return Interpretation(**{**shared_values(self, Interpretation), "mode": mode})
 
     def _check_thresholds(self) -> None:
         for name in ("occupied_thresh", "free_thresh"):

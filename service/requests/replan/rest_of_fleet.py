@@ -15,11 +15,10 @@ from service.fleet.plans import Route
 from service.fleet.vehicles import Shipment, Span, VehicleType, Visit
 from service.requests.limits import (
     Limits,
-    check_amounts,
     check_fleet,
     check_limit,
     check_router,
-    lower_defaults,
+    within_limits,
 )
 from service.requests.parser import actor_for_plans
 from service.requests.replan.changes import objectives_with, promised_begin, tolerance_of
@@ -58,7 +57,7 @@ def rest_of_fleet(
         raise too_many_cities("add", limits.fleet_stops, n, "too-many-left")
     # Each stop may come in a route, and depots again in each of as many routes.
     id_bytes = 3 * rest.labels.id_bytes + sum(len(name.id) for name in rest.names)
-    check_amounts(request, n, limits, id_bytes)
+    request = within_limits(request, n, limits, id_bytes)
     try:
         subject = rest.subject
     except Refusal as refusal:
@@ -68,7 +67,7 @@ def rest_of_fleet(
     check_router(subject.stops.sources, limits)
     return Task(
         subject=subject,
-        options=lower_defaults(request, n, limits, id_bytes).options(len(subject.rules.over)),
+        options=request.options(len(subject.rules.over)),
         actor=actor_for_plans(actors),
         labels=rest.labels,
         geometry=request.geometry,

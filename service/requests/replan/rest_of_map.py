@@ -11,7 +11,7 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, check_layer, size_of
 from service.errors import Fault, InvalidCoverage, invalid
 from service.requests.arrays import Array, check_grid
-from service.requests.limits import Limits, check_amounts, lower_defaults
+from service.requests.limits import Limits, within_limits
 from service.requests.parser import coverage_task
 from service.requests.replan.fields import ReplanRequest, check_fields
 from service.requests.replan.way import (
@@ -52,7 +52,7 @@ def rest_of_map(
     n, most = len(rest.stops), limits.most_places(shared=False)
     if n > most:
         raise too_many_cities("add", most, n)
-    check_amounts(request, n, limits)
+    request = within_limits(request, n, limits)
     matrix, points = coverage.second_matrix, coverage.second_coordinates
     if "cost_layers" in changes:  # they replace both
         matrix = points = None
@@ -67,7 +67,7 @@ def rest_of_map(
     }
     changed = None if changes else np.empty(0, np.int64)
     task = coverage_task(
-        lower_defaults(request, n, limits),
+        request,
         replace(coverage, **members),
         actors,
         earlier=rest.earlier_tours(front, request, changed),

@@ -10,7 +10,7 @@ from service.actor_info import ActorInfo
 from service.errors import Refusal, invalid
 from service.errors.parts import by_stop
 from service.objectives import Objective
-from service.requests.limits import Limits, check_amounts, check_router, lower_defaults
+from service.requests.limits import Limits, check_router, within_limits
 from service.requests.parser import front_task
 from service.requests.replan.costs import (
     AllStops,
@@ -73,12 +73,11 @@ def rest_of_stops(
         objectives,
         tuple(stops.parts[index] for index in rest.stops),
     )
-    n, id_bytes = len(labels.stops), labels.id_bytes
-    check_amounts(request, n, limits, id_bytes)
+    request = within_limits(request, len(labels.stops), limits, labels.id_bytes)
     sources_of_rest = [between(each, rest.stops) for each in sources]
     check_router(sources_of_rest, limits)
     rest_task = front_task(
-        lower_defaults(request, n, limits, id_bytes),
+        request,
         Stops(
             locations_of(labels.stops),
             sources_of_rest,

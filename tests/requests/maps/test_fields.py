@@ -8,7 +8,7 @@ import pytest
 
 from service.errors import Refusal
 from service.requests.coverage import CoverageRequest, parse_coverage_request
-from service.requests.json_schemas import coverage_schemas
+from service.requests.json_schemas import form_schemas
 from tests.helpers.serving import LIMITS
 from tests.requests.maps.test_occupancy_grid import MESSAGE
 
@@ -107,6 +107,6 @@ def test_what_does_not_go_together_is_named(
 
 
 def test_the_schema_has_the_limit_of_cells() -> None:
-    schema = coverage_schemas(LIMITS, ["pa-one-matrix"])["OccupancyGrid"]
+    schema = form_schemas(LIMITS, ["pa-one-matrix"])["OccupancyGrid"]
     data = schema["properties"]["data"]
     assert data["maxItems"] == LIMITS.cells
