@@ -26,7 +26,7 @@ from service.requests.fields import (
     StrictModel,
     Text,
     empty_list,
-    without_default,
+    unless_given,
 )
 from service.requests.limits import Limits, tours_within_limits
 from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_array, stacked
@@ -58,10 +58,8 @@ class RobotItem(StrictModel):
     start_pose: RobotPose = empty_list(
         "instead of start: x and y, and maybe yaw, in the frame of the map"
     )
-    end: NonNegativeInteger = Field(
-        default=0,
-        json_schema_extra=without_default,
-        description="with closed false, the place where it ends; by default anywhere",
+    end: NonNegativeInteger = unless_given(
+        0, "with closed false, the place where it ends; by default anywhere"
     )
     end_pose: RobotPose = empty_list("instead of end: where it ends, in the frame of the map")
 
@@ -89,10 +87,9 @@ class CoverageRequest(MapRequest):
         " every obstacle cell",
     )
     places: SomeItems[Cell] = empty_list("row and column of each place to visit")
-    spacing: Annotated[PositiveNumber, Offered(option="", label="Places apart, m")] = Field(
-        default=0.0,
-        json_schema_extra=without_default,
-        description="instead of places, in metres: places are laid out, one in each square of this"
+    spacing: Annotated[PositiveNumber, Offered(option="", label="Places apart, m")] = unless_given(
+        0.0,
+        "instead of places, in metres: places are laid out, one in each square of this"
         " side, over the region of the start pose or the largest free region",
     )
     start_pose: Annotated[

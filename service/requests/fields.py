@@ -49,6 +49,11 @@ def _integer(value: object) -> object:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
+def at_most(items: int) -> Any:
+    """Return the annotation of a list of at most so many items, which ends at a wrong one."""
+    return Field(max_length=items, fail_fast=True)
+
+
 Each = TypeVar("Each")
 # A member that is absent, never null, where there is none.
 Maybe: TypeAlias = Each | SkipJsonSchema[None]
@@ -152,6 +157,11 @@ def optional(description: str) -> Any:
     return Field(default=None, description=description)
 
 
+def unless_given(default: object, description: str) -> Any:
+    """Return a field whose default depends on others, so that its JSON schema has none."""
+    return Field(default=default, json_schema_extra=without_default, description=description)
+
+
 def empty_list(description: str) -> Any:
     """Return a field that is an empty list where it was not given."""
     return Field(default_factory=list, description=description)
@@ -241,18 +251,16 @@ class PlanFields(SearchFields):
         PositiveInteger | SomeItems[Angle] | SomeItems[Direction],
         Branch(_form_of_preferences),
         Offered(label="Trade-offs for the network", more=1),
-    ] = Field(
-        default=100,
-        json_schema_extra=without_default,
-        description="the directions along which the network builds tours: the number of evenly"
+    ] = unless_given(
+        100,
+        "the directions along which the network builds tours: the number of evenly"
         " spread ones; of two objectives angles in degrees; or for each a number for every"
         " objective. By default 100 if time_limit is 0, else as many as fit into a tenth of it,"
         " maybe none",
     )
-    repairs: Annotated[NonNegativeInteger, Offered(option="")] = Field(
-        default=LARGEST_INTEGER,
-        json_schema_extra=without_default,
-        description="how often the network cuts each of its tours open and joins it again, which"
+    repairs: Annotated[NonNegativeInteger, Offered(option="")] = unless_given(
+        LARGEST_INTEGER,
+        "how often the network cuts each of its tours open and joins it again, which"
         " never makes the tour worse; tours found on the way count for the front, too. By"
         " default 0 with a time limit, else as many as are worth their time: with"
         " coordinates an eighth of the number of cities and at least 3, a fifth under more than"
@@ -268,10 +276,9 @@ class PlanFields(SearchFields):
         description=f"whether to compute, in up to {BOUND_SECONDS:g} s, a bound that no hypervolume"
         " exceeds",
     )
-    actor: Annotated[str, Offered(option="The network, one of `paretour actors`.")] = Field(
-        default="",
-        json_schema_extra=without_default,
-        description="the network that builds the tours; by default pa-one for coordinates and"
+    actor: Annotated[str, Offered(option="The network, one of `paretour actors`.")] = unless_given(
+        "",
+        "the network that builds the tours; by default pa-one for coordinates and"
         " pa-one-matrix for matrices",
     )
 

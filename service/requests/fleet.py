@@ -22,6 +22,7 @@ from service.requests.fields import (
     OneEach,
     SearchFields,
     SomeItems,
+    at_most,
     empty_list,
     optional,
 )
@@ -53,8 +54,7 @@ from service.requests.task import UnmeasuredFleet, VehicleName, types_by_id
 from service.requests.validation import parse_json, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
-_MOST_GROUPS = 50
-_SOME_GROUPS = Field(max_length=_MOST_GROUPS, fail_fast=True)
+_SOME_GROUPS = at_most(50)
 
 
 class FleetRequest(SearchFields):

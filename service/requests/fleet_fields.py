@@ -22,10 +22,11 @@ from service.requests.fields import (
     PositiveNumber,
     StrictModel,
     Text,
+    at_most,
     empty_list,
     optional,
     shared_values,
-    without_default,
+    unless_given,
 )
 from service.requests.profile_fields import ProfileCostsItem
 from service.requests.spread_fields import Percentile, SpreadOfTimes
@@ -33,22 +34,15 @@ from service.requests.stop_fields import NamedStop, StopReference, find_index, f
 from service.requests.validation import nearest
 
 _MOST_LOAD = 10**9
-_MOST_DIMENSIONS = 8
 _MOST_COUNT = 10**6
-_MOST_WINDOWS = 20
-_MOST_SHIFTS = 31
-_MOST_RELOADS = 20
-_MOST_SKILLS = 50
-_MOST_BREAKS = 10
-_MOST_SERVICES = 100
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
-Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
-Skills = Annotated[list[Text], Field(max_length=_MOST_SKILLS, fail_fast=True)]
+Loads = Annotated[list[Load], at_most(8)]
+Skills = Annotated[list[Text], at_most(50)]
 SpeedFactor = Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)]
 ServiceFactor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 # A pair in JSON, and a list so that OpenAPI has its length.
 TimeSpan = Pair[Cost]
-Windows = Annotated[list[TimeSpan], Field(max_length=_MOST_WINDOWS, fail_fast=True)]
+Windows = Annotated[list[TimeSpan], at_most(20)]
 Due = Annotated[Cost | TimeSpan, IS_LIST]
 
 
@@ -71,8 +65,8 @@ class FleetStopItem(NamedStop):
         " to its end"
     )
     service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
-    services: Annotated[list[ServiceItem], Field(max_length=_MOST_SERVICES, fail_fast=True)] = (
-        empty_list("how long a visit takes by some types of vehicles, in place of `service`")
+    services: Annotated[list[ServiceItem], at_most(100)] = empty_list(
+        "how long a visit takes by some types of vehicles, in place of `service`"
     )
     window: TimeSpan | None = optional("when a visit may begin, from and to")
     windows: Windows = empty_list(
@@ -173,21 +167,21 @@ class VehicleItem(StrictModel):
     )
     capacity: Loads = empty_list("the most that one holds, in up to 8 dimensions")
     shift: TimeSpan | None = optional("when one may leave, and must be back")
-    shifts: Annotated[list[TimeSpan], Field(max_length=_MOST_SHIFTS, fail_fast=True)] = empty_list(
+    shifts: Annotated[list[TimeSpan], at_most(31)] = empty_list(
         "up to 31 shifts, by ascending time: each vehicle has a route in each"
     )
     max_overtime: Cost = Field(
         default=0.0, description="how much later than its shift a route may end"
     )
-    breaks: Annotated[list[BreakItem], Field(max_length=_MOST_BREAKS, fail_fast=True)] = empty_list(
+    breaks: Annotated[list[BreakItem], at_most(10)] = empty_list(
         "up to 10, by ascending time. Each is taken between two visits, before the departure or"
         " after the end; not while the vehicle drives"
     )
     skills: Skills = empty_list("what it is able to do")
     max_stops: PositiveInteger | None = optional("the most stops of a route")
     min_stops: PositiveInteger | None = optional("the least stops of a route: else none leaves")
-    reload: Annotated[list[StopReference], Field(max_length=_MOST_RELOADS, fail_fast=True)] = (
-        empty_list("the stops, by index or id, at which one may load again on its way")
+    reload: Annotated[list[StopReference], at_most(20)] = empty_list(
+        "the stops, by index or id, at which one may load again on its way"
     )
     max_trips: PositiveInteger | None = optional(
         "the most trips of a route, each from one loading to the next; null for any number"
@@ -299,10 +293,9 @@ class FleetObjectiveItem(TimesItem):
         alias="measure",
         description=f"in place of a source of costs, not for the first objective: {joined_texts()}",
     )
-    over: Over = Field(
-        default="sum",
-        json_schema_extra=without_default,
-        description="of costs: whether the length of a plan is the sum over its routes, as by"
+    over: Over = unless_given(
+        "sum",
+        "of costs: whether the length of a plan is the sum over its routes, as by"
         " default, or the longest route; max for one objective at most",
     )
     percentile: Percentile | None = optional(

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from service.errors import invalid
-from service.requests.fields import Cost, StrictModel, empty_list
+from service.requests.fields import Cost, StrictModel, at_most, empty_list
 from service.requests.stop_fields import StopReference
 
 _MOST_IN_GROUP = 100
@@ -18,11 +18,9 @@ class ApartItem(StrictModel):
     """Stops that must not ride with each other, or with others."""
 
     stops: References = Field(description="by index or id")
-    others: Annotated[list[StopReference], Field(max_length=_MOST_IN_GROUP, fail_fast=True)] = (
-        empty_list(
-            "by index or id: no vehicle visits one of these and one of `stops`; without any, no"
-            " vehicle visits two of `stops`"
-        )
+    others: Annotated[list[StopReference], at_most(_MOST_IN_GROUP)] = empty_list(
+        "by index or id: no vehicle visits one of these and one of `stops`; without any, no"
+        " vehicle visits two of `stops`"
     )
 
 

@@ -18,7 +18,7 @@ from service.requests.day_fields import (
     check_slices,
     read_slices,
 )
-from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, empty_list, one_of
+from service.requests.fields import NO_WAY, CostRows, StrictModel, Text, at_most, empty_list, one_of
 from service.requests.stop_fields import check_unique
 from service.requests.stops import (
     ROAD_MEASURES,
@@ -73,9 +73,7 @@ class ProfileCostsItem(TimedObjectiveItem):
     It has exactly one of matrix, matrices, coordinates, from, slices and breakpoints.
     """
 
-    matrices: Annotated[
-        list[ProfileMatrixItem], Field(max_length=MOST_PROFILES, fail_fast=True)
-    ] = empty_list(
+    matrices: Annotated[list[ProfileMatrixItem], at_most(MOST_PROFILES)] = empty_list(
         "in place of one matrix: one for each `profile` of vehicles, as for cars and trucks"
     )
 

@@ -11,7 +11,15 @@ from service.errors import invalid
 from service.objectives import MOST_OBJECTIVES
 from service.reliability.spread import Spread
 from service.requests.arrays import costs_between
-from service.requests.fields import IS_LIST, AsInteger, CostRows, StrictModel, empty_list, optional
+from service.requests.fields import (
+    IS_LIST,
+    AsInteger,
+    CostRows,
+    StrictModel,
+    at_most,
+    empty_list,
+    optional,
+)
 
 Array = NDArray[np.float64]
 _LEAST_DAYS, _MOST_DAYS = 2, 50
@@ -30,7 +38,7 @@ class MatrixItem(StrictModel):
 class DaysFields(StrictModel):
     """The costs of several days."""
 
-    days: Annotated[list[MatrixItem], Field(max_length=_MOST_DAYS, fail_fast=True)] = empty_list(
+    days: Annotated[list[MatrixItem], at_most(_MOST_DAYS)] = empty_list(
         "in place of one matrix: the costs of 2 to 50 days. Their mean is the cost of each leg, and"
         " a tour or a plan is measured on each day"
     )

@@ -28,7 +28,7 @@ from service.requests.fields import (
     empty_list,
     optional,
     shared_values,
-    without_default,
+    unless_given,
 )
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
@@ -112,28 +112,21 @@ class MapRequest(PlanRequest):
         default_factory=_no_occupancy_grid,
         description="or: a message nav_msgs/OccupancyGrid, which brings cell_size and origin",
     )
-    cell_size: Annotated[PositiveNumber, Offered(option="", label="Metres a cell")] = Field(
-        default=0.0,
-        description="side of a cell, in metres; resolution in a map.yaml",
-        json_schema_extra=without_default,
+    cell_size: Annotated[PositiveNumber, Offered(option="", label="Metres a cell")] = unless_given(
+        0.0, "side of a cell, in metres; resolution in a map.yaml"
     )
     origin: _Pose = empty_list(
         "x, y and yaw of the map's lower left corner in its frame, in metres and radians"
         " counterclockwise; with it paths have points, and there may be poses"
     )
-    mode: Mode = Field(
-        default="trinary",
-        description="how map_server reads a picture; needs both thresholds",
-        json_schema_extra=without_default,
-    )
+    mode: Mode = unless_given("trinary", "how map_server reads a picture; needs both thresholds")
     negate: bool = Field(default=False, description="whether in a picture black is free")
     occupied_thresh: Share = Field(
         default=0.5, description="a pixel darker than this, 0 white to 1 black, is an obstacle"
     )
-    free_thresh: Share = Field(
-        default=0.0,
-        json_schema_extra=without_default,
-        description="a pixel lighter than this is free, those between are unknown; without it"
+    free_thresh: Share = unless_given(
+        0.0,
+        "a pixel lighter than this is free, those between are unknown; without it"
         " every pixel that is not an obstacle is free, except grey 205, which is unknown",
     )
     obstacle_from: Annotated[int, Field(ge=1, le=100), AsInteger] = Field(

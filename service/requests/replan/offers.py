@@ -12,7 +12,15 @@ from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal, invalid
 from service.errors.parts import Part, part_of, renamed
 from service.fleet.vehicles import Span
-from service.requests.fields import Cost, PositiveNumber, StrictModel, empty_list, one_of, optional
+from service.requests.fields import (
+    Cost,
+    PositiveNumber,
+    StrictModel,
+    at_most,
+    empty_list,
+    one_of,
+    optional,
+)
 from service.requests.fleet_fields import TimeSpan
 from service.requests.limits import Limits, check_limit
 from service.requests.replan.fleet_fields import FleetChanges, NewFleetStop
@@ -74,7 +82,7 @@ class OffersRequest(FleetChanges):
         description="the order, in the form of an added stop; its costs are those of the last one"
         " that is added"
     )
-    slots: Annotated[list[TimeSpan], Field(max_length=MOST_SLOTS, fail_fast=True)] = empty_list(
+    slots: Annotated[list[TimeSpan], at_most(MOST_SLOTS)] = empty_list(
         "when the visit may begin, from and to, in the unit of the clock: one offer for each, up to"
         " 200"
     )
