@@ -11,10 +11,9 @@ from paretour.questions import OPTIONS, QUESTIONS
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core.core_schema import ModelSchema, StringSchema
 
-from service.mcp.times import TIMED
+from service.mcp.times import WithTimes
 from service.requests.fields import SearchFields, optional
-from service.requests.json_schemas import RULES, WithoutNull
-from service.requests.replan.offers import EverySlot
+from service.requests.json_schemas import RULES
 
 _MOST_TEXT = 2**20  # characters of a file
 # The members of forms that agents seldom need. All others are in the schemas, new ones as well.
@@ -50,15 +49,13 @@ Count = Annotated[int, Field(ge=0, le=2**31 - 1)]
 
 
 class Arguments(BaseModel):
-    """The arguments of a tool. An argument that is not listed is an error."""
+    """The arguments of a tool, or a part of them. A member that is not listed is an error."""
 
     model_config = ConfigDict(extra="forbid")
 
 
-class ChosenColumn(BaseModel):
+class ChosenColumn(Arguments):
     """A column of a table, and what it is taken for."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: str = Field(description="its heading; without headings its number, from 1")
     taken_for: str = Field(
@@ -68,10 +65,8 @@ class ChosenColumn(BaseModel):
     file: str | None = optional("of several files its name, or the first")
 
 
-class TextOfFile(BaseModel):
+class TextOfFile(Arguments):
     """The text of a file, and its name."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: str = Field(min_length=1, max_length=100, description="such as vans.csv")
     text: str = Field(max_length=_MOST_TEXT)
@@ -181,7 +176,7 @@ class DayOfFleet(BaseModel):
     )
 
 
-class _ForAgents(WithoutNull):
+class _ForAgents(WithTimes):
     """Make JSON schemas without what agents seldom need; forms may have other members, too."""
 
     def field_title_should_be_set(self, schema: Any) -> bool:  # noqa: ARG002
@@ -196,21 +191,8 @@ class _ForAgents(WithoutNull):
         rare = _RARE.get(schema["cls"].__name__, "").split()
         for name in rare:
             del found["properties"][name]
-        timed = found["properties"] if schema["cls"] is EverySlot else TIMED
-        for name in {*timed} & {*found["properties"]}:
-            found["properties"][name] = _or_text(found["properties"][name])
         left_out = {"title", *RULES, *(["additionalProperties"] if rare else [])}
         return {key: value for key, value in found.items() if key not in left_out}
-
-
-def _or_text(schema: Any) -> Any:
-    """Return the schema of times that may also be texts such as "10:00"."""
-    if isinstance(schema, list):
-        return [_or_text(each) for each in schema]
-    if not isinstance(schema, dict):
-        return schema
-    found = {key: _or_text(value) for key, value in schema.items()}
-    return {**found, "type": ["number", "string"]} if found.get("type") == "number" else found
 
 
 def schema_of(*forms: type[BaseModel]) -> dict[str, Any]:

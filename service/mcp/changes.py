@@ -11,6 +11,9 @@ from paretour.choice import knee
 
 from service.amounts.said import clock_time
 from service.mcp.times import with_times
+from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.fleet_fields import ReplanFleetRequest
+from service.requests.replan.offers import OffersRequest
 
 AS_PLANNED = "as planned"
 Named = Mapping[str, Any]
@@ -63,13 +66,10 @@ def changes_of(front: FrontOfAnyKind, asked: Named) -> Day:
     Raises:
         ValueError: A time cannot be read, or a vehicle is not named by its only route.
     """
-    unit: str | None = "s"
     if isinstance(front, FleetFront):
         unit = None if front.clock is None else front.clock.unit
-    members = with_times(asked, unit)
-    if not isinstance(front, FleetFront):
-        return Day(members)
-    return _of_fleet(front, members)
+        return _of_fleet(front, with_times(asked, unit, ReplanFleetRequest, OffersRequest))
+    return Day(with_times(asked, "s", ReplanRequest))
 
 
 def _of_fleet(front: FleetFront, members: dict[str, Any]) -> Day:

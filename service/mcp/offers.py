@@ -1,14 +1,13 @@
 """Write the offers of an order as a JSON text that is short enough for an agent to read."""
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
 from paretour import Offer, Offers
 
 from service.amounts.said import amount, clock_time
+from service.mcp.summaries import MOST_BYTES, as_text
 
-_MOST_BYTES = 8000
 _HINT = (
     "nothing is changed yet: to take an offer, call replan with the same arguments without slots"
     " and every, and with the order in add, together with its window"
@@ -38,10 +37,10 @@ def offers_text(offers: Offers, assumed: Sequence[str] = ()) -> str:
     if offers.unassigned:
         document["left_out"] = list(offers.unassigned)
     for name in ("left_out", "not_possible", "slots"):
-        while len(_text(document).encode()) > _MOST_BYTES and document.get(name):
+        while len(as_text(document).encode()) > MOST_BYTES and document.get(name):
             document[name] = document[name][:-1]
             document["shortened"] = "some slots are not in this text: ask for fewer"
-    return _text(document)
+    return as_text(document)
 
 
 def _possible(offers: Offers, offer: Offer) -> dict[str, Any]:
@@ -79,7 +78,3 @@ def _rise(offers: Offers, rise: Any) -> dict[str, str]:
         each.name: f"{'-' if grown < 0 else ''}{amount(abs(grown), each.unit)}"
         for each, grown in pairs
     }
-
-
-def _text(document: dict[str, Any]) -> str:
-    return json.dumps(document, ensure_ascii=False)

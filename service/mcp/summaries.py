@@ -74,7 +74,7 @@ def unreadable_text(error: Refused) -> str:
         return str(error)
     taken = {each["name"]: each["taken_for"] for each in columns[:_MOST_COLUMNS]}
     choices: list[str] = next(iter(error.document.get("choices", {}).values()), [])
-    return _text({"error": str(error), "columns": taken, "choices": choices})
+    return as_text({"error": str(error), "columns": taken, "choices": choices})
 
 
 def explanation(front: FrontOfAnyKind, link: str | None) -> str:
@@ -120,7 +120,7 @@ def question_text(front: FrontOfAnyKind, question: Question, picks: Sequence[int
         {"option": number, **_reach(front, option)}
         for number, option in enumerate(question.options)
     ]
-    return _text(
+    return as_text(
         {
             "summary": f"{question.left} questions are left. Ask the person which option is best",
             "front": front.id,
@@ -243,7 +243,7 @@ def _with_stops(document: Named, front: FrontOfAnyKind, number: int, first: int)
 
     def text_of(count: int) -> str:
         kept = rest[:count]
-        return _text({**document, **_stops(front, ways, kept), **_left(pairs, first, kept)})
+        return as_text({**document, **_stops(front, ways, kept), **_left(pairs, first, kept)})
 
     def bytes_of(count: int) -> int:
         return len(text_of(count).encode())
@@ -358,10 +358,11 @@ def _fitted(document: Named) -> str:
     """
     members = dict(document)
     for name in ("trades", "tours", "ranges", "assumed", "notes", "unassigned"):
-        while len(_text(members).encode()) > MOST_BYTES and members.get(name):
+        while len(as_text(members).encode()) > MOST_BYTES and members.get(name):
             members[name] = members[name][:-1] if isinstance(members[name], list) else {}
-    return _text(members)
+    return as_text(members)
 
 
-def _text(document: Named) -> str:
+def as_text(document: Named) -> str:
+    """Return a document as JSON, as agents read it."""
     return json.dumps(document, ensure_ascii=False)

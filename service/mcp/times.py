@@ -1,66 +1,56 @@
 """Read the times in the members of a request that agents may write as texts, as "10:00"."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
+from pydantic import BaseModel
+from pydantic_core.core_schema import FloatSchema
+
 from service.amounts.read import number_in
-
-# The members of requests that are times or durations, in the unit of the clock.
-TIMED = frozenset(
-    (
-        *("arrivals", "at", "departure", "driving", "due", "earliest", "latest", "leaves"),
-        *("length", "longest", "max_driving", "max_overtime", "now", "over_the_day", "release"),
-        *("service", "shift", "shifts", "shortest", "slack", "slots", "tolerance", "window"),
-        "windows",
-    )
-)
-# What such members may be in; below other members the same names mean something else.
-_HOLDERS = frozenset(
-    (
-        *("add", "breaks", "changes", "clock", "departure", "objectives", "order", "position"),
-        *("promised", "routes", "services", "stops", "traffic", "vehicles"),
-    )
-)
-# Members whose own members are times under names that mean something else elsewhere.
-_OWN = {"every": ("from", "to", "length", "step"), "slices": ("from",)}
+from service.requests.fields import is_time
+from service.requests.json_schemas import WithoutNull
+from service.requests.null_members import NUMBER_OR_TEXT, Shape, shape_of
 
 
-def with_times(members: Mapping[str, Any], unit: str | None) -> dict[str, Any]:
-    """Return the members of a request with numbers, in a unit, for the times that are texts.
+class WithTimes(WithoutNull):
+    """Make JSON schemas in which times may also be texts."""
+
+    def float_schema(self, schema: FloatSchema) -> dict[str, Any]:
+        """Return the schema of a number, which may be a time."""
+        found = super().float_schema(schema)
+        return {**found, "type": NUMBER_OR_TEXT} if is_time(schema) else found
+
+
+def with_times(
+    members: Mapping[str, Any], unit: str | None, *forms: type[BaseModel]
+) -> dict[str, Any]:
+    """Return the members of some forms with numbers, in a unit, for the times that are texts.
 
     Raises:
         ValueError: As of `number_in`.
     """
-    return {name: _member(name, value, unit) for name, value in members.items()}
+    read: dict[str, Any] = _read(members, _shape_of(*forms), unit)
+    return read
 
 
-def _member(name: str, value: Any, unit: str | None) -> Any:
-    """Return a member of a request with numbers for the times in it that are texts."""
-    if name in _OWN:
-        return _own(value, _OWN[name], unit)
-    if name in TIMED and not isinstance(value, Mapping):
-        return _numbers(value, unit)
-    return _inside(value, unit) if name in _HOLDERS else value
+@cache
+def _shape_of(*forms: type[BaseModel]) -> Shape | None:
+    schemas = [form.model_json_schema(schema_generator=WithTimes) for form in forms]
+    parts = {name: part for schema in schemas for name, part in schema.get("$defs", {}).items()}
+    return shape_of(schemas, parts)
 
 
-def _own(value: Any, names: Sequence[str], unit: str | None) -> Any:
-    if isinstance(value, list):
-        return [_own(each, names, unit) for each in value]
-    if not isinstance(value, Mapping):
+def _read(value: Any, shape: Shape | None, unit: str | None) -> Any:
+    if shape is None:
         return value
-    return {name: _numbers(x, unit) if name in names else x for name, x in value.items()}
-
-
-def _inside(value: Any, unit: str | None) -> Any:
+    if isinstance(value, str):
+        return number_in(value, unit) if shape.is_amount else value
     if isinstance(value, list):
-        return [_inside(each, unit) for each in value]
-    return with_times(value, unit) if isinstance(value, Mapping) else value
-
-
-def _numbers(value: Any, unit: str | None) -> Any:
-    if isinstance(value, list):
-        return [_numbers(each, unit) for each in value]
-    return number_in(value, unit) if isinstance(value, str) else value
+        return [_read(each, shape.items, unit) for each in value]
+    if isinstance(value, Mapping):
+        return {name: _read(each, shape.members.get(name), unit) for name, each in value.items()}
+    return value
 
 
 def clock_unit(request: Mapping[str, Any]) -> str | None:

@@ -117,12 +117,12 @@ class Tool:
 
 
 async def _plan_front(planner: Planner, asked: Members) -> str:
-    request = with_times(asked.members, "s")
+    request = with_times(asked.members, "s", FrontRequest)
     return await planner.planned(Plan("/front", request), _most_stops(request))
 
 
 async def _plan_fleet(planner: Planner, asked: Members) -> str:
-    request = with_times(asked.members, clock_unit(asked.members))
+    request = with_times(asked.members, clock_unit(asked.members), FleetRequest)
     return await planner.planned(Plan("/fleet", request), _most_stops(request))
 
 

@@ -10,13 +10,13 @@ from pydantic import Field
 from service.day.breakpoints import Breakpoints
 from service.errors import invalid
 from service.requests.arrays import check_rows
-from service.requests.fields import Items, Pair
+from service.requests.fields import IS_TIME, Items, Pair
 
 LATEST = 864_000  # ten days
 _MOST = 2**20  # of all pairs
 _MOST_OF_PAIR = 1000
 _ROUNDING = 1e-6  # seconds by which who leaves later may arrive earlier
-TimeOfDay = Annotated[float, Field(ge=0, le=LATEST, allow_inf_nan=False)]
+TimeOfDay = Annotated[float, Field(ge=0, le=LATEST, allow_inf_nan=False), IS_TIME]
 OfPair = Annotated[
     list[Pair[TimeOfDay]], Field(min_length=1, max_length=_MOST_OF_PAIR, fail_fast=True)
 ]

@@ -49,6 +49,23 @@ def _integer(value: object) -> object:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
+class _Time:
+    """The annotation of a number that is a time: agents may write it as a text, as 10:00."""
+
+    def __get_pydantic_core_schema__(
+        self, number: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Return the schema of the number, with a mark for `is_time`."""
+        schema = handler(number)
+        schema["metadata"] = {**schema.get("metadata", {}), "is_time": True}
+        return schema
+
+
+def is_time(schema: CoreSchema) -> bool:
+    """Return whether a schema is of a number that is a time."""
+    return bool(schema.get("metadata", {}).get("is_time"))
+
+
 def at_most(items: int) -> Any:
     """Return the annotation of a list of at most so many items, which ends at a wrong one."""
     return Field(max_length=items, fail_fast=True)
@@ -81,6 +98,9 @@ Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
 PlanePoint = Pair[Number]
 AsInteger = BeforeValidator(_integer)
+IS_TIME = _Time()
+Time = Annotated[Cost, IS_TIME]  # in the unit of the clock
+PositiveTime = Annotated[PositiveNumber, IS_TIME]
 ABSENT: dict[str, JsonValue] = {"not": {}}  # of a member that must not be there
 # AsInteger comes last: in front of the bounds it would hide them from the OpenAPI document.
 PositiveInteger = Annotated[int, Field(ge=1, le=LARGEST_INTEGER), AsInteger]

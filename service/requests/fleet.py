@@ -16,12 +16,12 @@ from service.objectives import Objective
 from service.requests.day_fields import check_in_seconds
 from service.requests.fields import (
     GEOMETRY,
-    Cost,
     Geometry,
     Items,
     OneEach,
     SearchFields,
     SomeItems,
+    Time,
     at_most,
     empty_list,
     optional,
@@ -84,7 +84,7 @@ class FleetRequest(SearchFields):
         " same, the source of times that are not an objective. All times are in its unit; the"
         " length of a route in it includes service and waiting"
     )
-    slack: Cost = Field(
+    slack: Time = Field(
         default=0.0,
         description="how long before a window closes a vehicle must reach the stop, in the clock's"
         " unit; there it waits until the window opens. So delays up to this make nobody late",

@@ -20,8 +20,10 @@ from service.requests.fields import (
     Pair,
     PositiveInteger,
     PositiveNumber,
+    PositiveTime,
     StrictModel,
     Text,
+    Time,
     at_most,
     empty_list,
     optional,
@@ -41,16 +43,16 @@ Skills = Annotated[list[Text], at_most(50)]
 SpeedFactor = Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)]
 ServiceFactor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 # A pair in JSON, and a list so that OpenAPI has its length.
-TimeSpan = Pair[Cost]
+TimeSpan = Pair[Time]
 Windows = Annotated[list[TimeSpan], at_most(20)]
-Due = Annotated[Cost | TimeSpan, IS_LIST]
+Due = Annotated[Time | TimeSpan, IS_LIST]
 
 
 class ServiceItem(StrictModel):
     """How long the visit of a stop takes by a type of vehicles."""
 
     vehicle: Text = Field(description="the id of the type")
-    service: Cost = Field(description="how long the visit takes, in the clock's unit")
+    service: Time = Field(description="how long the visit takes, in the clock's unit")
 
 
 class FleetStopItem(NamedStop):
@@ -64,7 +66,7 @@ class FleetStopItem(NamedStop):
         "whole numbers, as of `demand`: what it takes on there, after what it delivers, and brings"
         " to its end"
     )
-    service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
+    service: Time = Field(default=0.0, description="how long a visit takes, in the clock's unit")
     services: Annotated[list[ServiceItem], at_most(100)] = empty_list(
         "how long a visit takes by some types of vehicles, in place of `service`"
     )
@@ -76,7 +78,7 @@ class FleetStopItem(NamedStop):
         "when the visit should begin at the latest, after which the plan has lateness; or a pair:"
         " from when on it should, before which the plan has earliness, and until when"
     )
-    release: Cost = Field(
+    release: Time = Field(
         default=0.0,
         description="a vehicle that brings something here leaves its start, or the stop where it"
         " loads again, no earlier",
@@ -149,7 +151,7 @@ class BreakItem(StrictModel):
     """A break that a driver takes who is on the way then."""
 
     window: TimeSpan = Field(description="when it may begin, from and to")
-    length: Cost = Field(description="how long it takes")
+    length: Time = Field(description="how long it takes")
 
 
 class VehicleItem(StrictModel):
@@ -170,7 +172,7 @@ class VehicleItem(StrictModel):
     shifts: Annotated[list[TimeSpan], at_most(31)] = empty_list(
         "up to 31 shifts, by ascending time: each vehicle has a route in each"
     )
-    max_overtime: Cost = Field(
+    max_overtime: Time = Field(
         default=0.0, description="how much later than its shift a route may end"
     )
     breaks: Annotated[list[BreakItem], at_most(10)] = empty_list(
@@ -190,17 +192,17 @@ class VehicleItem(StrictModel):
         "the load on board at the start; it is unloaded at the first stop for loading again, or at"
         " the end"
     )
-    longest: PositiveNumber | None = optional(
+    longest: PositiveTime | None = optional(
         "the limit on each route: on its time if there is a clock, else on its length in"
         " the objective whose `over` is max"
     )
-    shortest: Cost = Field(
+    shortest: Time = Field(
         default=0.0, description="the least time or length of a route, measured as `longest` is"
     )
     max_distance: PositiveNumber | None = optional(
         "the most that a route's legs cost in the objective that is not time, such as metres"
     )
-    max_driving: PositiveNumber | None = optional(
+    max_driving: PositiveTime | None = optional(
         "the most time that a route drives, in the clock's unit: without service and waiting"
     )
     fixed: Cost = Field(default=0.0, description="added to the first length if one is used")

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from service.errors import invalid
-from service.requests.fields import Cost, StrictModel, at_most, empty_list
+from service.requests.fields import StrictModel, Time, at_most, empty_list
 from service.requests.stop_fields import StopReference
 
 _MOST_IN_GROUP = 100
@@ -36,7 +36,7 @@ class BeforeItem(StrictModel):
         description="one: only the order on one route counts; any: whoever drives, no visit of"
         " `then` begins before all visits of `first` have ended",
     )
-    gap: Cost = Field(
+    gap: Time = Field(
         default=0.0,
         description="how long after the visits of `first` those of `then` begin at the earliest,"
         " of any vehicles, in the clock's unit",

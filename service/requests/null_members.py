@@ -18,21 +18,24 @@ from pydantic_core import from_json, to_json
 _Schema = Mapping[str, Any]
 _NULL_MEMBER = re.compile(rb":\s*null\b")  # also in a string, which does no harm
 _NULL = {"type": "null"}
+NUMBER_OR_TEXT = ["number", "string"]
 
 
 @dataclass(frozen=True)
-class _Shape:
-    """Where objects are in the values of a schema, and which null members they have.
+class Shape:
+    """Where objects and amounts are in the values of a schema, and which null members they have.
 
     Args:
         dropped: The members of an object that are dropped where they are null.
         members: The shapes of the members of an object that hold objects.
-        items: The shape of the items of a list; None if they hold no objects.
+        items: The shape of the items of a list; None if they hold neither.
+        is_amount: Whether the value is a number that may also be a text.
     """
 
     dropped: frozenset[str]
-    members: Mapping[str, "_Shape"]
-    items: "_Shape | None"
+    members: Mapping[str, "Shape"]
+    items: "Shape | None"
+    is_amount: bool = False
 
 
 def drop_null_members(model: type[BaseModel], body: bytes) -> bytes:
@@ -64,7 +67,7 @@ def without_null_members(model: type[BaseModel], content: Any) -> Any:
     return members
 
 
-def _without(value: Any, shape: _Shape) -> Any:
+def _without(value: Any, shape: Shape) -> Any:
     if isinstance(value, list) and shape.items is not None:
         return [_without(each, shape.items) for each in value]
     if not isinstance(value, dict):
@@ -77,29 +80,34 @@ def _without(value: Any, shape: _Shape) -> Any:
 
 
 @cache
-def _shape_of(model: type[BaseModel]) -> _Shape | None:
+def _shape_of(model: type[BaseModel]) -> Shape | None:
     schema = model.model_json_schema()
-    return _shape([schema], schema.get("$defs", {}))
+    return shape_of([schema], schema.get("$defs", {}))
 
 
-def _shape(schemas: Iterable[_Schema], definitions: _Schema) -> _Shape | None:
-    """Return the shape of values that fit one of some schemas; None if they hold no objects."""
+def shape_of(schemas: Iterable[_Schema], definitions: _Schema) -> Shape | None:
+    """Return the shape of values that fit one of some JSON schemas.
+
+    None if they hold neither objects nor numbers that may be texts.
+    """
     forms = [form for schema in schemas for form in _forms(schema, definitions)]
     members: dict[str, list[_Schema]] = {}
     for form in forms:
         for name, schema in form.get("properties", {}).items():
             members.setdefault(name, []).append(schema)
-    shapes = {name: _shape(each, definitions) for name, each in members.items()}
+    shapes = {name: shape_of(each, definitions) for name, each in members.items()}
     in_lists = [form["items"] for form in forms if "items" in form]
-    items = _shape(in_lists, definitions) if in_lists else None
-    if not members and items is None:
+    items = shape_of(in_lists, definitions) if in_lists else None
+    is_amount = any(form.get("type") == NUMBER_OR_TEXT for form in forms)
+    if not (members or items or is_amount):
         return None
-    return _Shape(
+    return Shape(
         dropped=frozenset(
             name for name, each in members.items() if not any(_has_null(s) for s in each)
         ),
         members={name: shape for name, shape in shapes.items() if shape is not None},
         items=items,
+        is_amount=is_amount,
     )
 
 

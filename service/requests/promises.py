@@ -11,12 +11,12 @@ from service.fleet.plans import Route
 from service.fleet.promises import Types, promised, types_by_route
 from service.fleet.vehicles import VehicleType, Visit
 from service.requests.fields import (
-    Cost,
     Items,
     NonNegativeInteger,
     SomeItems,
     StrictModel,
     Text,
+    Time,
     empty_list,
     optional,
 )
@@ -35,14 +35,14 @@ class PromisedRouteItem(StrictModel):
     stops: SomeItems[StopReference] = Field(
         description="in order, by index or id; with or without its start and end"
     )
-    arrivals: Items[Cost] = empty_list("when it reaches each of these; needed for a tolerance")
+    arrivals: Items[Time] = empty_list("when it reaches each of these; needed for a tolerance")
 
 
 class PromisedItem(StrictModel):
     """A plan that is driven or was promised."""
 
     routes: SomeItems[PromisedRouteItem] = Field(description="its routes")
-    tolerance: Cost | None = optional(
+    tolerance: Time | None = optional(
         "how much later than in this plan a visit may begin, in the clock's unit, without being a"
         " change; null: only changes of vehicles count"
     )

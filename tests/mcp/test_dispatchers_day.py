@@ -18,6 +18,8 @@ from service.api.app import Edge
 from service.mcp import server
 from service.mcp.times import with_times
 from service.mcp.tools import Planner
+from service.requests.front import FrontRequest
+from service.requests.replan.offers import OffersRequest
 from tests.helpers.serving import app_of, serving
 from tests.mcp.test_tools import FLEET, LIMITS, agent, call, said
 
@@ -293,7 +295,7 @@ def test_times_of_the_day_are_read_wherever_a_request_has_them() -> None:
         ],
         "every": {"from": "0:01", "to": "0:03", "length": "1 min", "step": "1 min"},
     }
-    read: Any = with_times(day, "s")
+    read: Any = with_times(day, "s", FrontRequest, OffersRequest)
     assert read["departure"] == {"earliest": 28800, "latest": 87000}
     changing, traffic, sliced = read["objectives"]
     assert changing["over_the_day"] == [[0, 1], [60, 2]]

@@ -14,12 +14,12 @@ from starlette.testclient import TestClient
 from service.api.request_bodies import request_schemas
 from service.api.site.static import static_routes
 from service.cli import options
-from service.mcp.times import TIMED
 from service.mcp.tools import TOOLS, Tool
 from service.requests.coverage import CoverageRequest
 from service.requests.fields import LARGEST, LARGEST_INTEGER, SMALLEST, Offered
 from service.requests.fleet import FleetRequest
 from service.requests.front import FrontRequest
+from service.requests.null_members import NUMBER_OR_TEXT
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.fleet_fields import ReplanFleetRequest
 from service.requests.replan.offers import OffersRequest
@@ -96,7 +96,9 @@ def test_agents_read_them(tool: Tool) -> None:
     shown = tool.schema["properties"]
     assert {"time_limit"} < shown.keys() <= known.keys()
     for name, schema in shown.items():
-        own = ("type",) if name in TIMED else ()  # they may be texts such as "10:00"
+        own = (
+            ("type",) if schema.get("type") == NUMBER_OR_TEXT else ()
+        )  # they may be texts such as "10:00"
         assert facts(schema, own) == {k: v for k, v in known[name].items() if k not in own}
 
 

@@ -18,6 +18,7 @@ from service.requests.fields import (
     SearchFields,
     StrictModel,
     Text,
+    Time,
     empty_list,
     optional,
 )
@@ -41,7 +42,7 @@ class RouteOnTheWay(StrictModel):
         "where it goes on: a stop that is done or a depot, or a new place in the form of a stop; by"
         " default the last stop that is done, or its start"
     )
-    leaves: Cost | None = optional(
+    leaves: Time | None = optional(
         "when it leaves there, if that is after the present time: at the end of the visit that has"
         " begun"
     )
@@ -49,7 +50,7 @@ class RouteOnTheWay(StrictModel):
         "how far it has driven, where its vehicle has a max_distance; by default as far as in the"
         " plan, which does not say it of a new place"
     )
-    driving: Cost | None = optional(
+    driving: Time | None = optional(
         "how long it has driven, where its vehicle has a max_driving; by default as long as in the"
         " plan, which does not say it of a new place"
     )
@@ -96,7 +97,7 @@ class ChangedVehicle(StrictModel):
     more: NonNegativeInteger = Field(
         default=0, description="how many more of them can leave from now on, where the others did"
     )
-    max_overtime: Cost | None = optional(
+    max_overtime: Time | None = optional(
         "how long after the end of its shift a route may end, or after the present time if the"
         " shift is over"
     )
@@ -108,8 +109,8 @@ class FleetChanges(StrictModel):
     plan: NonNegativeInteger | None = optional(
         "the number of the plan that is driven, from 0; by default the front's knee"
     )
-    now: Cost | None = optional("the present time, needed if the fleet has a clock")
-    slack: Cost | None = optional(
+    now: Time | None = optional("the present time, needed if the fleet has a clock")
+    slack: Time | None = optional(
         "how long before a window closes a vehicle must reach the stop from now on; by default as"
         " long as before. With 0, vehicles that are delayed may use it up"
     )
@@ -125,7 +126,7 @@ class ChangesItem(StrictModel):
     """An objective that counts the stops which change vehicle, or are visited later."""
 
     name: Text = Field(default="changes", description="the name of the objective")
-    tolerance: Cost | None = optional(
+    tolerance: Time | None = optional(
         "how much later than in the plan that is driven a visit may begin, in the clock's unit,"
         " without being a change; null: only changes of vehicles count"
     )

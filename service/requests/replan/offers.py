@@ -13,9 +13,9 @@ from service.errors import Fault, Refusal, invalid
 from service.errors.parts import Part, part_of, renamed
 from service.fleet.vehicles import Span
 from service.requests.fields import (
-    Cost,
-    PositiveNumber,
+    PositiveTime,
     StrictModel,
+    Time,
     at_most,
     empty_list,
     one_of,
@@ -49,10 +49,10 @@ class OfferedOrder(NewFleetStop):
 class EverySlot(StrictModel):
     """Slots of equal length, one after another, in the unit of the clock."""
 
-    begin: Cost = Field(alias="from", description="when the first slot begins")
-    end: Cost = Field(alias="to", description="when the last slot ends, at the latest")
-    length: PositiveNumber = Field(description="how long each slot is")
-    step: PositiveNumber | None = optional(
+    begin: Time = Field(alias="from", description="when the first slot begins")
+    end: Time = Field(alias="to", description="when the last slot ends, at the latest")
+    length: PositiveTime = Field(description="how long each slot is")
+    step: PositiveTime | None = optional(
         "the time from the begin of a slot to that of the next; by default the length, so that"
         " slots do not overlap"
     )
@@ -87,7 +87,7 @@ class OffersRequest(FleetChanges):
         " 200"
     )
     every: EverySlot | None = optional("in place of slots: those of a day, or of several")
-    now: Cost | None = optional("the present time; by default 0, before any vehicle has left")
+    now: Time | None = optional("the present time; by default 0, before any vehicle has left")
     time_limit: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
         default=1.0, description="the most seconds to look for places; then the best so far count"
     )
