@@ -69,9 +69,8 @@ class Kind(Generic[S]):
     """A kind of plan: all that differs between kinds.
 
     Args:
-        name: The member `kind` of its answers.
+        name: The member `kind` of its answers, and the function of the client that plans it.
         path: The path of HTTP, without a slash, to which its requests are posted.
-        call: The function of the Python client that plans it.
         subject: The type of the subject of its tasks.
         read: Returns the task that a request asks for. Kinds with the same path have the same.
         rest: Returns the task of the rest of a front that is replanned, or refuses that.
@@ -91,7 +90,6 @@ class Kind(Generic[S]):
 
     name: KindName
     path: Literal["front", "coverage", "fleet"]
-    call: str
     subject: type[S]
     read: Callable[[TaskSource, Limits, Actors], Task]
     rest: Callable[[S, Task, ReplanSource, Limits, Actors], Task]

@@ -35,7 +35,7 @@ def _table(name: str, rows: Mapping[str, Any]) -> str:
 
 
 def _of_kind(kind: Kind[Any]) -> dict[str, Any]:
-    names = ("path", "call", "item", "mover", "visits", "stops")
+    names = ("path", "item", "mover", "visits", "stops")
     return {**{name: getattr(kind, name) for name in names}, "onGrid": kind.on_grid}
 
 

@@ -14,7 +14,7 @@ const moversOf = ({ mover, visits, stops }) => ({
 const KINDS = Object.fromEntries(
   Object.entries(LISTED).map(([name, kind]) => {
     const noun = { one: kind.item, many: `${kind.item}s` };
-    return [name, { path: kind.path, call: kind.call, noun, onGrid: kind.onGrid, ...(kind.mover && { movers: moversOf(kind) }) }];
+    return [name, { path: kind.path, call: name, noun, onGrid: kind.onGrid, ...(kind.mover && { movers: moversOf(kind) }) }];
   }),
 );
 

@@ -23,6 +23,7 @@ class Way:
 
     Args:
         part: The part of the request that is about it.
+        number: The number of its route in the plan.
         type: The type of the vehicle.
         position: Where it goes on; None for a new place.
         left: What is left of its route, with the stops where it loads again.
@@ -38,6 +39,7 @@ class Way:
     """
 
     part: str
+    number: int
     type: int
     position: int | None
     left: tuple[int, ...]
@@ -58,17 +60,20 @@ class DaySoFar:
 
     Args:
         ways: The vehicles on their way, in the order of the request.
-        numbers: The number of the route of each in the plan.
         waiting: The routes whose vehicles have not left, by their numbers in the plan.
         arrivals: When each stop is reached in the plan; nothing without a clock.
         ends: When each visit ends in the plan; nothing without a clock.
     """
 
     ways: tuple[Way, ...]
-    numbers: tuple[int, ...]
     waiting: Mapping[int, Route]
     arrivals: Mapping[int, float]
     ends: Mapping[int, float]
+
+    @property
+    def working(self) -> list[Way]:
+        """The vehicles on their way that are in service."""
+        return [way for way in self.ways if not way.broken_down]
 
     @property
     def done(self) -> frozenset[int]:
@@ -122,20 +127,18 @@ def day_of(
         Refusal: The request names a plan, a route or a stop that is not there, or one twice.
     """
     driven, arrivals, ends = _driven(request, stored, fleet, ids)
-    numbers: list[int] = []
-    ways = []
+    ways: dict[int, Way] = {}
     for index, item in enumerate(request.routes):
         part = f"routes/{index}"
         if item.route >= len(driven):
             raise invalid(f"{part}/route", "no-such-route", routes=len(driven), came=item.route)
-        if item.route in numbers:
+        if item.route in ways:
             raise invalid(f"{part}/route", "given-twice", came=item.route)
-        numbers.append(item.route)
         if item.leaves is not None and fleet.rules.clock is None:
             raise invalid(f"{part}/leaves", "fleet-has-no-clock")
-        ways.append(_way(item, part, fleet, driven[item.route], ids))
-    waiting = {at: each.route for at, each in enumerate(driven) if at not in numbers}
-    return DaySoFar(tuple(ways), tuple(numbers), waiting, arrivals, ends)
+        ways[item.route] = _way(item, part, fleet, driven[item.route], ids)
+    waiting = {at: each.route for at, each in enumerate(driven) if at not in ways}
+    return DaySoFar(tuple(ways.values()), waiting, arrivals, ends)
 
 
 def _driven(
@@ -187,6 +190,7 @@ def _way(
     reached = driven.reached(done, position, is_done=is_done)
     return Way(
         part=part,
+        number=item.route,
         type=route.vehicle,
         position=position,
         left=left,

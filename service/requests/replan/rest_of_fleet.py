@@ -174,17 +174,21 @@ class _Rest:
         named = ((each, each["stop"]) for each in self._changed("stops"))
         return [{**each, "stop": ids[x] if isinstance(x, int) else x} for each, x in named]
 
+    @cached_property
+    def _pickups(self) -> dict[int, int]:
+        """Where what is brought to a stop is picked up, by the stop."""
+        return {each.delivery: each.pickup for each in self._rules.shipments}
+
     def _carriers(self) -> dict[int, int]:
-        """Return, by stop, the vehicle on its way that carries what it brings there."""
-        pickups = {each.delivery: each.pickup for each in self._rules.shipments}
+        """Return, by stop, the type of the vehicle on its way that carries what it brings there."""
         carried = {}
-        for number, way in enumerate(self._day.ways):
+        for number, way in enumerate(self._day.working):
             reload = self._rules.vehicles[way.type].reload
             reloads = [place for place, stop in enumerate(way.left) if stop in reload]
             for place, stop in enumerate(way.left):
-                picked_up = pickups.get(stop) in way.done
+                picked_up = self._pickups.get(stop) in way.done
                 loaded = stop not in self._rules.shipped and place < min(reloads, default=inf)
-                if (picked_up or loaded) and not way.broken_down:
+                if picked_up or loaded:
                     carried[stop] = number
         return carried
 
@@ -269,10 +273,9 @@ class _Rest:
     def _known_visit(self, stop: int) -> Visit:
         """Return what a stop of the front asks for, also of shipments on board."""
         visit = self._rules.visits[stop]
-        pickups = {each.delivery: each.pickup for each in self._rules.shipments}
-        if pickups.get(stop) not in self._day.done:
+        if self._pickups.get(stop) not in self._day.done:
             return visit
-        pickup = self._rules.visits[pickups[stop]]
+        pickup = self._rules.visits[self._pickups[stop]]
         return replace(visit, demand=pickup.demand, prize=pickup.prize)
 
     def _servers(self, stop: int, visit: Visit) -> tuple[int, ...]:
@@ -281,17 +284,15 @@ class _Rest:
         What a vehicle carries stays with it. Vehicles on their way cannot load what they do not
         carry, unless they come to a stop for loading again, or are back.
         """
-        working = [i for i, way in enumerate(self._day.ways) if not way.broken_down]
         if stop in self._carried:
-            return (working.index(self._carried[stop]),)
+            return (self._carried[stop],)
         able = [
             index
             for index, old in enumerate(self._old)
-            if not visit.vehicles or old in visit.vehicles
+            if (not visit.vehicles or old in visit.vehicles) and self._may_ride(stop, index)
         ]
-        able = [i for i in able if self._may_ride(stop, i)]
         if self._must_be_loaded(stop, visit):
-            out = [i for i, number in enumerate(working) if not self._day.ways[number].is_back]
+            out = [i for i, way in enumerate(self._day.working) if not way.is_back]
             able = [i for i in able if i not in out or self._types[i].reload]
         nobody = len(self._old)
         return () if len(able) == nobody else tuple(able or [nobody])
@@ -301,7 +302,7 @@ class _Rest:
 
         What rode with it on a vehicle that is out of service does not matter.
         """
-        groups, working = self._rules.groups, [w for w in self._day.ways if not w.broken_down]
+        groups, working = self._rules.groups, self._day.working
         rivals = {other for one, other in groups.rivals if one == stop}
         mates = groups.mates.get(stop, frozenset())
         before = [{*way.done} & mates for way in working]
@@ -348,7 +349,7 @@ class _Rest:
 
     def _routes_left(self) -> Iterator[tuple[int, tuple[int, ...]]]:
         """Yield the types of vehicles that may still drive their routes, with what is left."""
-        working = [way for way in self._day.ways if not way.broken_down]
+        working = self._day.working
         for index, way in enumerate(working):
             yield index, way.left
         for number, route in self._day.waiting.items():

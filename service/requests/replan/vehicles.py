@@ -59,13 +59,14 @@ def vehicles_of_rest(
         Refusal: Vehicles cannot be on their way, or more of them are not known.
     """
     now = request.now or 0.0
-    gone = [
-        (replace(fleet.vehicles[way.type], route=number), _on_the_way(way, fleet, now, place_of))
-        for number, way in zip(day.numbers, day.ways, strict=True)
-        if not way.broken_down
+    left = [
+        (
+            replace(fleet.vehicles[way.type], route=way.number),
+            _on_the_way(way, fleet, now, place_of),
+            way.type,
+        )
+        for way in day.working
     ]
-    types = [way.type for way in day.ways if not way.broken_down]
-    left = [(*each, old) for each, old in zip(gone, types, strict=True)]
     used = [way.type for way in day.ways]
     known = list(_not_gone(request, fleet, used, now))
     able = [each for each in known if not _is_over(each[1])]
