@@ -193,16 +193,14 @@ async def _ask(planner: Planner, asked: AskAbout) -> str:
 
 
 async def _offer_slots(planner: Planner, asked: Changes) -> str:
-    front = await planner.stored(asked.front)
-    day = changes_of(front, asked.members)
+    day = changes_of(await planner.stored(asked.front), asked.members)
     with day.refused_in_its_words():
         offers = await planner.client.offers(asked.front, **cast(Any, day.members))
     return offers_text(offers, day.assumed)
 
 
 async def _replan(planner: Planner, asked: Changes) -> str:
-    front = await planner.stored(asked.front)
-    day = changes_of(front, asked.members)
+    day = changes_of(await planner.stored(asked.front), asked.members)
     with day.refused_in_its_words():
         return await planner.planned(
             replan_plan(asked.front, cast(Any, day.members)), 0, day.assumed

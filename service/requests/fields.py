@@ -56,7 +56,7 @@ class _Time:
         self, number: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         """Return the schema of the number, with a mark for `is_time`."""
-        schema = handler(number)
+        schema: Any = handler(number)
         schema["metadata"] = {**schema.get("metadata", {}), "is_time": True}
         return schema
 
@@ -119,7 +119,8 @@ class Branch:
     """The annotation of a union: the errors of a value are those of one of its types alone.
 
     Args:
-        of: Returns the number of that type, or whether it is the second of two.
+        of: Returns the number of that type, or whether it is the second of two. A value is JSON,
+            or what was made of it: a form may be written again.
     """
 
     of: Callable[[Any], int]
@@ -132,7 +133,7 @@ class Branch:
 
 IS_TEXT = Branch(lambda value: isinstance(value, str))
 IS_LIST = Branch(lambda value: isinstance(value, list))
-IS_OBJECT = Branch(lambda value: isinstance(value, dict))
+IS_OBJECT = Branch(lambda value: isinstance(value, dict | BaseModel))
 
 
 def _form_of_preferences(value: object) -> int:

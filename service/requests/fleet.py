@@ -138,7 +138,10 @@ class FleetRequest(SearchFields):
         self._check_day()
         profiles = [item.profile for item in self.vehicles]
         check_profiles(profiles, self._costs)
-        sampled = self._times and self._times[1].sampled(self._times[0], len(ids))
+        sampled = None
+        if self._times:
+            part, times = self._times
+            sampled = times.sampled(part, len(ids), times.spread)
         rules = Rules(
             visits=plan.visits(visits, self.slack) if plan else visits,
             vehicles=vehicles,

@@ -10,7 +10,6 @@ from service.errors import invalid
 from service.fleet.measures.table import Measure, joined_texts
 from service.fleet.rules import Over
 from service.fleet.vehicles import ALWAYS, Shipment, Span, VehicleType, Visit
-from service.reliability.spread import Spread
 from service.requests.day_fields import SampledObjectiveItem
 from service.requests.fields import (
     IS_LIST,
@@ -257,18 +256,6 @@ class VehicleItem(StrictModel):
 
 class TimesItem(SampledObjectiveItem, SpreadOfTimes, ProfileCostsItem):
     """A source of costs by profile, which may spread from day to day if they are times."""
-
-    def sampled(self, part: str, n: int) -> Spread | None:
-        """Return the costs of several days; None if there are none.
-
-        Raises:
-            Refusal: They are given beside a spread, or are too few, or not of n stops.
-        """
-        if not self.days:
-            return None
-        if self.spread is not None:
-            raise invalid(f"{part}/spread", "not-beside", member="days")
-        return Spread(days=self.costs_of_days(part, n))
 
 
 class ClockItem(TimesItem):

@@ -81,8 +81,14 @@ def _without(value: Any, shape: Shape) -> Any:
 
 @cache
 def _shape_of(model: type[BaseModel]) -> Shape | None:
-    schema = model.model_json_schema()
+    schema = schema_of(model)
     return shape_of([schema], schema.get("$defs", {}))
+
+
+@cache
+def schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON schema of a model."""
+    return model.model_json_schema()
 
 
 def shape_of(schemas: Iterable[_Schema], definitions: _Schema) -> Shape | None:

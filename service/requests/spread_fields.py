@@ -1,6 +1,7 @@
 """The fields of requests about costs that spread: how far, and what tours are measured by."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -57,6 +58,18 @@ class DaysFields(StrictModel):
             [costs_between(each.matrix, f"{part}/days/{d}/matrix", n) for d, each in days]
         )
 
+    def sampled(self, part: str, n: int, spread: object) -> Spread | None:
+        """Return the costs of several days; None if there are none.
+
+        Raises:
+            Refusal: There is another spread beside them, or as of `costs_of_days`.
+        """
+        if not self.days:
+            return None
+        if spread is not None:
+            raise invalid(f"{part}/spread", "not-beside", member="days")
+        return Spread(days=self.costs_of_days(part, n))
+
 
 class SpreadOfTimes(DaysFields):
     """How the times of a fleet's legs spread from day to day."""
@@ -85,18 +98,14 @@ class SpreadFields(DaysFields):
         Raises:
             Refusal: A percentile has no spread, or a matrix is not of these stops.
         """
-        if self.spread is None and not self.days:
-            if self.percentile is not None:
-                raise invalid(f"{part}/percentile", "no-spread")
-            return None
-        if self.days:
-            if self.spread is not None:
-                raise invalid(f"{part}/spread", "not-beside", member="days")
-            return Spread(days=self.costs_of_days(part, n), percent=self.percentile)
+        found = self.sampled(part, n, self.spread)
         if isinstance(self.spread, list):
-            deviations = costs_between(self.spread, f"{part}/spread", n)
-            return Spread(deviations=deviations, percent=self.percentile)
-        return Spread(factor=self.spread, percent=self.percentile)
+            found = Spread(deviations=costs_between(self.spread, f"{part}/spread", n))
+        elif self.spread is not None:
+            found = Spread(factor=self.spread)
+        if found is None and self.percentile is not None:
+            raise invalid(f"{part}/percentile", "no-spread")
+        return found and replace(found, percent=self.percentile)
 
 
 def read_spreads(

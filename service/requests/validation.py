@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from difflib import SequenceMatcher, get_close_matches
-from functools import cache
 from heapq import nlargest
 from threading import Lock
 from typing import Any, TypeVar
@@ -14,7 +13,7 @@ from pydantic_core import ErrorDetails, from_json
 from service.errors import MOST_FAULTS, Fault, Refusal
 from service.errors.exceptions import summary
 from service.errors.faults import SENTENCES, shorten, show
-from service.requests.null_members import drop_null_members
+from service.requests.null_members import drop_null_members, schema_of
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}
@@ -40,7 +39,7 @@ def parse_json(model: type[Model], body: bytes) -> Model:
         if errors[0]["type"] == "json_invalid":
             reason = errors[0]["ctx"]["error"]
             raise Refusal("malformed-json", reason=reason) from None
-        raise refusal_of(errors, schema=_schema_of(model)) from None
+        raise refusal_of(errors, schema=schema_of(model)) from None
 
 
 def check_depth(body: bytes) -> None:
@@ -101,11 +100,6 @@ def nearest(word: str, words: Iterable[str]) -> str | None:
     alike = nlargest(_MOST_COMPARED, folded, key=share)
     near = get_close_matches(word, alike, n=1)
     return folded[near[0]] if near else None
-
-
-@cache
-def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    return model.model_json_schema()
 
 
 def _fault(error: ErrorDetails, parameters: bool, schema: Mapping[str, Any]) -> Fault:

@@ -12,7 +12,7 @@ from service.errors import Refusal
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.kinds.parsing import parse_task
 from service.requests.fleet import parse_fleet_request
-from service.requests.json_schemas import form_schemas
+from service.requests.json_schemas import form_schemas, limited_schemas
 from service.requests.limits import Limits
 from service.requests.task import TaskSource
 from tests.helpers.fleet_requests import LIMITS, fleet_of, fleet_request
@@ -326,7 +326,7 @@ def test_times_are_refused_without_a_clock() -> None:
 
 
 def test_schemas_have_names_and_limits() -> None:
-    schemas = form_schemas(LIMITS, [])
+    schemas = limited_schemas(FleetRequest, LIMITS, [])
     assert set(schemas) == {
         "FleetStopItem",
         "ShipmentItem",
@@ -344,7 +344,7 @@ def test_schemas_have_names_and_limits() -> None:
         "ClockItem",
         "FleetRequest",
     }
-    fields = schemas["FleetRequest"]["properties"]
+    fields = form_schemas(LIMITS, [])["FleetRequest"]["properties"]
     assert fields["stops"]["maxItems"] == LIMITS.fleet_stops
     assert fields["time_limit"]["maximum"] == fields["time_limit"]["default"] == 0.2
     assert schemas["FleetRequest"]["required"] == ["stops", "vehicles", "objectives"]

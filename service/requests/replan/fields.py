@@ -88,10 +88,13 @@ class CostEntry(StrictModel):
     )
 
 
-Position = Annotated[
-    StopReference | NewStop | Cell,
-    Branch(lambda value: {dict: 1, list: 2}.get(type(value), 0)),
-]
+def _type_of_position(value: object) -> int:
+    if isinstance(value, int | float | str):
+        return 0
+    return 2 if isinstance(value, list) else 1
+
+
+Position = Annotated[StopReference | NewStop | Cell, Branch(_type_of_position)]
 _Added = Annotated[NewStop | Cell, IS_LIST]
 _Cells = Items[Cell]
 

@@ -26,7 +26,9 @@ from service.requests.fleet_fields import FleetStopItem, Windows, spans_of
 from service.requests.replan.fields import CostEntry, NewCosts, NewStop
 from service.requests.stop_fields import StopReference, find_index
 
-_Place = Annotated[StopReference | NewStop, Branch(lambda value: isinstance(value, dict | list))]
+_Place = Annotated[
+    StopReference | NewStop, Branch(lambda value: not isinstance(value, int | float | str))
+]
 
 
 class NewFleetStop(FleetStopItem, NewCosts):
