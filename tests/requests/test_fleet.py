@@ -11,7 +11,7 @@ import pytest
 from service.errors import Refusal
 from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.kinds.parsing import parse_task
-from service.requests.fleet import parse_fleet_request
+from service.requests.fleet import FleetRequest, parse_fleet_request
 from service.requests.json_schemas import form_schemas, limited_schemas
 from service.requests.limits import Limits
 from service.requests.task import TaskSource
