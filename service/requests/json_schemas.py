@@ -46,7 +46,7 @@ def form_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
 
     Those of fronts and maps are there without and with a file.
     """
-    names = sorted(actors)
+    names = list(actors)
     found: dict[str, Schema] = {}
     for model, most_items in _most_items(limits).items():
         schemas = limited_schemas(model, limits, names)
