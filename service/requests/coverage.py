@@ -29,7 +29,7 @@ from service.requests.fields import (
     unless_given,
 )
 from service.requests.limits import Limits, tours_within_limits
-from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_array, stacked
+from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_rows, stacked
 from service.requests.stop_fields import check_unique
 from service.requests.task import SharedCoverage
 from service.requests.validation import parse_json, too_many_cities
@@ -103,15 +103,11 @@ class CoverageRequest(MapRequest):
         RobotPose,
         Offered(option="Where the robot must end, in the same form; with --open."),
     ] = empty_list("instead of end, where routes are open: the pose at which they end")
-    second_matrix: Matrix = Field(
-        default_factory=empty_array,
-        description="the second objective: its costs from each place (row) to each (column),"
-        f" {NO_WAY}",
+    second_matrix: Matrix = empty_rows(
+        f"the second objective: its costs from each place (row) to each (column), {NO_WAY}"
     )
-    cost_layer: Layer = Field(
-        default_factory=empty_array,
-        description="or: the cost of a metre on each cell of the grid; costs are added up along the"
-        " paths",
+    cost_layer: Layer = empty_rows(
+        "or: the cost of a metre on each cell of the grid; costs are added up along the paths"
     )
     cost_layers: CostLayers = empty_list(
         "or: one to three such layers, each an objective with a name"

@@ -22,10 +22,9 @@ from service.roads.great_circle import great_circle_matrix
 Array = NDArray[np.float64]
 Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
 Measure = Literal["great_circle", "road_time", "road_distance"]
-RoadMeasure = Literal["road_time", "road_distance"]
 UNITS: Mapping[Measure, str] = {"great_circle": "m", "road_time": "s", "road_distance": "m"}
 KMH = 3.6  # km/h that are one metre per second
-ROAD_MEASURES: tuple[RoadMeasure, ...] = ("road_time", "road_distance")
+ROAD_MEASURES: tuple[Measure, ...] = ("road_time", "road_distance")
 
 
 @dataclass(frozen=True)
@@ -272,13 +271,6 @@ class Stops:
         The scale goes with the stops, once it is known.
         """
         return {k: value for k, value in vars(self).items() if k not in ("instance", "day")}
-
-    @property
-    def road_measures(self) -> frozenset[RoadMeasure]:
-        """The measures that a routing engine has to be asked for."""
-        bases = [base_of(source) for source in self.sources]
-        measures = {source.measure for source in bases if isinstance(source, Measured)}
-        return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
 
     @property
     def road_profiles(self) -> list[str | None]:

@@ -207,7 +207,7 @@ class Task:
     @property
     def needs_roads(self) -> bool:
         """Whether it lacks costs by road."""
-        return self.stops is not None and bool(self.stops.road_measures or self.stops.traffic)
+        return self.stops is not None and bool(self.stops.road_profiles or self.stops.traffic)
 
     @property
     def city_names(self) -> CityNames:

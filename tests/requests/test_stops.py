@@ -71,7 +71,7 @@ def test_great_circles_are_measured_once_the_job_runs() -> None:
     request = parsed()
     subject = request.subject
     assert (subject.n, subject.kind, request.kind) == (4, "matrices", "matrices")
-    assert not subject.road_measures
+    assert not subject.road_profiles
     expected = [great_circle_matrix(np.array(LOCATIONS)), COSTS]
     np.testing.assert_allclose(subject.instance.matrices, expected)
 
@@ -81,9 +81,9 @@ def test_road_matrices_complete_an_instance() -> None:
     request = parse_front_request(body(objectives=objectives), ROADS)
     subject = request.subject
     assert subject.sources == (Measured("road_time"), Measured("great_circle"))
-    assert subject.road_measures == {"road_time"}
+    assert subject.road_profiles == [None]
     measured = subject.measured_by_road({Measured("road_time"): np.array(COSTS, np.float64)})
-    assert not measured.road_measures
+    assert not measured.road_profiles
     instance = measured.instance
     np.testing.assert_allclose(instance.matrices, [COSTS, great_circle_matrix(np.array(LOCATIONS))])
 

@@ -52,9 +52,9 @@ USELESS = {
 }
 
 
-def empty_array() -> Array:
-    """Return the default of an array that was not given: no caller can give an empty one."""
-    return np.empty((0, 0))
+def empty_rows(description: str) -> Any:
+    """Return a field that is an empty array where it was not given: no caller can give one."""
+    return Field(default_factory=lambda: np.empty((0, 0)), description=description)
 
 
 class LayerItem(StrictModel):
@@ -104,10 +104,7 @@ def _no_occupancy_grid() -> OccupancyGrid:
 class MapRequest(PlanRequest):
     """A map, in one of three forms."""
 
-    grid: Layer = Field(
-        default_factory=empty_array,
-        description="the map, row by row from the top: 0 where it is free, 1 an obstacle",
-    )
+    grid: Layer = empty_rows("the map, row by row from the top: 0 where it is free, 1 an obstacle")
     occupancy_grid: OccupancyGrid = Field(
         default_factory=_no_occupancy_grid,
         description="or: a message nav_msgs/OccupancyGrid, which brings cell_size and origin",

@@ -29,7 +29,7 @@ from service.requests.fields import (
     empty_list,
     optional,
 )
-from service.requests.maps.fields import CostLayers, Layer, empty_array
+from service.requests.maps.fields import CostLayers, Layer, empty_rows
 from service.requests.stop_fields import Latitude, Longitude, StopReference
 
 _Row = SomeItems[Cost | None]
@@ -144,9 +144,8 @@ class ReplanRequest(PlanFields):
         "instead of position, on a map with an origin: x and y, and maybe yaw, of the robot in the"
         " frame of the map"
     )
-    grid: Layer = Field(
-        default_factory=empty_array,
-        description="on a map: the whole map as it is now, in its old size; 0 free, 1 an obstacle",
+    grid: Layer = empty_rows(
+        "on a map: the whole map as it is now, in its old size; 0 free, 1 an obstacle"
     )
     blocked: _Cells = empty_list(
         "on a map: row and column of each cell that has become an obstacle"
@@ -154,10 +153,7 @@ class ReplanRequest(PlanFields):
     freed: _Cells = empty_list(
         "on a map: row and column of each cell that is no longer an obstacle"
     )
-    cost_layer: Layer = Field(
-        default_factory=empty_array,
-        description="on a map: a new second objective, as in `POST /coverage`",
-    )
+    cost_layer: Layer = empty_rows("on a map: a new second objective, as in `POST /coverage`")
     cost_layers: CostLayers = empty_list(
         "on a map whose cost layers have names: all of these layers again"
     )
