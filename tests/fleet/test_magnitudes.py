@@ -21,7 +21,7 @@ from tests.fleet.test_outliers import AnyOrder
 from tests.helpers.fleets import share_of_front
 from tests.helpers.sampled import few, third
 
-BRIEF = FleetOptions(time_limit=inf, iterations=800)
+BRIEF = FleetOptions(time_limit=inf, iterations=400)
 MODERATE = 1e5
 HUGE = [1e8, 1e12]
 OVERS: list[tuple[Over, Over]] = [("sum", "sum"), ("sum", "max")]
@@ -107,10 +107,10 @@ def clusters(seed: int, bridge: float, over: tuple[Over, Over]) -> Fleet:
     return Fleet(rules=rules, costs=costs)
 
 
-@pytest.mark.parametrize(("seed", "bridge"), [(0, 1e4), (1, 1e6), (0, 1e9)])
+@pytest.mark.parametrize(("seed", "bridge"), few(2, [(0, 1e9), (1, 1e6), (0, 1e4)]))
 def test_clusters_far_apart_are_planned_at_true_lengths(seed: int, bridge: float) -> None:
     fleet = clusters(seed, bridge, ("sum", "sum"))
-    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=2_500))
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=1_500))
     exact = points_of(fleet, exact_plans(fleet) or ())
     assert front.points.tolist() == points_of(fleet, front.plans).tolist()
     np.testing.assert_allclose(front.points.min(axis=0), exact.min(axis=0), rtol=1e-12)

@@ -64,7 +64,7 @@ def test_the_search_finds_the_least_of_both_lengths_in_costs_of_any_size(seed: i
     plans = exact_plans(fleet)
     assert plans
     exact = points_of(fleet, plans)
-    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=10_000))
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=5_000))
     assert not any(violations(fleet, plan) for plan in front.plans)
     np.testing.assert_allclose(front.points.min(axis=0), exact.min(axis=0), rtol=1e-12)
 
@@ -78,7 +78,7 @@ def front_with_one_leg(cost: float) -> FleetFront:
         visits=(Visit(), *(Visit(demand=(1,)) for _ in range(20))),
         vehicles=(VehicleType(start=0, end=0, count=3, capacity=(8,)),),
     )
-    options = FleetOptions(time_limit=inf, iterations=1_000)
+    options = FleetOptions(time_limit=inf, iterations=500)
     return plan_fleet(Fleet(rules=rules, costs=costs), options)
 
 
@@ -151,7 +151,7 @@ def test_what_was_answered_is_accepted_as_windows(seed: int) -> None:
     )
     fleet = Fleet(rules=rules, costs=costs)
     options = FleetOptions(time_limit=4, iterations=ITERATIONS)
-    plan = plan_fleet(fleet, options).plans[0]
+    plan = plan_fleet(fleet, dataclasses.replace(options, iterations=30)).plans[0]
     windows = {}
     for route in plan.routes:
         times = schedule(fleet, route)
