@@ -185,9 +185,14 @@ def tables() -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", tables())
-def test_whatever_is_chosen_becomes_a_request_or_a_refusal(name: str) -> None:
-    """Every column of an example as everything, and some columns together at random."""
+def test_whatever_is_chosen_becomes_a_request_or_a_refusal(subtests: pytest.Subtests) -> None:
+    for name in tables():
+        with subtests.test(name):
+            check_all_choices(name)
+
+
+def check_all_choices(name: str) -> None:
+    """Take every column of an example for everything, and some columns together at random."""
     file = NamedFile(name, (FOLDER / name).read_bytes())
     usual = read_files([file], Bounds(), wanted=None)
     columns = [each.name for each in usual.columns]
