@@ -398,7 +398,7 @@ def test_a_search_ends_where_vans_in_limited_time_load_again_what_is_released() 
         "from service.fleet.planner import plan_fleet\n"
         "from tests.fleet.test_planner import crowded\n"
         "for seed in range(3):\n"
-        "    try: plan_fleet(crowded(seed), FleetOptions(time_limit=1.5, seed=seed))\n"
+        "    try: plan_fleet(crowded(seed), FleetOptions(time_limit=0.5, seed=seed))\n"
         "    except Refusal: pass\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=90)
