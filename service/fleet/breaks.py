@@ -1,31 +1,56 @@
-"""Place the breaks of a vehicle on its route, so that it is done as early as possible."""
+"""Take the breaks of a vehicle on its route so that it is done as early as possible."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import accumulate
 from math import inf
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
+from service.fleet.day_legs import STILL, Leg
 from service.fleet.rounding import excess, is_over
-from service.fleet.vehicles import ALWAYS, Break, Span, VehicleType
+from service.fleet.times import Chain, Schedule, Stay
+from service.fleet.vehicles import ALWAYS, Break
 
 _ALWAYS = (ALWAYS,)
-Leg = TypeVar("Leg")
 
 
-class Stay(NamedTuple):
-    """What a route asks of its vehicle at a stop."""
-
-    windows: tuple[Span, ...]
-    service: float
-    due: float
-    hold: float = inf  # which no later departure may make the visit miss, due or earlier
-
-
-class Placed(NamedTuple):
+class _Placed(NamedTuple):
     """A break on the way: at a place of the route, before or after the visit there."""
 
     number: int
     place: int
     after: bool
+
+
+class _Way(NamedTuple):
+    """A way to take breaks: some before the earliest departure, and others on the route."""
+
+    begin: float
+    last: float  # the latest end
+    placed: tuple[_Placed, ...]
+
+
+def with_breaks(
+    chain: Chain, breaks: Sequence[Break], timed: Callable[[Chain], Schedule]
+) -> Schedule:
+    """Return the times of a route with breaks; late by inf without a place for one.
+
+    A vehicle takes its breaks in order, between two visits, and none while it drives. A break that
+    can be taken before the departure, or after the end, is not on the way.
+
+    Args:
+        chain: The route without its k breaks.
+        breaks: The breaks, by ascending time.
+        timed: Returns the times of a route whose breaks are stays.
+    """
+    ways = _ways_over_the_day(chain, breaks) if chain.over_the_day else _ways(chain, breaks)
+    found = [_times_of(way, chain, breaks, timed) for way in ways]
+    if not found:
+        plain = timed(chain)
+        return replace(plain, late=plain.late or inf)
+    if chain.early:
+        return min(found, key=lambda times: (times.end, times.lateness))
+    return min(found, key=lambda t: (t.lateness, excess(t.end, chain.shift_end), t.duration))
 
 
 class _State(NamedTuple):
@@ -39,6 +64,8 @@ class _State(NamedTuple):
             due.
         departure: The earliest departure.
         placed: The breaks taken on the way.
+
+    Over the day a state has left at a known time: then no other one leaves later.
     """
 
     time: float
@@ -46,7 +73,7 @@ class _State(NamedTuple):
     work: float
     latest: float
     departure: float
-    placed: tuple[Placed, ...]
+    placed: tuple[_Placed, ...]
 
     def dominates(self, other: "_State") -> bool:
         """Return whether no way to go on from here ends better after the other state."""
@@ -59,72 +86,83 @@ class _State(NamedTuple):
         )
 
 
-def place_breaks(
-    stays: Sequence[Stay],
-    driven: Sequence[float],
-    span: Span,
-    vehicle: VehicleType,
-    early: bool,
-) -> tuple[float, tuple[Placed, ...]] | None:
-    """Return a departure and where breaks are taken so that a route ends as early as possible.
+def _ways(chain: Chain, breaks: Sequence[Break]) -> Iterator[_Way]:
+    """Yield a way to take breaks with which a route ends as early as possible, if they fit.
 
     Among the ways to end then, it is one of the least lateness; among these, one that allows to
-    leave the latest, or if `early` the earliest. None if the breaks fit nowhere.
-
-    A vehicle takes its breaks in order, between two visits, and none while it drives. A break that
-    can be taken before the departure, or after the end, is not on the way. This is dynamic
-    programming over the places of the route and the breaks taken, where states are kept that no
-    other one dominates.
-
-    Args:
-        stays: What is asked for at each of the m places.
-        driven: The times of the m - 1 legs between them.
-        span: The earliest departure, and the latest end.
-        vehicle: The vehicle, with k breaks by ascending time.
-        early: Whether it leaves as early as it may.
+    leave the latest, or if the vehicle leaves early, the earliest.
     """
-    begin, last = span
-    leaves_by, breaks = vehicle.leaves_by, vehicle.breaks
-    states: list[list[_State]] = [_departing(begin, leaves_by, early)]
-    for opens, _, length in breaks:
-        begin = max(begin, opens + length)
-        states.append(_departing(begin, leaves_by, early))
-    for place, (stay, leg) in enumerate(zip(stays, [*driven, 0.0], strict=True)):
-        _rest(states, breaks, place, after=False)
-        states = [each and _served(each, stay) for each in states]
-        _rest(states, breaks, place, after=True)
-        if leg:
-            states = [[_driven(state, leg) for state in each] for each in states]
-    closes = [*(each[1] for each in breaks), last]  # of the next break, which is after the end
-    ended = [
-        state
-        for next_closes, each in zip(closes, states, strict=True)
-        for state in each
-        if not is_over(state.time, min(last, next_closes))
-    ]
-    if not ended:
-        return None
+    states = [_departing(chain, begin) for begin in _begins(chain, breaks)]
+    if not (ended := _ended(chain, breaks, states)):
+        return
     end = min(state.time for state in ended)
     first = [state for state in ended if not is_over(state.time, end)]
     lateness = min(state.lateness for state in first)
     least = [state for state in first if not is_over(state.lateness, lateness, end)]
     best = max(least, key=lambda state: min(state.latest, end - state.work))
-    return best.departure, best.placed
+    yield _Way(best.departure, chain.last, best.placed)
 
 
-def _departing(begin: float, leaves_by: float, early: bool) -> list[_State]:
+def _ways_over_the_day(chain: Chain, breaks: Sequence[Break]) -> Iterator[_Way]:
+    """Yield ways to take breaks, some before the departure and others on the way.
+
+    These are taken where the route ends as early as possible if it leaves as early as it may, and
+    of these where visits are the least late.
+    """
+    for taken, begin in enumerate(_begins(chain, breaks)):
+        if is_over(begin, chain.leaves_by):
+            return
+        states: list[list[_State]] = [[] for _ in range(len(breaks) + 1)]
+        states[taken].append(_State(begin, 0.0, 0.0, -inf, begin, ()))
+        if ended := _ended(chain, breaks, states):
+            placed = min(ended, key=lambda state: (state.time, state.lateness)).placed
+            after = taken + len(placed)
+            last = min(chain.last, breaks[after][1]) if after < len(breaks) else chain.last
+            yield _Way(begin, last, placed)
+
+
+def _begins(chain: Chain, breaks: Sequence[Break]) -> Iterator[float]:
+    """Yield the earliest departure after no break, after the first one, and so on."""
+    ends = (opens + length for opens, _, length in breaks)
+    return accumulate(ends, max, initial=chain.begin)
+
+
+def _departing(chain: Chain, begin: float) -> list[_State]:
     """Return the state of a vehicle that may leave from a time on, if it may leave then.
 
     Of vehicles that leave early, those that leave the earliest count as the latest.
     """
-    if is_over(begin, leaves_by):
+    if is_over(begin, chain.leaves_by):
         return []
-    return [_State(begin, 0.0, 0.0, -begin if early else leaves_by, begin, ())]
+    return [_State(begin, 0.0, 0.0, -begin if chain.early else chain.leaves_by, begin, ())]
 
 
-def _driven(state: _State, leg: float) -> _State:
+def _ended(chain: Chain, breaks: Sequence[Break], states: list[list[_State]]) -> Sequence[_State]:
+    """Return the states at the end of a route, in time, given those at its departure.
+
+    States are lists by the number of breaks taken. This is dynamic programming over the places of
+    the route and the breaks taken, where states are kept that no other one dominates.
+    """
+    for place, (stay, leg) in enumerate(zip(chain.stays, [*chain.legs, 0.0], strict=True)):
+        _rest(states, breaks, place, after=False)
+        states = [each and _served(each, stay) for each in states]
+        _rest(states, breaks, place, after=True)
+        if leg:
+            states = [[_driven(state, leg) for state in each] for each in states]
+    closes = [*(each[1] for each in breaks), chain.last]  # of the next break, after the end
+    return [
+        state
+        for next_closes, each in zip(closes, states, strict=True)
+        for state in each
+        if not is_over(state.time, min(chain.last, next_closes))
+    ]
+
+
+def _driven(state: _State, leg: float | Leg) -> _State:
     time, lateness, work, latest, departure, placed = state
-    return _State(time + leg, lateness, work + leg, latest, departure, placed)
+    if isinstance(leg, float):
+        return _State(time + leg, lateness, work + leg, latest, departure, placed)
+    return _State(leg.arrival(time), lateness, work, latest, departure, placed)
 
 
 def _rest(states: list[list[_State]], breaks: Sequence[Break], place: int, *, after: bool) -> None:
@@ -135,7 +173,7 @@ def _rest(states: list[list[_State]], breaks: Sequence[Break], place: int, *, af
                 continue
             ends, until = max(time, opens) + length, closes - work
             latest = until if until < latest else latest
-            taken = (*placed, Placed(number, place, after))
+            taken = (*placed, _Placed(number, place, after))
             rested = _State(ends, lateness, work + length, latest, departure, taken)
             _add(rested, states[number + 1])
 
@@ -171,30 +209,31 @@ def _add(state: _State, states: list[_State]) -> None:
     states.append(state)
 
 
-def with_breaks(
-    stays: Sequence[Stay],
-    driven: Sequence[Leg],
-    breaks: Sequence[Break],
-    placed: Sequence[Placed],
-    still: Leg,
-) -> tuple[list[Stay], list[Leg], list[int], list[int]]:
-    """Return the stays and legs of a route with breaks as stays.
-
-    The leg to or from a break is `still`, which takes no time. With them come, for each stay of the
-    route, the place where the vehicle arrives for it, maybe at a break before it, and its own
-    place.
-    """
-    found, legs = list[Stay](), list[Leg]()
-    arrivals, places = list[int](), list[int]()
-    for place, stay in enumerate(stays):
-        here = [each for each in placed if each.place == place]
-        group = [_resting(breaks[each.number]) for each in here if not each.after]
-        arrivals.append(len(found))
-        places.append(len(found) + len(group))
-        group += [stay, *(_resting(breaks[each.number]) for each in here if each.after)]
-        found += group
-        legs += [still] * (len(group) - 1) + list(driven[place : place + 1])
-    return found, legs, arrivals, places
+def _times_of(
+    way: _Way, chain: Chain, breaks: Sequence[Break], timed: Callable[[Chain], Schedule]
+) -> Schedule:
+    """Return the times of a route that takes its breaks in a way: at each stop, and of breaks."""
+    stays, legs = list[Stay](), list[float | Leg]()
+    arrivals, places = list[int](), list[int]()  # maybe at a break before the stop, and its own
+    still = STILL if chain.over_the_day else 0.0
+    for place, stay in enumerate(chain.stays):
+        here = [each for each in way.placed if each.place == place]
+        before = [_resting(breaks[each.number]) for each in here if not each.after]
+        arrivals.append(len(stays))
+        places.append(len(stays) + len(before))
+        group = [*before, stay, *(_resting(breaks[each.number]) for each in here if each.after)]
+        stays += group
+        legs += [still] * (len(group) - 1) + list(chain.legs[place : place + 1])
+    times = timed(chain._replace(stays=stays, legs=legs, begin=way.begin, last=way.last))
+    leaving = [*(place - 1 for place in arrivals[1:]), len(stays) - 1]
+    return replace(
+        times,
+        arrivals=tuple(times.arrivals[place] for place in arrivals),
+        windows=tuple(times.windows[place] for place in places),
+        begins=tuple(times.begins[place] for place in places),
+        leaves=tuple(times.leaves[place] for place in leaving),
+        breaks=tuple(times.begins[i] for i in range(len(stays)) if i not in places),
+    )
 
 
 def _resting(each: Break) -> Stay:

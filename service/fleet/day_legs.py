@@ -26,7 +26,6 @@ class DayLeg:
         differs = np.flatnonzero(np.diff(seconds))
         self.begins = begins[differs]
         self._seconds = seconds[[0, *(differs + 1)]]
-        self._is_still = not self._seconds.any()
 
     @cached_property
     def _shares(self) -> Array:
@@ -44,8 +43,6 @@ class DayLeg:
 
     def arrivals(self, times: Array) -> Array:
         """Return when who leaves at these times arrives."""
-        if self._is_still:
-            return times
         if not len(self.begins):
             return times + self._seconds[0]
         if not self._seconds.all():
@@ -54,8 +51,6 @@ class DayLeg:
 
     def departures(self, arrivals: Array) -> Array:
         """Return when who arrives at these times has left."""
-        if self._is_still:
-            return arrivals
         if not len(self.begins):
             return arrivals - self._seconds[0]
         if not self._seconds.all():

@@ -2,20 +2,20 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
-from service.fleet.breaks import Stay, place_breaks, with_breaks
+from service.fleet.breaks import with_breaks
 from service.fleet.day_legs import Leg, leg_of
-from service.fleet.day_schedule import times_over_the_day
+from service.fleet.day_schedule import best_departure
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route, path_of
-from service.fleet.rounding import excess, is_over
+from service.fleet.rounding import is_over
 from service.fleet.rules import Rules
-from service.fleet.times import Schedule
-from service.fleet.vehicles import ALWAYS, Span, VehicleType
+from service.fleet.times import Chain, Schedule, Stay, drive
+from service.fleet.vehicles import ALWAYS, Span
 
 REMEMBERED = 4096  # latest routes whose times and lengths are known: plans share many routes
 _FREE = Stay((ALWAYS,), 0.0, inf)
@@ -29,138 +29,67 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
     Of the ways to be done then, it takes one of the least lateness. It leaves as late as neither
     delays its end nor makes a visit later than due, or than promised if changes count, and no later
     than it must; or as early as it may, if the rules say so. Over the day it leaves when the route
-    takes the least time instead: see `times_over_the_day`.
+    takes the least time instead: see `best_departure`.
 
     Raises:
         ValueError: The fleet has no clock.
     """
     if fleet.rules.clock is None:
         raise ValueError("a fleet without a clock has no times")
-    vehicle = fleet.rules.vehicles[route.vehicle]
-    trips = trips_of(fleet.rules, route)
-    released = max(vehicle.way[0], _released(fleet.rules, trips[0]))
-    stays = _stays(fleet.rules, route, trips)
-    early = fleet.rules.leave == "early"
-    if fleet.day is not None:
-        return times_over_the_day(_legs_of_day(fleet, route), stays, released, vehicle, early)
-    driven = legs(fleet, route, fleet.rules.clock)
-    if vehicle.breaks:
-        return _with_breaks(stays, driven, released, vehicle, early)
-    return _timed(stays, driven, released, vehicle, early)
+    breaks = fleet.rules.vehicles[route.vehicle].breaks
+    chain = _chain_of(fleet, route)
+    return with_breaks(chain, breaks, _timed) if breaks else _timed(chain)
 
 
-def _with_breaks(
-    stays: Sequence[Stay],
-    driven: Sequence[float],
-    released: float,
-    vehicle: VehicleType,
-    early: bool,
-) -> Schedule:
-    """Return the times of a route with the breaks of its vehicle; late by inf if one fits nowhere.
-
-    The vehicle leaves after breaks that it can take at its start.
-    """
-    span = (released, vehicle.way[1])
-    found = place_breaks(stays, driven, span, vehicle, early)
-    if found is None:
-        plain = _timed(stays, driven, released, vehicle, early)
-        return replace(plain, late=plain.late or inf)
-    departure, placed = found
-    extended, legs_between, begins, places = with_breaks(stays, driven, vehicle.breaks, placed, 0.0)
-    times = _timed(extended, legs_between, departure, vehicle, early)
-    rests = [place for place in range(len(extended)) if place not in places]
-    opens_of = [extended[place].windows[0][0] for place in rests]
-    taken = zip([times.arrivals[place] for place in rests], opens_of, strict=True)
-    return replace(
-        times,
-        arrivals=tuple(times.arrivals[place] for place in begins),
-        windows=tuple(times.windows[place] for place in places),
-        begins=tuple(times.begins[place] for place in places),
-        breaks=tuple(max(arrival, opens) for arrival, opens in taken),
+def _chain_of(fleet: Fleet, route: Route) -> Chain:
+    """Return a route as a chain, without breaks."""
+    rules, vehicle = fleet.rules, fleet.rules.vehicles[route.vehicle]
+    assert rules.clock is not None
+    trips, over_the_day = trips_of(rules, route), fleet.day is not None
+    return Chain(
+        stays=_stays(rules, route, trips),
+        legs=_legs_of_day(fleet, route) if over_the_day else legs(fleet, route, rules.clock),
+        begin=max(vehicle.way[0], _released(rules, trips[0])),
+        leaves_by=vehicle.leaves_by,
+        last=vehicle.way[1],
+        shift_end=vehicle.shift[1],
+        early=rules.leave == "early",
+        over_the_day=over_the_day,
     )
 
 
-def _timed(
-    stays: Sequence[Stay],
-    driven: Sequence[float],
-    begin: float,
-    vehicle: VehicleType,
-    early: bool,
-) -> Schedule:
-    """Return the times of a route that may begin at a time, as in `schedule`."""
-    drive = partial(_drive, stays, driven, last=vehicle.way[1])
-    all_windows = [0] * len(stays)
-    first = best = drive(all_windows, begin)
-    if is_over(begin, vehicle.leaves_by):
-        return replace(best, late=max(best.late, begin - vehicle.leaves_by))
-    if best.late or early:
-        return best
+def _timed(chain: Chain) -> Schedule:
+    """Return the times of a route whose breaks are stays, as in `schedule`."""
+    first = drive(chain, chain.begin)
+    if is_over(chain.begin, chain.leaves_by):
+        return replace(first, late=max(first.late, chain.begin - chain.leaves_by))
+    if first.late or chain.early:
+        return first
+    later = best_departure if chain.over_the_day else _latest_departure
+    departure = later(chain, first)
+    return first if departure == chain.begin else drive(chain, departure, first.end)
+
+
+def _latest_departure(chain: Chain, first: Schedule) -> float:
+    """Return the latest departure that makes nothing later, given the times after the earliest."""
+    best = first
     # A later window at the stop that keeps the vehicle from leaving later may not delay the end.
     while best.slack <= best.waiting and best.tightest >= 0:
         allowed = list(best.windows)
         allowed[best.tightest] += 1
-        later = drive(allowed, begin)
+        later = drive(chain, chain.begin, allowed=allowed)
         if (
             later.late
             or is_over(later.end, best.end)
             or is_over(later.lateness, best.lateness, best.end)
-            or _delays(stays, best, later)
+            or _delays(chain.stays, best, later)
         ):
             break
         best = later
     # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
     # delay the end of the route.
-    delay = min(best.waiting, best.slack, vehicle.leaves_by - begin)
-    return drive(all_windows, begin + delay, reach=best.end) if delay > 0 else first
-
-
-def _drive(
-    stays: Sequence[Stay],
-    driven: Sequence[float],
-    allowed: Sequence[int],
-    departure: float,
-    last: float,
-    reach: float = 0.0,
-) -> Schedule:
-    """Return the times of a route with legs of these times, from a departure on.
-
-    At each stop the vehicle takes the first window that is not over, of those from a number in
-    `allowed` on; else the last one. `reach` is the largest time from which the departure was
-    computed.
-    """
-    time, waiting, slack, late, lateness, tightest = departure, 0.0, inf, 0.0, 0.0, -1
-    arrivals, used, begins = [], [], []
-    # Every solution of the search comes through here: branches cost less than calls of max().
-    for place, ((windows, service, due, hold), leg) in enumerate(
-        zip(stays, [*driven, 0.0], strict=True)
-    ):
-        number = allowed[place]
-        if windows[number][1] < time:
-            number = _open_window(windows, number, time, reach)
-        opens, closes = windows[number]
-        arrivals.append(time)
-        used.append(number)
-        begin = time
-        if opens > time:
-            waiting += opens - time
-            begin = opens
-        begins.append(begin)
-        until = closes
-        if hold < inf:
-            lateness += excess(begin, due, reach)
-            until = min(closes, max(hold, begin))
-        if until - begin + waiting < slack:
-            slack = until - begin + waiting
-            tightest = place if until == closes and number + 1 < len(windows) else -1
-        if time > closes:
-            late = max(late, excess(time, closes, reach))
-        end = begin + service
-        time = end + leg
-    if last - end + waiting < slack:
-        slack, tightest = last - end + waiting, -1
-    late = max(late, excess(end, last, reach))
-    found = tuple(arrivals), end, late, waiting, slack, lateness, tuple(used), tightest
-    return Schedule(*found, tuple(begins))
+    delay = min(best.waiting, best.slack, chain.leaves_by - chain.begin)
+    return chain.begin + max(0.0, delay)
 
 
 def _delays(stays: Sequence[Stay], first: Schedule, later: Schedule) -> bool:
@@ -169,25 +98,14 @@ def _delays(stays: Sequence[Stay], first: Schedule, later: Schedule) -> bool:
     return any(is_over(then, max(stay.hold, begin), later.end) for stay, begin, then in columns)
 
 
-def _open_window(windows: Sequence[Span], number: int, time: float, reach: float) -> int:
-    """Return the first window that is not over, from a number on; else the last one."""
-    while number + 1 < len(windows) and is_over(time, windows[number][1], reach):
-        number += 1
-    return number
-
-
 @lru_cache(REMEMBERED)
 def earliest_begins(fleet: Fleet, route: Route) -> dict[int, float]:
     """Return when each visit of a route begins if its vehicle leaves as early as it may.
 
     The fleet has a clock, and its vehicles have no breaks and do not load again.
     """
-    rules, vehicle = fleet.rules, fleet.rules.vehicles[route.vehicle]
-    stays = _stays(rules, route, [route.stops])
-    released = max(vehicle.way[0], _released(rules, route.stops))
-    driven = legs(fleet, route, rules.clock or 0)
-    times = _drive(stays, driven, [0] * len(stays), released, vehicle.way[1])
-    return dict(zip(path_of(rules, route), times.begins, strict=True))
+    chain = _chain_of(fleet, route)
+    return dict(zip(path_of(fleet.rules, route), drive(chain, chain.begin).begins, strict=True))
 
 
 def _stays(rules: Rules, route: Route, trips: Sequence[Sequence[int]]) -> list[Stay]:
