@@ -21,41 +21,117 @@ _LEAST_SHARE = 1e-3  # of a mean: a smaller deviation counts as this when it is 
 
 
 class Normal(NamedTuple):
-    """A time that differs from day to day."""
+    """A time that differs from day to day; where days are known, `today` has it instead."""
 
     mean: float
     variance: float
 
 
 @inlined
-def _after(problem: Problem, time: Normal, leg_to: float) -> Normal:
-    """Return when a leg ends that begins at a time."""
-    deviation = problem.extras.spread * leg_to
-    return Normal(time.mean + leg_to, time.variance + deviation * deviation)
+def _begun(plan: WorkingPlan, time: float) -> Normal:
+    """Return a time that is the same every day."""
+    for day in range(len(plan.today)):
+        plan.today[day] = time
+    return Normal(time, 0.0)
 
 
 @inlined
-def _from_on(time: Normal, opens: float) -> Normal:
+def _note(plan: WorkingPlan, node: int, now: Normal) -> None:
+    """Write when the visit of a node begins."""
+    plan.mean[node], plan.variance[node] = now.mean, now.variance
+    for day in range(len(plan.today)):
+        plan.daily[node, day] = plan.today[day]
+
+
+@inlined
+def _noted(plan: WorkingPlan, node: int) -> Normal:
+    """Return when the visit of a node begins."""
+    for day in range(len(plan.today)):
+        plan.today[day] = plan.daily[node, day]
+    return Normal(plan.mean[node], plan.variance[node])
+
+
+@inlined
+def _later(plan: WorkingPlan, now: Normal, time: float) -> Normal:
+    """Return a time plus what takes as long every day."""
+    for day in range(len(plan.today)):
+        plan.today[day] += time
+    return Normal(now.mean + time, now.variance)
+
+
+@inlined
+def _after(
+    problem: Problem,
+    plan: WorkingPlan,
+    slot: int,
+    between: tuple[int, int],
+    left: tuple[Normal, float],
+) -> Normal:
+    """Return when a leg ends between two places, given when it begins and what it takes.
+
+    From or to anywhere it takes nothing.
+    """
+    (a, b), (now, leg_to) = between, left
+    if len(plan.today) > 0 and a >= 0 and b >= 0:
+        speed = problem.extras.speeds[problem.kind[slot]]
+        for day in range(len(plan.today)):
+            plan.today[day] += problem.extras.sampled[a, b, day] / speed
+    deviation = problem.extras.spread * leg_to
+    return Normal(now.mean + leg_to, now.variance + deviation * deviation)
+
+
+@inlined
+def _from_on(plan: WorkingPlan, now: Normal, opens: float) -> Normal:
     """Return the later one of a time and that at which a stop opens (Clark, 1961)."""
-    if time.variance == 0.0:
-        return Normal(max(time.mean, opens), 0.0)
-    deviation, ahead = math.sqrt(time.variance), time.mean - opens
+    for day in range(len(plan.today)):
+        plan.today[day] = max(plan.today[day], opens)
+    if now.variance == 0.0:
+        return Normal(max(now.mean, opens), 0.0)
+    deviation, ahead = math.sqrt(now.variance), now.mean - opens
     z = ahead / deviation
     share = 0.5 * (1.0 + math.erf(z / _ROOT))
     density = deviation * _DENSITY * math.exp(-0.5 * z * z)
     mean = ahead * share + density
-    square = (ahead * ahead + time.variance) * share + ahead * density
+    square = (ahead * ahead + now.variance) * share + ahead * density
     return Normal(opens + mean, max(0.0, square - mean * mean))
 
 
 @inlined
-def _share_after(time: Normal, latest: float) -> float:
+def _share_after(plan: WorkingPlan, now: Normal, latest: float) -> float:
     """Return on what share of days a time is later than another."""
     if latest == np.inf:
         return 0.0
-    if time.variance == 0.0:
-        return 1.0 if _is_over(time.mean, latest) else 0.0
-    return 0.5 * math.erfc((latest - time.mean) / (_ROOT * math.sqrt(time.variance)))
+    if len(plan.today) > 0:
+        late = 0
+        for time in plan.today:
+            late += _is_over(time, latest)
+        return late / len(plan.today)
+    if now.variance == 0.0:
+        return 1.0 if _is_over(now.mean, latest) else 0.0
+    return 0.5 * math.erfc((latest - now.mean) / (_ROOT * math.sqrt(now.variance)))
+
+
+@inlined
+def _mean_and_spread(plan: WorkingPlan, now: Normal) -> tuple[float, float]:
+    """Return the mean of a time and its variance; where days are known, its deviation."""
+    days = len(plan.today)
+    if days == 0:
+        return now.mean, now.variance
+    total, square = 0.0, 0.0
+    for time in plan.today:
+        total += time
+    mean = total / days
+    for time in plan.today:
+        square += (time - mean) * (time - mean)
+    return mean, math.sqrt(square / days)
+
+
+@inlined
+def _at_percentile(problem: Problem, plan: WorkingPlan, mean: float, variance: float) -> float:
+    """Return what a time does not exceed, on as many days as the longest route must not."""
+    if len(plan.today) > 0:
+        return _in_order(plan.today, problem.extras.most_day)
+    return mean + problem.extras.most_deviations * math.sqrt(variance)
 
 
 @inlined
@@ -71,32 +147,33 @@ def _window_at(problem: Problem, stop: int, arrival: float) -> int:
 @compiled
 def spread_along(problem: Problem, plan: WorkingPlan, slot: int) -> None:
     """Write how the visits of a route spread whose times are known, and how long it takes then."""
-    if problem.extras.days > 0:
-        _drive_days(problem, plan, slot)
-        return
-    start = len(problem.demand) + 2 * slot
-    departure = plan.ready[start + 1] - plan.value[slot, problem.clock]
-    planned, now, late = departure, Normal(departure, 0.0), 0.0
-    plan.mean[start], plan.variance[start], plan.share[start] = departure, 0.0, 0.0
+    start, end = len(problem.demand) + 2 * slot, len(problem.demand) + 2 * slot + 1
+    departure = plan.ready[end] - plan.value[slot, problem.clock]
+    planned, now, late = departure, _begun(plan, departure), 0.0
+    _note(plan, start, now)
+    plan.share[start] = 0.0
     at, node = problem.place[start], plan.next[start]
-    while node != start + 1:
+    while node != end:
         planned, now = _reached(problem, plan, slot, (at, node), (planned, now))
         number = _window_at(problem, node, planned)
-        plan.share[node] = _share_after(now, problem.extras.latest[node, number])
+        plan.share[node] = _share_after(plan, now, problem.extras.latest[node, number])
         late += plan.share[node]
         opens = problem.windows[node, number, 0]
         if opens > departure:
-            now = _from_on(now, opens)
-        plan.mean[node], plan.variance[node] = now.mean, now.variance
+            now = _from_on(plan, now, opens)
+        _note(plan, node, now)
         service = service_at(problem, problem.profile[slot], node)
         planned = max(planned, opens) + service
-        now = Normal(now.mean + service, now.variance)
+        now = _later(plan, now, service)
         at, node = node, plan.next[node]
-    now = _after(problem, now, plan.step[start + 1, problem.clock])
-    mean = now.mean - departure
+    ends = at, problem.place[end]
+    now = _after(problem, plan, slot, ends, (now, plan.step[end, problem.clock]))
+    now = _later(plan, now, -departure)
+    _note(plan, end, now)
+    mean, variance = _mean_and_spread(plan, now)
     plan.value[slot, LATE] = late
-    plan.value[slot, MEAN], plan.value[slot, VARIANCE] = mean, now.variance
-    plan.value[slot, MOST] = mean + problem.extras.most_deviations * math.sqrt(now.variance)
+    plan.value[slot, MEAN], plan.value[slot, VARIANCE] = mean, variance
+    plan.value[slot, MOST] = _at_percentile(problem, plan, mean, variance)
 
 
 @inlined
@@ -109,15 +186,15 @@ def _reached(
 ) -> tuple[float, Normal]:
     """Return when a vehicle reaches a node from a place that it leaves: as planned, and really."""
     (at, node), (planned, now) = between, left
-    step = plan.step[node, problem.clock]
-    if plan.via[node] >= 0:
-        there = leg(problem, problem.profile[slot], at, plan.via[node], problem.clock)
-        away = min(step, there)
-        now, planned, step = _after(problem, now, away), planned + away, step - away
+    via, step = plan.via[node], plan.step[node, problem.clock]
+    if via >= 0:
+        away = min(step, leg(problem, problem.profile[slot], at, via, problem.clock))
+        now = _after(problem, plan, slot, (at, via), (now, away))
+        planned, step, at = planned + away, step - away, via
         if plan.released[node] > planned:
             planned = plan.released[node]
-            now = _from_on(now, planned)
-    return planned + step, _after(problem, now, step)
+            now = _from_on(plan, now, planned)
+    return planned + step, _after(problem, plan, slot, (at, node), (now, step))
 
 
 @inlined
@@ -138,31 +215,33 @@ def spread_growth(state: State, stop: int, slot: int, before: int) -> float:
     problem, plan, direction = state
     if plan.size[slot] == 0 or problem.delivery[stop] >= 0:
         return 0.0
-    if problem.extras.days > 0:
-        return _growth_by_days(state, stop, slot, before)
     start, profile = len(problem.demand) + 2 * slot, problem.profile[slot]
-    now, late, here, node = Normal(plan.mean[before], plan.variance[before]), 0.0, before, stop
-    departure = plan.mean[start]
+    value, departure = plan.value[slot], plan.mean[start]
+    now, late, here, node = _noted(plan, before), 0.0, before, stop
     while node != start + 1:
-        service = service_at(problem, profile, here) if here != start else 0.0
-        step = leg(problem, profile, problem.place[here], node, problem.clock)
-        now = _after(problem, Normal(now.mean + service, now.variance), step)
-        number = _window_at(problem, node, now.mean)
-        late += _share_after(now, problem.extras.latest[node, number])
+        if here != start:
+            now = _later(plan, now, service_at(problem, profile, here))
+        at = problem.place[here]
+        away = leg(problem, profile, at, node, problem.clock)
+        now = _after(problem, plan, slot, (at, node), (now, away))
+        number = 0
+        if problem.choice:
+            number = _window_at(problem, node, _mean_and_spread(plan, now)[0])
+        late += _share_after(plan, now, problem.extras.latest[node, number])
         if problem.windows[node, number, 0] > departure:
-            now = _from_on(now, problem.windows[node, number, 0])
+            now = _from_on(plan, now, problem.windows[node, number, 0])
         if node == stop:
             here, node = node, plan.next[before]
         else:
             late -= plan.share[node]
             here, node = node, plan.next[node]
-    service = service_at(problem, profile, here)
-    step = leg(problem, profile, here, problem.place[start + 1], problem.clock)
-    now = _after(problem, Normal(now.mean + service - departure, now.variance), step)
-    value, mean, variance = plan.value[slot], now.mean, now.variance
-    late += value[LATE]
-    most = mean + problem.extras.most_deviations * math.sqrt(variance)
-    cost = spread_cost(direction, late, mean, variance, most)
+    now = _later(plan, _later(plan, now, service_at(problem, profile, here)), -departure)
+    there = problem.place[start + 1]
+    away = leg(problem, profile, here, there, problem.clock)
+    now = _after(problem, plan, slot, (here, there), (now, away))
+    mean, variance = _mean_and_spread(plan, now)
+    most = _at_percentile(problem, plan, mean, variance) if direction.most_penalty > 0 else 0.0
+    cost = spread_cost(direction, value[LATE] + late, mean, variance, most)
     return cost - spread_cost(direction, value[LATE], value[MEAN], value[VARIANCE], value[MOST])
 
 
@@ -212,126 +291,3 @@ def _in_order(times: Array, place: int) -> float:
         if less <= place < less + equal:
             return float(time)
     return np.inf
-
-
-@compiled
-def _drive_days(problem: Problem, plan: WorkingPlan, slot: int) -> None:
-    """Write when the visits of a route begin on each day, how many are late, and its time."""
-    start, end = len(problem.demand) + 2 * slot, len(problem.demand) + 2 * slot + 1
-    departure = plan.ready[end] - plan.value[slot, problem.clock]
-    planned, late, now = departure, 0.0, plan.today
-    for day in range(len(now)):
-        now[day] = plan.daily[start, day] = departure
-    plan.share[start] = 0.0
-    at, node = problem.place[start], plan.next[start]
-    while node != end:
-        planned = _reached_by_days(problem, plan, slot, (at, node), planned)
-        number = _window_at(problem, node, planned)
-        plan.share[node] = _days_after(now, problem.extras.latest[node, number])
-        late += plan.share[node]
-        opens = problem.windows[node, number, 0]
-        _wait(now, opens if opens > departure else 0.0)
-        service = service_at(problem, problem.profile[slot], node)
-        planned = max(planned, opens) + service
-        for day in range(len(now)):
-            plan.daily[node, day] = now[day]
-            now[day] += service
-        at, node = node, plan.next[node]
-    _drive(problem, slot, at, problem.place[end], now)
-    for day in range(len(now)):
-        plan.daily[end, day] = now[day] - departure
-    plan.value[slot, LATE] = late
-    plan.value[slot, MEAN], plan.value[slot, VARIANCE] = _mean_and_deviation(plan.daily[end])
-    plan.value[slot, MOST] = _in_order(plan.daily[end], problem.extras.most_day)
-
-
-@inlined
-def _drive(problem: Problem, slot: int, a: int, b: int, now: Array) -> None:
-    """Add what a leg between two places takes on each day; nothing from or to anywhere."""
-    if a < 0 or b < 0:
-        return
-    speed = problem.extras.speeds[problem.kind[slot]]
-    for day in range(len(now)):
-        now[day] += problem.extras.sampled[a, b, day] / speed
-
-
-@inlined
-def _wait(now: Array, opens: float) -> None:
-    """Make no time earlier than this."""
-    for day in range(len(now)):
-        now[day] = max(now[day], opens)
-
-
-@inlined
-def _days_after(now: Array, latest: float) -> float:
-    """Return on what share of days it is later than a time."""
-    if latest == np.inf:
-        return 0.0
-    late = 0
-    for day in range(len(now)):
-        late += _is_over(now[day], latest)
-    return late / len(now)
-
-
-@inlined
-def _mean_and_deviation(times: Array) -> tuple[float, float]:
-    total, square = 0.0, 0.0
-    for time in times:
-        total += time
-    mean = total / len(times)
-    for time in times:
-        square += (time - mean) * (time - mean)
-    return mean, math.sqrt(square / len(times))
-
-
-@inlined
-def _reached_by_days(
-    problem: Problem, plan: WorkingPlan, slot: int, between: tuple[int, int], planned: float
-) -> float:
-    """Drive to a node from a place on each day; return when its vehicle is there as planned."""
-    at, node = between
-    via, step = plan.via[node], plan.step[node, problem.clock]
-    if via >= 0:
-        away = min(step, leg(problem, problem.profile[slot], at, via, problem.clock))
-        _drive(problem, slot, at, via, plan.today)
-        planned, step, at = planned + away, step - away, via
-        if plan.released[node] > planned:
-            planned = plan.released[node]
-            _wait(plan.today, planned)
-    _drive(problem, slot, at, node, plan.today)
-    return planned + step
-
-
-@compiled
-def _growth_by_days(state: State, stop: int, slot: int, before: int) -> float:
-    """Return about what the cost grows by with a stop after a node, on the days that are known."""
-    problem, plan, direction = state
-    start, profile, now = len(problem.demand) + 2 * slot, problem.profile[slot], plan.today
-    value, late, here, node = plan.value[slot], 0.0, before, stop
-    departure = plan.daily[start, 0]
-    for day in range(len(now)):
-        now[day] = plan.daily[before, day]
-    while node != start + 1:
-        service = service_at(problem, profile, here) if here != start else 0.0
-        for day in range(len(now)):
-            now[day] += service
-        _drive(problem, slot, problem.place[here], node, now)
-        number = 0
-        if problem.choice:
-            number = _window_at(problem, node, _mean_and_deviation(now)[0])
-        late += _days_after(now, problem.extras.latest[node, number])
-        opens = problem.windows[node, number, 0]
-        _wait(now, opens if opens > departure else 0.0)
-        if node == stop:
-            here, node = node, plan.next[before]
-        else:
-            late -= plan.share[node]
-            here, node = node, plan.next[node]
-    service = service_at(problem, profile, here)
-    _drive(problem, slot, here, problem.place[start + 1], now)
-    for day in range(len(now)):
-        now[day] += service - departure
-    mean, deviation = _mean_and_deviation(now)
-    most = _in_order(now, problem.extras.most_day) if direction.most_penalty > 0 else 0.0
-    cost = spread_cost(direction, value[LATE] + late, mean, deviation, most)
-    return cost - spread_cost(direction, value[LATE], value[MEAN], value[VARIANCE], value[MOST])
