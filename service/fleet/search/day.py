@@ -100,16 +100,22 @@ class Moment(NamedTuple):
 
 
 @inlined
-def slice_of(day: FleetDay, time: float) -> int:
-    """Return the slice of a time. O(log s)."""
-    low, high = 0, len(day.factors) - 1
+def last_until(times: Array, count: int, time: float) -> int:
+    """Return the place of the last of some ascending times up to another; 0 if none is. O(log)."""
+    low, high = 0, count - 1
     while low < high:
         middle = (low + high + 1) // 2
-        if day.begins[middle] <= time:
+        if times[middle] <= time:
             low = middle
         else:
             high = middle - 1
     return low
+
+
+@inlined
+def slice_of(day: FleetDay, time: float) -> int:
+    """Return the slice of a time. O(log s)."""
+    return last_until(day.begins, len(day.factors), time)
 
 
 @inlined

@@ -8,7 +8,7 @@ late, the rows end.
 import numpy as np
 
 from service.day.driving import arrived, has_knots, left_at
-from service.fleet.search.day import FleetDay, slice_of
+from service.fleet.search.day import FleetDay, last_until, slice_of
 from service.fleet.search.problem import RELEASED, Problem
 from service.fleet.search.working_plan import WorkingPlan, service_at
 from service.jit import compiled, inlined, standalone
@@ -34,17 +34,14 @@ def best_departure(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int
         node = plan.next[node]
         via = plan.via[node]
         if via >= 0:
-            count = _drive(day, (at, via), kind, row, count)
-            row = 1 - row
-            count = _enter(day, (plan.released[node], np.inf), row, count, 0)
-            row = 1 - row
+            row, count = _drive(day, (at, via), kind, row, count)
+            window = day.times[row, 0], plan.released[node], np.inf
+            row, count = 1 - row, _begin(day, window, row, count, 0)
             at = via
-        count = _drive(day, (at, problem.place[node]), kind, row, count)
-        row = 1 - row
+        row, count = _drive(day, (at, problem.place[node]), kind, row, count)
         at = problem.place[node]
         if node != end:
-            count = _serve(day, problem, node, row, count)
-            row = 1 - row
+            row, count = _serve(day, problem, node, row, count)
             service = service_at(problem, profile, node)
             for knot in range(count):
                 day.times[row, knot] += service
@@ -70,12 +67,14 @@ def _latest(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int, depar
 
 
 @compiled
-def _drive(day: FleetDay, between: tuple[int, int], kind: int, row: int, count: int) -> int:
-    """Write the other row: the arrivals of those who leave at the times of a row."""
+def _drive(
+    day: FleetDay, between: tuple[int, int], kind: int, row: int, count: int
+) -> tuple[int, int]:
+    """Write the other row: the arrivals of those who leave at the times of a row; return it."""
     a, b = between
     times = day.times[row]
     if a < 0 or b < 0:
-        return _write_knots(day, row, count, 0)
+        return 1 - row, _write_knots(day, row, count, 0)
     known = slice_of(day, times[0])
     changes = _list_changes(day, between, kind, known, times[count - 1])
     if count + changes > len(times):
@@ -87,7 +86,7 @@ def _drive(day: FleetDay, between: tuple[int, int], kind: int, row: int, count: 
         while known + 1 < len(day.factors) and day.begins[known + 1] <= time:
             known += 1
         arrivals[knot], _ = arrived(day, day.rows[kind] + a, b, time, known, day.paces[kind])
-    return written
+    return 1 - row, written
 
 
 @inlined
@@ -152,8 +151,8 @@ def _sort_in(day: FleetDay, time: float, count: int) -> int:
 
 
 @inlined
-def _serve(day: FleetDay, problem: Problem, stop: int, row: int, count: int) -> int:
-    """Write the other row: when visits begin of those who arrive at the times of a row."""
+def _serve(day: FleetDay, problem: Problem, stop: int, row: int, count: int) -> tuple[int, int]:
+    """Write the other row: when visits begin of those who arrive at the times of one; return it."""
     written, lower, first = 0, -np.inf, day.times[row, 0]
     for number in range(problem.windows.shape[1]):
         closes = problem.windows[stop, number, 1]
@@ -169,14 +168,7 @@ def _serve(day: FleetDay, problem: Problem, stop: int, row: int, count: int) -> 
         last = problem.windows[stop, problem.windows.shape[1] - 1, 0]
         written = _begin(day, (first, last, np.inf), row, count, 0)
     begin = day.times[1 - row, 0]
-    return _cut(day, max(problem.due[stop], begin), 1 - row, written)
-
-
-@inlined
-def _enter(day: FleetDay, window: tuple[float, float], row: int, count: int, written: int) -> int:
-    """Write the other row: when those begin who arrive at the times of a row, from a time on."""
-    opens, closes = window
-    return _begin(day, (day.times[row, 0], opens, closes), row, count, written)
+    return 1 - row, _cut(day, max(problem.due[stop], begin), 1 - row, written)
 
 
 @compiled
@@ -219,18 +211,12 @@ def _begin(
 @inlined
 def _departure(day: FleetDay, time: float, row: int, count: int) -> float:
     """Return the latest departure of those that lead to a time, or to one before it."""
-    low, high = 0, count - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if day.times[row, middle] <= time:
-            low = middle
-        else:
-            high = middle - 1
-    departure = day.departures[row, low]
-    if low == count - 1 or day.times[row, low] >= time:
-        return float(departure)
-    part = (time - day.times[row, low]) / (day.times[row, low + 1] - day.times[row, low])
-    return float(departure + part * (day.departures[row, low + 1] - departure))
+    departures, times = day.departures[row], day.times[row]
+    last = last_until(times, count, time)
+    if last == count - 1 or times[last] >= time:
+        return float(departures[last])
+    part = (time - times[last]) / (times[last + 1] - times[last])
+    return float(departures[last] + part * (departures[last + 1] - departures[last]))
 
 
 @inlined

@@ -47,15 +47,7 @@ def _change_vehicle(state: State, slot: int) -> None:
         if cost < least:
             best, least = other, cost
     if best >= 0:
-        before = plan.cost[slot]
-        save_slot(problem, plan, slot)
-        save_slot(problem, plan, best)
-        _move(problem, plan, slot, best)
-        measure(state, slot)
-        if not measure(state, best) or plan.cost[best] > before:
-            _move(problem, plan, best, slot)
-            measure(state, best)
-            measure(state, slot)
+        _exchange(state, slot, best, plan.cost[slot])
 
 
 @standalone
@@ -83,10 +75,18 @@ def _give(state: State, slot: int, kind: int) -> None:
     other = free_slot(problem, plan, kind) if kind != problem.kind[slot] else -1
     if other < 0 or plan.size[slot] == 0 or not _holds(problem, plan, slot, kind):
         return
+    _exchange(state, slot, other, np.inf)
+
+
+@compiled
+def _exchange(state: State, slot: int, other: int, most: float) -> None:
+    """Put a route into a slot without stops, unless it breaks a rule there or costs more."""
+    problem, plan, _ = state
+    save_slot(problem, plan, slot)
     save_slot(problem, plan, other)
     _move(problem, plan, slot, other)
     measure(state, slot)
-    if not measure(state, other):
+    if not measure(state, other) or plan.cost[other] > most:
         _move(problem, plan, other, slot)
         measure(state, other)
         measure(state, slot)

@@ -106,25 +106,19 @@ def clear(state: State) -> None:
 @compiled
 def write_point(problem: Problem, plan: WorkingPlan, point: Array) -> None:
     """Write the lengths of a plan, shape (m,)."""
-    paid = 0
+    paid = promised = 0
     for objective in range(len(problem.over)):
         if problem.over[objective] == UNASSIGNED:
             paid = objective
+        if problem.over[objective] == OF_PROMISES:
+            promised = objective
         point[objective] = _joined_value(problem, plan, problem.over[objective], objective)
     for number in range(plan.counts[USED]):
         point[0] += problem.fixed[problem.kind[plan.used[number]]]
     for number in range(plan.counts[OUTSIDE]):
         point[paid] += problem.prize[plan.outside[number]]
         if problem.extras.promises:
-            _count_promises(problem, plan.outside[number], point)
-
-
-@compiled
-def _count_promises(problem: Problem, stop: int, point: Array) -> None:
-    """Count the promises of a stop that is left out among the changes of a point."""
-    for objective in range(len(problem.over)):
-        if problem.over[objective] == OF_PROMISES:
-            point[objective] += promised_stops(problem, stop)
+            point[promised] += promised_stops(problem, plan.outside[number])
 
 
 @inlined

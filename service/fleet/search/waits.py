@@ -94,50 +94,39 @@ def bind(state: State, slot: int) -> bool:
     Returns:
         Whether all routes of these visits keep all rules.
     """
-    problem, plan, _ = state
-    waits, kept = problem.waits, True
-    for number in range(len(waits.stops)):
-        stop = waits.stops[number]
-        if plan.route[stop] == slot:
-            kept &= _bind_thens(state, stop)
-    for number in range(len(waits.stops)):
-        stop = waits.stops[number]
-        if plan.route[stop] == slot:
-            kept &= _bind_firsts(state, stop)
+    waits, kept = state.problem.waits, True
+    for forward in (True, False):
+        for number in range(len(waits.stops)):
+            stop = waits.stops[number]
+            if state.plan.route[stop] == slot:
+                kept &= _bind_others(state, stop, forward)
     return kept
 
 
 @compiled
 def unbind(state: State, stop: int) -> None:
     """Set the bounds of the visits that waited for that of a stop which is taken out, or it did."""
-    _bind_thens(state, stop)
-    _bind_firsts(state, stop)
+    _bind_others(state, stop, True)
+    _bind_others(state, stop, False)
 
 
 @inlined
-def _bind_thens(state: State, stop: int) -> bool:
-    """Set from when on visits may begin that wait for that of a stop; return whether it is kept."""
+def _bind_others(state: State, stop: int, forward: bool) -> bool:
+    """Set from when on visits may begin that wait for that of a stop; return whether all is kept.
+
+    Not forward, set until when those may begin for which it waits.
+    """
     problem, plan, _ = state
     waits, kept = problem.waits, True
-    for place in range(waits.thens.shape[1]):
-        then = waits.thens[stop, place]
-        slot = plan.route[then] if then >= 0 else -1
-        if slot >= 0 and _set(problem, then, _since(problem, plan, then, slot), waits.until[then]):
-            kept &= _measured(state, slot)
-    return kept
-
-
-@inlined
-def _bind_firsts(state: State, stop: int) -> bool:
-    """Set until when visits may begin for which that of a stop waits; return whether it is kept."""
-    problem, plan, _ = state
-    waits, kept = problem.waits, True
-    for place in range(waits.firsts.shape[1]):
-        first = waits.firsts[stop, place]
-        slot = plan.route[first] if first >= 0 else -1
-        if slot >= 0 and _set(
-            problem, first, waits.since[first], _until(problem, plan, first, slot)
-        ):
+    others = waits.thens if forward else waits.firsts
+    for place in range(others.shape[1]):
+        other = others[stop, place]
+        slot = plan.route[other] if other >= 0 else -1
+        if slot < 0:
+            continue
+        since = _since(problem, plan, other, slot) if forward else waits.since[other]
+        until = waits.until[other] if forward else _until(problem, plan, other, slot)
+        if _set(problem, other, since, until):
             kept &= _measured(state, slot)
     return kept
 

@@ -38,7 +38,7 @@ def weigh(state: State, slot: int) -> None:
     if problem.timely:
         _weigh_times(problem.day, problem, plan, slot)
     elif problem.extras.promises:
-        plan.value[slot, CHANGES] = _other_vehicles(problem, plan, slot)
+        plan.value[slot, CHANGES] = _changes(problem, plan, slot)
     plan.value[slot, WEIGHED] = (
         direction.earliness * plan.value[slot, EARLINESS]
         + direction.weighted_arrival * plan.value[slot, ARRIVAL]
@@ -107,12 +107,15 @@ def _is_changed(problem: Problem, stop: int, kind: int, begin: float) -> bool:
 
 
 @inlined
-def _other_vehicles(problem: Problem, plan: WorkingPlan, slot: int) -> int:
-    """Return how many promised stops of a route are visited by another vehicle."""
+def _changes(problem: Problem, plan: WorkingPlan, slot: int) -> int:
+    """Return how many promised stops of a route are visited by another vehicle, or later."""
     changes, start = 0, len(problem.demand) + 2 * slot
     node = plan.next[start]
     while node != start + 1:
-        changes += _is_changed(problem, node, problem.kind[slot], 0.0)
+        begin = 0.0
+        if problem.timely:
+            begin = plan.ready[node] - service_at(problem, problem.profile[slot], node)
+        changes += _is_changed(problem, node, problem.kind[slot], begin)
         node = plan.next[node]
     return changes
 
@@ -156,17 +159,11 @@ def _added_by(problem: Problem, plan: WorkingPlan, stop: int, slot: int, mate: i
 @inlined
 def _weigh_times(day: FleetDay | None, problem: Problem, plan: WorkingPlan, slot: int) -> None:
     """Write the measures of begins; over the day all but the changes are written already."""
-    start = len(problem.demand) + 2 * slot
     if day is None:
-        departure = plan.ready[start + 1] - plan.value[slot, problem.clock]
-        _weigh_begins(problem, plan, slot, departure)
+        end = len(problem.demand) + 2 * slot + 1
+        _weigh_begins(problem, plan, slot, plan.ready[end] - plan.value[slot, problem.clock])
     else:
-        changes, node = 0, plan.next[start]
-        while node != start + 1:
-            begin = plan.ready[node] - service_at(problem, problem.profile[slot], node)
-            changes += _is_changed(problem, node, problem.kind[slot], begin)
-            node = plan.next[node]
-        plan.value[slot, CHANGES] = changes
+        plan.value[slot, CHANGES] = _changes(problem, plan, slot)
 
 
 @inlined
