@@ -110,20 +110,19 @@ class Cutter:
     def __init__(
         self, fleet: Fleet, sequences: Sequence[Indices], stop: Callable[[], bool]
     ) -> None:
-        if fleet.rules.shipments:
-            reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
-            raise Refusal("no-plan", reason=reason)
-        if fleet.rules.takes:
-            reason = "stops with a pick-up need a time_limit over 0: no cut of a tour keeps it"
-            raise Refusal("no-plan", reason=reason)
-        if any(len(visit.windows) > 1 for visit in fleet.rules.visits):
-            reason = "stops with several windows need a time_limit over 0"
-            raise Refusal("no-plan", reason=reason)
-        if any(vehicle.breaks for vehicle in fleet.rules.vehicles):
-            raise Refusal("no-plan", reason="breaks need a time_limit over 0")
-        if fleet.rules.capped:
-            reason = "max_distance and max_driving need a time_limit over 0"
-            raise Refusal("no-plan", reason=reason)
+        rules = fleet.rules
+        not_cut = {
+            "shipments need a time_limit over 0: no cut of a tour keeps them": rules.shipments,
+            "stops with a pick-up need a time_limit over 0: no cut of a tour keeps it": rules.takes,
+            "stops with several windows need a time_limit over 0": any(
+                len(visit.windows) > 1 for visit in rules.visits
+            ),
+            "breaks need a time_limit over 0": any(vehicle.breaks for vehicle in rules.vehicles),
+            "max_distance and max_driving need a time_limit over 0": rules.capped,
+        }
+        for reason, given in not_cut.items():
+            if given:
+                raise Refusal("no-plan", reason=reason)
         self._fleet = fleet
         self._stop = stop
         problem = _from_begin(fleet)
