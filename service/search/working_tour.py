@@ -4,7 +4,7 @@ The queue serves as don't-look bits (Bentley, 1992): only around cities that it 
 tried, and a move queues the cities at the ends of the edges that it exchanged.
 """
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,38 +12,6 @@ from numpy.typing import NDArray
 from service.jit import by_reference, compiled, inlined
 
 Cities = NDArray[np.int32]
-
-
-class QueuedTour(Protocol):
-    """The members that all tours that a search changes have: arrays as of WorkingTour."""
-
-    @property
-    def tour(self) -> Cities:
-        """The cities in order."""
-
-    @property
-    def position(self) -> Cities:
-        """The position of each city."""
-
-    @property
-    def length(self) -> NDArray[np.float64]:
-        """Both lengths."""
-
-    @property
-    def buffer(self) -> Cities:
-        """Scratch space of exchange_blocks()."""
-
-    @property
-    def queue(self) -> Cities:
-        """A ring buffer of cities."""
-
-    @property
-    def queued(self) -> NDArray[np.bool_]:
-        """By city: whether the queue holds it."""
-
-    @property
-    def ring(self) -> NDArray[np.int64]:
-        """The place of the queue's head, and the number of cities in the queue."""
 
 
 @by_reference
@@ -60,6 +28,25 @@ class WorkingTour(NamedTuple):
     queue: Cities  # (n,), a ring buffer
     queued: NDArray[np.bool_]  # (n,), by city: whether the queue holds it
     ring: NDArray[np.int64]  # (2,): place of the queue's head, number of cities in the queue
+
+
+@by_reference
+class UndoableTour(NamedTuple):
+    """A working tour that is not copied when it is saved: its changes since then are logged."""
+
+    tour: Cities  # (n,)
+    position: Cities  # (n,)
+    length: NDArray[np.float64]  # (2,)
+    saved_length: NDArray[np.float64]  # (2,)
+    changes: Cities  # (MOST_CHANGES, 3), each the start of a block and its size, and of the next
+    changed: NDArray[np.int64]  # (1,), how many of these there are
+    buffer: Cities  # (n,), scratch space of exchange_blocks()
+    queue: Cities  # (n,), a ring buffer
+    queued: NDArray[np.bool_]  # (n,), by city: whether the queue holds it
+    ring: NDArray[np.int64]  # (2,): place of the queue's head, number of cities in the queue
+
+
+QueuedTour = WorkingTour | UndoableTour
 
 
 def make_working_tour(n: int) -> WorkingTour:

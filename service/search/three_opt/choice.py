@@ -14,8 +14,8 @@ from service.search.sizes import LARGE, MENDING, THREE_OPT
 from service.search.state import SearchState
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
-from service.search.three_opt.undoable_tour import UndoableTour, make_undoable_tour
-from service.search.working_tour import QueuedTour, WorkingTour
+from service.search.three_opt.undoable_tour import make_undoable_tour
+from service.search.working_tour import QueuedTour, UndoableTour, WorkingTour
 
 Cities = NDArray[np.int32]
 

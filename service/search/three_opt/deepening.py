@@ -11,7 +11,8 @@ from service.search.candidates import Scalarization, weighted_cost
 from service.search.moves import neighbour
 from service.search.three_opt.exchanges import ALONE, NONE, Exchange, make_exchange, steps_between
 from service.search.three_opt.finding import find_in_direction, nothing_found
-from service.search.three_opt.undoable_tour import UndoableTour, take_back
+from service.search.three_opt.undoable_tour import take_back
+from service.search.working_tour import UndoableTour
 
 MOST_MOVED = 300  # cities that the first exchange may move: making and undoing it takes that long
 

@@ -20,8 +20,8 @@ from service.jit import inlined
 from service.search.candidates import Scalarization
 from service.search.costs import travel_costs
 from service.search.moves import neighbour
-from service.search.three_opt.undoable_tour import UndoableTour, reverse_logged, swap_logged
-from service.search.working_tour import enqueue, wrap
+from service.search.three_opt.undoable_tour import reverse_logged, swap_logged
+from service.search.working_tour import UndoableTour, enqueue, wrap
 
 Exchange = tuple[int, int, int, int, int, int, int]
 

@@ -23,7 +23,7 @@ from service.search.three_opt.exchanges import (
     exchange_of,
     steps_between,
 )
-from service.search.three_opt.undoable_tour import UndoableTour
+from service.search.working_tour import UndoableTour
 
 # The gain of the best exchange, that exchange; the gain of the promising one before it is closed,
 # and that exchange.

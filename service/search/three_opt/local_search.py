@@ -23,8 +23,8 @@ from service.search.three_opt.deepening import deepen
 from service.search.three_opt.exchanges import NONE, make_exchange, swap_adjacent, wide
 from service.search.three_opt.finding import find_exchanges, nothing_found
 from service.search.three_opt.swap_chains import improve_by_swaps
-from service.search.three_opt.undoable_tour import MOST_CHANGES, UndoableTour, save, undo
-from service.search.working_tour import dequeue, enqueue, wrap
+from service.search.three_opt.undoable_tour import MOST_CHANGES, save, undo
+from service.search.working_tour import UndoableTour, dequeue, enqueue, wrap
 
 MOST_CITIES = (MOST_CHANGES - 2) // 4  # after two swaps, as two exchanges are four changes
 KICKS_PER_BRIDGE = 4  # where costs differ by direction, one kick in four is a double bridge

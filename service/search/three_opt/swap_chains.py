@@ -12,8 +12,8 @@ from service.jit import inlined
 from service.search.candidates import Scalarization, weighted_cost
 from service.search.moves import block_swap
 from service.search.three_opt.exchanges import swap_adjacent
-from service.search.three_opt.undoable_tour import UndoableTour, take_back
-from service.search.working_tour import enqueue, wrap
+from service.search.three_opt.undoable_tour import take_back
+from service.search.working_tour import UndoableTour, enqueue, wrap
 
 MOST_SWAPS = 3  # of a chain
 

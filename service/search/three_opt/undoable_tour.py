@@ -1,12 +1,11 @@
 """A tour with a log of its changes: to undo a few takes less than to copy many cities back."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import by_reference, compiled, inlined
+from service.jit import compiled, inlined
 from service.search.working_tour import (
+    UndoableTour,
     dequeue,
     drop_queued,
     exchange_blocks,
@@ -19,25 +18,6 @@ from service.search.working_tour import (
 Cities = NDArray[np.int32]
 
 MOST_CHANGES = 10_000  # that the log holds
-
-
-@by_reference
-class UndoableTour(NamedTuple):
-    """A tour, its inverse, both lengths, the changes since it was saved, and a queue of cities.
-
-    All but the log are those of a WorkingTour.
-    """
-
-    tour: Cities  # (n,)
-    position: Cities  # (n,)
-    length: NDArray[np.float64]  # (2,)
-    saved_length: NDArray[np.float64]  # (2,)
-    changes: Cities  # (MOST_CHANGES, 3), each the start of a block and its size, and of the next
-    changed: NDArray[np.int64]  # (1,), how many of these there are
-    buffer: Cities  # (n,), scratch space of exchange_blocks()
-    queue: Cities  # (n,), a ring buffer
-    queued: NDArray[np.bool_]  # (n,), by city: whether the queue holds it
-    ring: NDArray[np.int64]  # (2,): place of the queue's head, number of cities in the queue
 
 
 def make_undoable_tour(n: int) -> UndoableTour:

@@ -14,18 +14,13 @@ from service.search.three_opt.exchanges import make_exchange as make_exchange_ke
 from service.search.three_opt.finding import find_exchanges as find_exchanges_kernel
 from service.search.three_opt.finding import nothing_found as nothing_found_kernel
 from service.search.three_opt.local_search import descend, iterated_local_search
-from service.search.three_opt.undoable_tour import (
-    UndoableTour,
-    load,
-    make_undoable_tour,
-    undo,
-)
+from service.search.three_opt.undoable_tour import load, make_undoable_tour, undo
 from service.search.three_opt.undoable_tour import (
     save as save_kernel,
 )
+from service.search.working_tour import UndoableTour, enqueue_cities
 from service.search.working_tour import dequeue as dequeue_kernel
 from service.search.working_tour import enqueue as enqueue_kernel
-from service.search.working_tour import enqueue_cities
 from tests.helpers.instances import (
     opened,
     random_matrices,

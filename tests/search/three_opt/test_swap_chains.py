@@ -19,17 +19,12 @@ from service.search.three_opt.local_search import descend, iterated_local_search
 from service.search.three_opt.local_search import perturb as perturb_kernel
 from service.search.three_opt.swap_chains import MOST_SWAPS
 from service.search.three_opt.swap_chains import improve_by_swaps as improve_by_swaps_kernel
-from service.search.three_opt.undoable_tour import (
-    UndoableTour,
-    load,
-    make_undoable_tour,
-    undo,
-)
+from service.search.three_opt.undoable_tour import load, make_undoable_tour, undo
 from service.search.three_opt.undoable_tour import (
     save as save_kernel,
 )
+from service.search.working_tour import UndoableTour, enqueue_cities
 from service.search.working_tour import dequeue as dequeue_kernel
-from service.search.working_tour import enqueue_cities
 from tests.helpers.instances import (
     ENDS,
     opened,
