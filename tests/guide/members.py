@@ -4,6 +4,7 @@ import json
 import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,27 @@ _BASES = {
     "RobotsRequest": "CoverageRequest",
     "ReplanRequest": "PlanOptions",
     "ReplanFleetRequest": "SearchOptions",
+}
+_CHANGES = "FleetChanges"
+# Bases of the members that several types have, and what they are, unless they are types as well.
+_COMMON: Mapping[str, tuple[tuple[str, ...], str]] = {
+    "FleetStopRequest": (("NewFleetStopRequest",), ""),
+    "CostsRequest": (
+        ("ObjectiveRequest", "FleetObjectiveRequest", "ClockRequest"),
+        "The source of costs.",
+    ),
+    "OrderRequest": (
+        ("FleetStopRequest", "OfferedOrderRequest"),
+        "A stop, and its demands on the vehicle that visits it, whenever that is.",
+    ),
+    "ReachedRequest": (
+        ("NewStopRequest", "NewFleetStopRequest", "OfferedOrderRequest"),
+        "How to reach a new stop under each objective.",
+    ),
+    _CHANGES: (
+        ("ReplanFleetRequest", "OffersRequest"),
+        "The changes since a fleet was planned.",
+    ),
 }
 _PLAIN = {
     "integer": "int",
@@ -111,11 +133,14 @@ def json_file() -> str:
 
 def type_files() -> dict[Path, str]:
     """Return the modules with the type of each request, and of all that is in requests."""
-    types: dict[str, str] = {}
+    made: dict[str, _Type | str] = {}
     for request in ("SearchOptions", *_BASES, "OffersRequest"):
         schema = _form(request)
-        _add(types, request, schema, schema.get("$defs", {}))
-    whole = {name: each for name, each in types.items() if name in {*_SHARED, *FORMS}}
+        _add(made, request, schema, schema.get("$defs", {}))
+    for base, (users, sentence) in _COMMON.items():
+        made = _with_base(made, base, users, sentence)
+    types = {name: _text(name, each) for name, each in made.items()}
+    whole = {name: each for name, each in types.items() if name in {*_SHARED, *FORMS, _CHANGES}}
     requests = "\n\n".join(whole.values())
     parts = {name: each for name, each in types.items() if name not in whole}
     used = [name for name in sorted(parts) if re.search(rf"\b{name}\b", requests)]
@@ -124,6 +149,36 @@ def type_files() -> dict[Path, str]:
         TYPES: "\n\n".join((head, requests)),
         PARTS: "\n\n".join((_HEAD_OF_PARTS, *parts.values())),
     }
+
+
+@dataclass(frozen=True)
+class _Type:
+    """A type of dictionaries, with those of its members that its bases lack."""
+
+    sentence: str
+    members: Mapping[str, str]
+    bases: tuple[str, ...] = ()
+
+
+def _with_base(
+    types: Mapping[str, _Type | str], base: str, users: tuple[str, ...], sentence: str
+) -> dict[str, _Type | str]:
+    """Return types of which some have a base, for the members that all of these have alike."""
+    first, *others = (_members_of(types[name]).items() for name in (base, *users) if name in types)
+    shared = dict(each for each in first if all(each in other for other in others))
+    found: dict[str, _Type | str] = {}
+    for name, each in types.items():
+        if name in users and base not in {*types, *found}:
+            found[base] = _Type(sentence, shared)
+        if name in users and isinstance(each, _Type):
+            rest = {member: of for member, of in each.members.items() if member not in shared}
+            each = _Type(each.sentence, rest, (base, *each.bases))
+        found[name] = each
+    return found
+
+
+def _members_of(of: _Type | str) -> Mapping[str, str]:
+    return {} if isinstance(of, str) else of.members
 
 
 def _form(request: str) -> dict[str, Any]:
@@ -137,13 +192,13 @@ def _form(request: str) -> dict[str, Any]:
     return schema
 
 
-def _add(types: dict[str, str], name: str, form: Any, parts: Mapping[str, Any]) -> None:
+def _add(types: dict[str, _Type | str], name: str, form: Any, parts: Mapping[str, Any]) -> None:
     """Add the type of a form, after the types that it consists of."""
     for part in _parts(form["properties"]):
         if _type_name(part, parts) not in types and _is_closed(parts[part]):
             _add(types, _type_name(part, parts), parts[part], parts)
-    base = _BASES.get(name, "TypedDict")
-    known = _form(base)["properties"] if name in _BASES else {}
+    bases = (_BASES[name],) if name in _BASES else ()
+    known = {member for base in bases for member in _form(base)["properties"]}
     members = {}
     for member, schema in form["properties"].items():
         if member in known:
@@ -157,16 +212,21 @@ def _add(types: dict[str, str], name: str, form: Any, parts: Mapping[str, Any]) 
         of_request = member == "stops" and name in FORMS
         of = " | ".join([*choices, *(["Frame"] if of_request else [])])
         members[member] = f"Required[{of}]" if member in form.get("required", ()) else of
-    types[name] = _typed_dict(name, base, form["description"].partition("\n")[0], members)
+    types[name] = _Type(form["description"].partition("\n")[0], members, bases)
 
 
-def _typed_dict(name: str, base: str, sentence: str, members: Mapping[str, str]) -> str:
-    if "from" not in members:
-        lines = [f"class {name}({base}, total=False):", f'    """{sentence}"""', ""]
-        lines += [f"    {member}: {of}" for member, of in members.items()]
+def _text(name: str, of: _Type | str) -> str:
+    """Return the text of a type in its module."""
+    if isinstance(of, str):
+        return of
+    if "from" not in of.members:
+        bases = ", ".join(of.bases) or "TypedDict"
+        lines = [f"class {name}({bases}, total=False):", f'    """{of.sentence}"""']
+        lines += ["", *(f"    {member}: {each}" for member, each in of.members.items())]
+        lines = lines if of.members else lines[:2]
     else:
-        lines = [f"# {sentence}", f"{name} = TypedDict(", f'    "{name}",', "    {"]
-        lines += [f'        "{member}": {of},' for member, of in members.items()]
+        lines = [f"# {of.sentence}", f"{name} = TypedDict(", f'    "{name}",', "    {"]
+        lines += [f'        "{member}": {each},' for member, each in of.members.items()]
         lines += ["    },", "    total=False,", ")"]
     return "\n".join(lines) + "\n"
 

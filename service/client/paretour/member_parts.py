@@ -49,11 +49,10 @@ class MatrixRequest(TypedDict, total=False):
     matrix: Required[Costs]
 
 
-# An objective, whose costs may change over the day, or spread from day to day.
-ObjectiveRequest = TypedDict(
-    "ObjectiveRequest",
+# The source of costs.
+CostsRequest = TypedDict(
+    "CostsRequest",
     {
-        "name": Required[str],
         "unit": str | None,
         "matrix": Costs,
         "coordinates": ArrayLike,
@@ -64,11 +63,17 @@ ObjectiveRequest = TypedDict(
         "breakpoints": Sequence[Sequence[ArrayLike | None] | ArrayLike] | ArrayLike,
         "traffic": TrafficRequest | None,
         "days": Sequence[MatrixRequest],
-        "spread": float | Costs | None,
-        "percentile": int | None,
     },
     total=False,
 )
+
+
+class ObjectiveRequest(CostsRequest, total=False):
+    """An objective, whose costs may change over the day, or spread from day to day."""
+
+    name: Required[str]
+    spread: float | Costs | None
+    percentile: int | None
 
 
 class ServiceRequest(TypedDict, total=False):
@@ -78,8 +83,8 @@ class ServiceRequest(TypedDict, total=False):
     service: Required[float]
 
 
-class FleetStopRequest(TypedDict, total=False):
-    """A stop, and its demands on the vehicle that visits it."""
+class OrderRequest(TypedDict, total=False):
+    """A stop, and its demands on the vehicle that visits it, whenever that is."""
 
     id: Required[str]
     location: ArrayLike | None
@@ -87,13 +92,18 @@ class FleetStopRequest(TypedDict, total=False):
     pickup: ArrayLike
     service: float
     services: Sequence[ServiceRequest]
-    window: ArrayLike | None
-    windows: ArrayLike
     due: float | ArrayLike | None
     release: float
     skills: Sequence[str]
     vehicle: str | None
     urgency: float
+
+
+class FleetStopRequest(OrderRequest, total=False):
+    """A stop, and its demands on the vehicle that visits it."""
+
+    window: ArrayLike | None
+    windows: ArrayLike
     prize: float | None
 
 
@@ -157,29 +167,15 @@ Measure = Literal[
 ]
 
 
-# An objective by its name: costs with their source, or another measure of plans.
-FleetObjectiveRequest = TypedDict(
-    "FleetObjectiveRequest",
-    {
-        "name": Required[str],
-        "unit": str | None,
-        "matrix": Costs,
-        "coordinates": ArrayLike,
-        "from": Literal["great_circle", "road_time", "road_distance"],
-        "speed": float | None,
-        "over_the_day": ArrayLike,
-        "slices": Sequence[SliceRequest],
-        "breakpoints": Sequence[Sequence[ArrayLike | None] | ArrayLike] | ArrayLike,
-        "traffic": TrafficRequest | None,
-        "matrices": Sequence[ProfileMatrixRequest],
-        "days": Sequence[MatrixRequest],
-        "spread": float | None,
-        "measure": Measure | None,
-        "over": Literal["sum", "max"],
-        "percentile": int | None,
-    },
-    total=False,
-)
+class FleetObjectiveRequest(CostsRequest, total=False):
+    """An objective by its name: costs with their source, or another measure of plans."""
+
+    name: Required[str]
+    matrices: Sequence[ProfileMatrixRequest]
+    spread: float | None
+    measure: Measure | None
+    over: Literal["sum", "max"]
+    percentile: int | None
 
 
 class ShipmentRequest(TypedDict, total=False):
@@ -205,26 +201,12 @@ class BeforeRequest(TypedDict, total=False):
     gap: float
 
 
-# The source of travel times that are not an objective, maybe over the day.
-ClockRequest = TypedDict(
-    "ClockRequest",
-    {
-        "name": str,
-        "unit": str | None,
-        "matrix": Costs,
-        "coordinates": ArrayLike,
-        "from": Literal["great_circle", "road_time", "road_distance"],
-        "speed": float | None,
-        "over_the_day": ArrayLike,
-        "slices": Sequence[SliceRequest],
-        "breakpoints": Sequence[Sequence[ArrayLike | None] | ArrayLike] | ArrayLike,
-        "traffic": TrafficRequest | None,
-        "matrices": Sequence[ProfileMatrixRequest],
-        "days": Sequence[MatrixRequest],
-        "spread": float | None,
-    },
-    total=False,
-)
+class ClockRequest(CostsRequest, total=False):
+    """The source of travel times that are not an objective, maybe over the day."""
+
+    name: str
+    matrices: Sequence[ProfileMatrixRequest]
+    spread: float | None
 
 
 class PromisedRouteRequest(TypedDict, total=False):
@@ -272,11 +254,16 @@ StopCostsRequest = TypedDict(
 )
 
 
-class NewStopRequest(TypedDict, total=False):
-    """A stop that the front does not have, and how to reach it under each objective."""
+class ReachedRequest(TypedDict, total=False):
+    """How to reach a new stop under each objective."""
 
     coordinates: Sequence[ArrayLike | None] | ArrayLike
     costs: Sequence[StopCostsRequest | None]
+
+
+class NewStopRequest(ReachedRequest, total=False):
+    """A stop that the front does not have, and how to reach it under each objective."""
+
     id: Required[str]
     location: ArrayLike | None
     service: float | None
@@ -307,25 +294,8 @@ class RouteOnTheWayRequest(TypedDict, total=False):
     broken_down: bool
 
 
-class NewFleetStopRequest(TypedDict, total=False):
+class NewFleetStopRequest(ReachedRequest, FleetStopRequest, total=False):
     """A new stop of a fleet, with its demands, and how to reach it under each objective."""
-
-    coordinates: Sequence[ArrayLike | None] | ArrayLike
-    costs: Sequence[StopCostsRequest | None]
-    id: Required[str]
-    location: ArrayLike | None
-    demand: ArrayLike
-    pickup: ArrayLike
-    service: float
-    services: Sequence[ServiceRequest]
-    window: ArrayLike | None
-    windows: ArrayLike
-    due: float | ArrayLike | None
-    release: float
-    skills: Sequence[str]
-    vehicle: str | None
-    urgency: float
-    prize: float | None
 
 
 class ChangedStopRequest(TypedDict, total=False):
@@ -351,22 +321,8 @@ class ChangesRequest(TypedDict, total=False):
     tolerance: float | None
 
 
-class OfferedOrderRequest(TypedDict, total=False):
+class OfferedOrderRequest(ReachedRequest, OrderRequest, total=False):
     """An order whose time is not agreed yet: a stop without windows and without a prize."""
-
-    coordinates: Sequence[ArrayLike | None] | ArrayLike
-    costs: Sequence[StopCostsRequest | None]
-    id: Required[str]
-    location: ArrayLike | None
-    demand: ArrayLike
-    pickup: ArrayLike
-    service: float
-    services: Sequence[ServiceRequest]
-    due: float | ArrayLike | None
-    release: float
-    skills: Sequence[str]
-    vehicle: str | None
-    urgency: float
 
 
 # Slots of equal length, one after another, in the unit of the clock.

@@ -149,8 +149,8 @@ class ReplanRequest(PlanOptions, total=False):
     paths: bool
 
 
-class ReplanFleetRequest(SearchOptions, total=False):
-    """The changes since a fleet was planned, and the options of the front of the rest."""
+class FleetChanges(TypedDict, total=False):
+    """The changes since a fleet was planned."""
 
     plan: int | None
     now: float | None
@@ -161,22 +161,18 @@ class ReplanFleetRequest(SearchOptions, total=False):
     stops: Sequence[ChangedStopRequest] | Frame
     vehicles: Sequence[ChangedVehicleRequest]
     costs: Sequence[CostEntryRequest]
+
+
+class ReplanFleetRequest(FleetChanges, SearchOptions, total=False):
+    """The changes since a fleet was planned, and the options of the front of the rest."""
+
     changes: ChangesRequest | None
     geometry: Literal["straight", "roads"]
 
 
-class OffersRequest(TypedDict, total=False):
+class OffersRequest(FleetChanges, total=False):
     """An order without a time, the slots to choose from, and what has changed since the plan."""
 
-    plan: int | None
-    now: float | None
-    slack: float | None
-    routes: Sequence[RouteOnTheWayRequest]
-    add: Sequence[NewFleetStopRequest]
-    remove: Sequence[int | str] | ArrayLike
-    stops: Sequence[ChangedStopRequest] | Frame
-    vehicles: Sequence[ChangedVehicleRequest]
-    costs: Sequence[CostEntryRequest]
     order: Required[OfferedOrderRequest]
     slots: ArrayLike
     every: EverySlotRequest | None
