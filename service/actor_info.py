@@ -13,6 +13,7 @@ from typing import Any, get_args
 
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from google.protobuf.message import DecodeError, Message
+from paretour.values import Actor
 
 from service.instance import Kind
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
@@ -30,34 +31,14 @@ _FIELDS: dict[str, dict[str, tuple[int, str | None]]] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class ActorInfo:
+class ActorInfo(Actor):
     """The metadata of an actor's ONNX file.
 
-    Args:
-        name: Its name in requests.
-        digest: The SHA-256 of the file, in hex.
-        commit: The commit of the code that wrote the file.
-        inputs: The kind of instance that it reads: `coordinates`, shape (n, 2 m), each plane
-            moved and scaled into the unit square; or `matrices`, shape (m, n, n), in units of the
-            scale, with zeros on the diagonal.
-        sizes: The least and greatest number of cities in its training.
-        angles: The least and greatest angle in its training, in degrees.
-        config: The configuration of the training run.
-        figures: The hypervolumes that were measured after training, by number of cities.
-        repairs: Whether it can repair the tours that it has built.
-        most_objectives: The most objectives m that it takes.
+    Its `inputs` are `coordinates`, shape (n, 2 m), each plane moved and scaled into the unit
+    square; or `matrices`, shape (m, n, n), in units of the scale, with zeros on the diagonal.
     """
 
-    name: str
-    digest: str
-    commit: str
     inputs: Kind
-    sizes: Any
-    angles: Any
-    config: Any
-    figures: Any
-    repairs: bool = False
-    most_objectives: int = OBJECTIVES
 
     @property
     def identity(self) -> dict[str, str]:

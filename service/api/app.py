@@ -11,6 +11,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import Response
 
 from service.actor_info import ActorInfo
+from service.api.answers import ActorsAnswer
 from service.api.auth import Access
 from service.api.body_budget import BodyBudget
 from service.api.exception_handlers import HANDLED, answer_refusal
@@ -31,7 +32,8 @@ from service.api.questions import QuestionRoutes
 from service.api.request_bodies import request_schemas
 from service.api.request_headers import ALLOWED
 from service.api.response_headers import EXPOSED
-from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
+from service.api.responses import HealthAnswer, json_response, problem_responses
+from service.api.schemas import documented
 from service.api.site.guide import guide_routes
 from service.api.site.static import static_routes
 from service.api.site.tiles import Tiles
@@ -199,7 +201,7 @@ class _DocumentedApp(FastAPI):
 def _actor_router(actors: Mapping[str, ActorInfo]) -> APIRouter:
     router = APIRouter(tags=["service"])
 
-    @router.get("/actors", response_model=ActorsAnswer)
+    @router.get("/actors", response_model=documented(ActorsAnswer))
     async def list_actors() -> Response:
         """List the networks to choose from."""
         return json_response({"actors": [asdict(actors[name]) for name in sorted(actors)]})

@@ -2,78 +2,24 @@
 
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from paretour.offers import Offers
 from starlette.requests import Request
 from starlette.responses import Response
 
 from service.api.auth import client_of
 from service.api.body import receive_source
 from service.api.body_budget import BodyBudget
-from service.api.plan_responses import FleetObjectiveName, ReasonItem
 from service.api.request_bodies import OFFERS_BODY
-from service.api.responses import Lengths, ObjectiveName, compressed, json_bytes, problem_responses
+from service.api.responses import compressed, json_bytes, problem_responses
+from service.api.schemas import documented
 from service.api.stored_fronts import find_stored
 from service.api.task_parser import TaskParser
 from service.jobs.store import Store
-from service.requests.fields import Maybe, optional
 from service.requests.task import Task
 
 Measure = Callable[[Task], Awaitable[Task]]
-_Slot = Annotated[list[float], Field(min_length=2, max_length=2)]
-
-
-class ChoiceItem(BaseModel):
-    """A place for the order in the plan, and its price."""
-
-    rise: Lengths = Field(description="what each length of the plan grows by")
-    vehicle: str = Field(description="the id of the type of the vehicle")
-    shift: Maybe[int] = optional("the number of its shift, if its vehicle has several")
-    route: Maybe[int] = optional(
-        "the number of its route in the plan; none for a vehicle that does not leave without the"
-        " order"
-    )
-    after: Maybe[str] = optional("the stop before the order; none where the route begins there")
-    arrival: float = Field(description="when the vehicle arrives; it waits until the slot begins")
-
-
-class OfferItem(BaseModel):
-    """Whether the order can be visited in a slot, and at what price."""
-
-    slot: _Slot = Field(description="when the visit may begin, from and to")
-    possible: bool
-    complete: Maybe[bool] = optional(
-        "false where the time did not suffice for all places: another may be better"
-    )
-    rise: Maybe[Lengths] = optional(
-        "the least that each length of the plan grows by: each of its own choice"
-    )
-    choices: Maybe[list[ChoiceItem]] = optional(
-        "the places of which none is better in all objectives, up to five; the first one is the"
-        " best compromise"
-    )
-    replan: Maybe[dict[str, Any]] = optional(
-        "takes the offer: the request for `POST /front/{id}/replan` that adds the order in this"
-        " slot"
-    )
-    reasons: Maybe[list[ReasonItem]] = optional(
-        "if it is not possible: for each type of vehicles the rule that forbids it"
-    )
-
-
-class OffersAnswer(BaseModel):
-    """The offers of an order beside the plan that is driven, in the order of the slots."""
-
-    front: str = Field(description="the front's id")
-    plan: int = Field(description="the number of the plan that is driven")
-    objectives: list[FleetObjectiveName]
-    clock: ObjectiveName = Field(description="the name and unit of all times")
-    lengths: Lengths = Field(description="of the plan from now on, without the order")
-    unassigned: list[str] = Field(description="the ids of stops that the plan leaves out")
-    offers: list[OfferItem]
-    timings_ms: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +38,7 @@ class OfferRoutes:
         router = APIRouter(tags=["fronts"])
         router.post(
             "/front/{id}/offers",
-            response_model=OffersAnswer,
+            response_model=documented(Offers),
             responses=problem_responses(400, 404, 408, 409, 410, 413, 415, 422, 502, 503, 504),
             openapi_extra={"requestBody": OFFERS_BODY},
         )(self.offer_slots)

@@ -10,26 +10,25 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
+from service.api.answers import CoverageAnswer, FleetAnswer, FrontAnswer, RobotsAnswer
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import BodyAllowance, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import FRONT_CONTENT, TEXT_CONTENT, FrontAnswers
 from service.api.middleware import ANSWER_HEADERS
-from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async, webhook_url
 from service.api.response_headers import REPLAYED
 from service.api.responses import (
     AcceptedAnswer,
-    CoverageAnswer,
-    FrontAnswer,
     json_response,
     problem_bytes,
     problem_responses,
     problem_under,
     root_path_of,
 )
+from service.api.schemas import documented
 from service.api.stored_fronts import find_stored
 from service.api.task_parser import TaskParser
 from service.jobs.deadline import Deadline
@@ -86,7 +85,7 @@ class PlanRoutes:
         ):
             router.post(
                 path,
-                response_model=answer,
+                response_model=documented(answer),
                 responses={**responses, **more},
                 openapi_extra={"parameters": list(PARAMETERS), "requestBody": body},
             )(endpoint)

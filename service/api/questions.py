@@ -5,52 +5,19 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, Field
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.plan_responses import PlanItem, RobotPlanItem
-from service.api.responses import (
-    CoverageItem,
-    Lengths,
-    ObjectiveName,
-    TourItem,
-    json_bytes,
-    problem_responses,
-)
+from service.api.answers import QuestionAnswer
+from service.api.responses import json_bytes, problem_responses
+from service.api.schemas import documented
 from service.api.stored_fronts import find_record
 from service.errors import Refusal
 from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.kinds.table import KINDS
-from service.requests.fields import Maybe, optional
 from service.requests.questions import QuestionsQuery, members_of
-
-
-class OptionItem(BaseModel):
-    """A point to stand on."""
-
-    point: Lengths = Field(
-        description="at the last question the lengths of a tour or plan; before, each is at least"
-        " as good as where you stand"
-    )
-    best: Lengths = Field(description="the least length of each objective within reach")
-    within_reach: int = Field(
-        description="how many tours or plans exceed the point in no objective"
-    )
-
-
-class QuestionAnswer(OptionItem):
-    """A question: where the picks have led, and the options; at the end a tour or a plan."""
-
-    front: str = Field(description="the front's id")
-    left: int = Field(description="how many questions are left, this one included; 0 at the end")
-    options: list[OptionItem] = Field(description="by ascending first length; none at the end")
-    objectives: Maybe[list[ObjectiveName]] = optional("as the request names them")
-    number: Maybe[int] = optional("at the end: the number in the front, from 0")
-    tour: Maybe[CoverageItem | TourItem] = optional("at the end, of a front of tours")
-    plan: Maybe[PlanItem | RobotPlanItem] = optional("at the end, of a front of plans")
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +32,7 @@ class QuestionRoutes:
         router = APIRouter(tags=["fronts"])
         router.get(
             "/front/{id}/questions",
-            response_model=QuestionAnswer,
+            response_model=documented(QuestionAnswer),
             responses=problem_responses(404, 409, 410, 422, 503),
         )(self.ask_about_front)
         return router

@@ -1,159 +1,24 @@
-"""Answers and problem documents: their schemas for OpenAPI, and how they become responses.
-
-The schemas only document the answers: a front is written as JSON once, by the worker that found
-it.
-"""
+"""Make responses of answers and problem documents, and the schemas of the short ones."""
 
 import asyncio
 import gzip
 from collections.abc import Mapping
 from dataclasses import replace
 from http import HTTPStatus
-from typing import Annotated, Any
+from typing import Any
 
 from pydantic import BaseModel, Field
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.problem import Problem
 from service.api.request_headers import accepts_gzip
 from service.errors import Refusal
-from service.front import Termination
 from service.jobs.record import Record, Status
-from service.objectives import MOST_OBJECTIVES, OBJECTIVES
-from service.requests.fields import Maybe, empty_list, optional
-from service.requests.stop_fields import NamedStop
-from service.requests.task import KindName
 
 PROBLEM_JSON = "application/problem+json"
 LEAST_COMPRESSED = 2**16  # bytes; shorter answers are sent as they are
 _GZIP_LEVEL = 1  # 6 MB of tours in a tenth of a second, to two fifths; 6 takes four times as long
-Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=MOST_OBJECTIVES)]
-OF_TWO = "of two objectives: 0 at the front's least first length, 1 at its least second"
-OF_MORE = (
-    "of more objectives: each length in the front's own box, 0 at its least and 1 at its greatest"
-)
-Balance = Annotated[
-    float, Field(description="0 at the front's least first length, 1 at its least second")
-]
-
-
-class TourItem(BaseModel):
-    """A tour and where it stands."""
-
-    angle: Maybe[float] = optional("of two objectives: direction of the scaled lengths, in degrees")
-    balance: Maybe[float] = optional(OF_TWO)
-    losses: Maybe[Lengths] = optional(OF_MORE)
-    kept: Maybe[float] = optional(
-        "only in a front that was replanned: the share of the driven tour's remaining legs that"
-        " this tour keeps, in either direction if costs are symmetric"
-    )
-    departure: Maybe[float] = optional(
-        "where costs change over the day: when the tour begins, in seconds of the day"
-    )
-    lengths: Lengths
-    means: Maybe[Lengths] = optional(
-        "where costs spread: the mean lengths; those in `lengths` may be percentiles"
-    )
-    p90: Maybe[Lengths] = optional(
-        "where costs spread: the lengths that nine days of ten do not exceed"
-    )
-    tour: list[int]
-    arrivals: Maybe[list[Lengths]] = optional(
-        "only if `arrivals` is true: all lengths up to each stop, and up to the return of a closed"
-        " tour"
-    )
-    times: Maybe[list[float]] = optional(
-        "where costs change over the day: when it reaches each stop, in seconds of the day, and"
-        " when it ends"
-    )
-    stops: Maybe[list[str]] = optional("the ids of its stops, if the request has ids")
-
-
-class TourAnswer(TourItem):
-    """A tour of a front."""
-
-    front: str = Field(description="the front's id")
-
-
-class ActorName(BaseModel):
-    """The network that built a front."""
-
-    name: str
-    digest: str = Field(description="SHA-256 of its file, or of its package's name and version")
-
-
-class ObjectiveName(BaseModel):
-    """An objective of a front."""
-
-    name: str
-    unit: str | None
-
-
-class RequestNote(BaseModel):
-    """A note on a request that was planned: something in it is likely to be a mistake."""
-
-    code: str = Field(
-        description="tells notes apart: place, swapped, far, outlier, large-costs or prizes"
-    )
-    text: str
-    pointer: Maybe[str] = optional("JSON pointer to the part of the request that it is about")
-
-
-class FrontAnswer(BaseModel):
-    """A front of tours, by ascending first length."""
-
-    id: str
-    status: Status
-    problem: Maybe[Problem] = optional("why it failed")
-    kind: KindName = Field(description="front, coverage, fleet or robots: what was planned")
-    cities: int
-    front: list[TourItem]
-    points: int = Field(description="nondominated points found; front holds at most `size`")
-    hypervolume: float = Field(description="of the front returned, 0 to 1")
-    hypervolume_bound: float | None = Field(
-        description="an upper bound for every front of this instance, if `bound` is true"
-    )
-    reference_point: Lengths | None = Field(
-        description="null, like the scale, until the costs are measured"
-    )
-    scale: Lengths | None
-    actor: ActorName | None = Field(description="null where no network built tours, or none yet")
-    timings_ms: dict[str, float]
-    terminated: Termination | None = Field(
-        description="how the search ended, null while it goes on. `converged`: up to eleven cities"
-        " all tours were compared, and the front is exact; beyond, the search has long found"
-        " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
-        " was no search, and it says that all tours asked for were built"
-    )
-    closed: Maybe[bool] = optional("false where tours are open routes, left out where closed")
-    objectives: Maybe[list[ObjectiveName]] = optional("as the request names them")
-    stops: Maybe[list[NamedStop]] = optional("as the request has them")
-    notes: Maybe[list[RequestNote]] = optional(
-        "what is likely to be a mistake in the request, if anything is"
-    )
-
-
-class ListedFrontItem(BaseModel):
-    """A front in a list."""
-
-    id: str
-    status: Status
-    kind: KindName
-    stored_at: str = Field(
-        description="when it was submitted or, once it is finished, when it was finished (RFC 3339)"
-    )
-    cities: int = Field(description="its cities, stops or places")
-    points: int
-    hypervolume: float
-    objectives: Maybe[list[ObjectiveName]] = optional("as the request names them")
-
-
-class FrontsAnswer(BaseModel):
-    """A page of the caller's fronts, the newest first; `Link` leads to the next page."""
-
-    fronts: list[ListedFrontItem]
 
 
 class AcceptedAnswer(BaseModel):
@@ -161,86 +26,6 @@ class AcceptedAnswer(BaseModel):
 
     id: str
     status: Status
-
-
-class PathItem(BaseModel):
-    """A way over the map, through all places in the order of a tour."""
-
-    cells: list[list[int]] = Field(
-        description="row and column of each; a closed tour ends with its first cell"
-    )
-    metres: float
-    points: Maybe[list[list[float]]] = optional(
-        "x and y of each cell's middle in the frame of the map, in metres, if its origin is known"
-    )
-    yaws: Maybe[list[float]] = optional(
-        "with points: the direction in radians in which the robot leaves each cell, and at the last"
-        " cell the one in which it arrives"
-    )
-    visits: list[list[int]] = empty_list(
-        "for each place of the tour in order, back to the first if it is closed: the index of its"
-        " cell in cells, and the place; all other cells are on the way"
-    )
-
-
-class UncoveredRegionItem(BaseModel):
-    """A region of free cells that no path leads to."""
-
-    cells: int
-    cell: list[int] = Field(description="row and column of a cell in it")
-    box: list[list[int]] = Field(
-        description="row and column of the first and of the last cell of its bounding box"
-    )
-
-
-class UncoveredItem(BaseModel):
-    """The free cells that no path leads to, as a room that is closed off."""
-
-    cells: int
-    square_metres: float
-    regions: list[UncoveredRegionItem] = Field(
-        description="the largest, at most 20, the largest first"
-    )
-
-
-class CoverageItem(TourItem):
-    """A tour through places on a map."""
-
-    path: Maybe[PathItem] = optional("if `paths` is true")
-
-
-class MapAnswer(FrontAnswer):
-    """A front of anything on a map."""
-
-    places: list[list[int]] = Field(description="row and column of each")
-    uncovered: Maybe[UncoveredItem] = optional(
-        "the free cells that no path leads to, once the map is surveyed"
-    )
-
-
-class CoverageAnswer(MapAnswer):
-    """A front of tours through places on a map, by ascending length."""
-
-    front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
-
-
-class ActorItem(ActorName):
-    """A network, as its file describes it."""
-
-    inputs: str = Field(description="the kind of instance that it reads")
-    commit: str
-    sizes: Any = Field(description="numbers of cities that it was trained on")
-    angles: Any = Field(description="angles that it was trained on")
-    config: Any
-    figures: Any = Field(description="what was measured of it")
-    repairs: bool = Field(description="whether it can repair its tours")
-    most_objectives: int = Field(description="the most objectives that it takes")
-
-
-class ActorsAnswer(BaseModel):
-    """The networks to choose from."""
-
-    actors: list[ActorItem]
 
 
 class CompilingAnswer(BaseModel):

@@ -4,24 +4,23 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
+from paretour.values import Tour
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
+from service.api.answers import FleetAnswer, FrontAnswer, FrontsAnswer, RobotsAnswer
 from service.api.auth import caller_of, owner_of
 from service.api.front_events import PARAMETERS, Seen, events_after
 from service.api.geojson.answers import CONTENT, FRONT_CONTENT, FrontAnswers
-from service.api.plan_responses import FleetAnswer, RobotsAnswer
 from service.api.response_headers import LINK
 from service.api.responses import (
-    FrontAnswer,
-    FrontsAnswer,
-    TourAnswer,
     json_bytes,
     json_response,
     problem_responses,
     record_under,
     root_path_of,
 )
+from service.api.schemas import documented
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine
 from service.jobs.listing import ListedFront
@@ -59,17 +58,17 @@ class StoredFrontRoutes:
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
         router.get(
             "/front",
-            response_model=FrontsAnswer,
+            response_model=documented(FrontsAnswer),
             responses={200: {"headers": LINK}, **problem_responses(422, 503)},
         )(self.list_fronts)
         router.get(
             "/front/{id}",
-            response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
+            response_model=documented(FrontAnswer | FleetAnswer | RobotsAnswer),
             responses={200: FRONT_CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.get_front)
         router.delete(
             "/front/{id}",
-            response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
+            response_model=documented(FrontAnswer | FleetAnswer | RobotsAnswer),
             responses={204: {"description": "Forgotten"}, **missing},
         )(self.forget_front)
         router.get(
@@ -84,7 +83,7 @@ class StoredFrontRoutes:
         )(self.follow_front)
         router.get(
             "/tour",
-            response_model=TourAnswer,
+            response_model=documented(Tour),
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.get_tour)
         return router

@@ -17,6 +17,7 @@ from paretour import (
     Tour,
 )
 from paretour.choice import losses
+from paretour.described import document_of
 from paretour.kinds import Kind
 from rich.markup import escape
 from rich.table import Table
@@ -213,16 +214,9 @@ def named_points(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) ->
 
 
 def tour_as_json(tour: Tour) -> str:
-    """Return a tour as the service answers it, without the front's id."""
-    flat = len(tour.lengths) == OBJECTIVES
-    spreads = (("means", tour.means), ("p90", tour.p90))
-    members = {
-        **({"angle": tour.angle, "balance": tour.balance} if flat else {}),
-        "lengths": tour.lengths.tolist(),
-        **{name: each.tolist() for name, each in spreads if each is not None},
-        "tour": tour.tour.tolist(),
-    }
-    return json.dumps(members if tour.stops is None else {**members, "stops": tour.stops})
+    """Return a tour as the service answers it, without the front's id and the way over a map."""
+    members = document_of(tour).items()
+    return json.dumps({name: each for name, each in members if name not in ("front", "path")})
 
 
 def lengths_as_text(front: FrontOfAnyKind, lengths: NDArray[np.float64]) -> str:

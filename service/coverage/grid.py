@@ -1,9 +1,8 @@
 """Occupancy grids: free cells, their regions, places that cover one, and regions out of reach."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+from paretour.values import Uncovered, UncoveredRegion
 
 from service.coverage.frame import Cells, Mask
 
@@ -77,36 +76,6 @@ def covering_places(region: Mask, spacing: float) -> Cells:
     ordered = squares[order]
     first = np.concatenate(([True], (ordered[1:] != ordered[:-1]).any(axis=1)))
     return cells[order[first]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class UncoveredRegion:
-    """A region that is out of reach.
-
-    Attributes:
-        cells: The number of cells.
-        cell: The row and column of one cell.
-        box: The row and column of the first and of the last cell of its bounding box.
-    """
-
-    cells: int
-    cell: tuple[int, int]
-    box: tuple[tuple[int, int], tuple[int, int]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Uncovered:
-    """All free cells that no tour reaches, because no path leads there: closed rooms.
-
-    Attributes:
-        cells: The number of cells.
-        square_metres: Their area.
-        regions: The largest regions of these cells, the largest first.
-    """
-
-    cells: int
-    square_metres: float
-    regions: tuple[UncoveredRegion, ...]
 
 
 def uncovered(free: Mask, cell: Cells, cell_size: float) -> Uncovered:

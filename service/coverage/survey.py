@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 from itertools import chain, groupby, islice
 
 import numpy as np
+from paretour.values import Uncovered
 
 from service.coverage.coverage import Coverage
 from service.coverage.detours import find_detours, most_searches
 from service.coverage.frame import Array, Cells, CoveragePath, MapFrame
-from service.coverage.grid import Uncovered, free_cells, uncovered
+from service.coverage.grid import free_cells, uncovered
 from service.coverage.leg_paths import Indices, LegPaths, Legs, Numbers
 from service.coverage.pace import Pace
 from service.coverage.places import find_places

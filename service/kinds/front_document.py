@@ -1,8 +1,9 @@
 """A front as JSON: the one form in which it is sent between processes, stored and answered.
 
-To add a member to the answer, add a field to `FrontDocument` and fill it in where documents are
-written: `empty_document` in `table`, `tour_document`, `fleet` and `robots`. Stores, engines and
-routes pass on all members without knowing them. A field that earlier releases did not store needs a
+To add a member to the answer, declare it in `service/api/answers.py`, add a field to
+`FrontDocument`, and fill it in where documents are written: `empty_document` in `table`,
+`tour_document`, `fleet` and `robots`. Stores, engines and routes pass on all members without
+knowing them. A field that earlier releases did not store needs a
 default.
 """
 
@@ -31,23 +32,10 @@ PATH_PART = 2**14  # cells of a path that are written at once
 class FrontDocument:
     """A front of m tours as JSON.
 
-    All fields but the last four are members of the answer, in this order. A member whose default
-    is None is left out while it is None.
+    All fields but the last four are members of the answer, in this order; `service/api/answers.py`
+    says what each is. A member whose default is None is left out while it is None.
 
     Attributes:
-        reference_point: One number for each objective; None while the places are not known.
-        scale: One number for each objective; None while the places are not known.
-        timings_ms: Milliseconds of each phase of planning; once it has ended, first those in the
-            queue, and last all since the request.
-        actor: Name and digest of the network; None where it built no tours.
-        places: Row and column of each place of a coverage task.
-        closed: False where tours are open routes; None where they are closed.
-        objectives: Name and unit of each objective, where the caller named them.
-        stops: Id and location of each stop, where the caller named them.
-        clock: Name and unit of all times of a fleet, if it has a clock.
-        driven: The lengths of the rest of the plan that is driven, where a fleet was replanned.
-        uncovered: The free cells of a map that are out of reach.
-        notes: What is likely to be a mistake in the request; None where nothing is.
         tours: The JSON of all tours, separated by commas, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
         lengths: The lengths of each of m tours, shape (m, k).

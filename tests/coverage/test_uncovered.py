@@ -5,8 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from paretour import UncoveredRegion
 
-from service.coverage.grid import UncoveredRegion, regions, uncovered
+from service.coverage.grid import regions, uncovered
 
 Cell = tuple[int, int]
 

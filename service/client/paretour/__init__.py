@@ -19,7 +19,6 @@ read the events of `events`. They only need the address of a service.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from paretour.actors import Actor
 from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
@@ -50,7 +49,7 @@ from paretour.remedies import Remedy
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.ros.maps import read_ros_map
 from paretour.ros.paths import Path
-from paretour.values import Front, Progress, Tour, Uncovered, UncoveredRegion
+from paretour.values import Actor, Front, Progress, Tour, Uncovered, UncoveredRegion
 
 if TYPE_CHECKING:
     from paretour.asynchronous import AsyncClient, AsyncJob

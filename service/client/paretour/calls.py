@@ -10,12 +10,11 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeVar, Unpack
 
 import httpx
-from paretour.actors import Actor, parse_actor
 from paretour.bodies import ACCEPTED, answer_of
 from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
-from paretour.expect import each, members, text, unexpected
+from paretour.expect import each, members, text, unexpected, value_of
 from paretour.explaining import explaining
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.listing import PAGE, ListedFront, next_page, parse_listed
@@ -43,7 +42,7 @@ from paretour.requests import (
     parts_of,
     replan_plan,
 )
-from paretour.values import FINAL_STATUSES, Front, Tour, parse_front, parse_tour
+from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_front, parse_tour
 
 T = TypeVar("T")
 AnyFront = TypeVar("AnyFront", bound=FrontOfAnyKind)
@@ -336,7 +335,7 @@ class Calls:
 
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""
-        return answer_of((yield from self._get("/actors"))).read("actors", each(parse_actor))
+        return answer_of((yield from self._get("/actors"))).read("actors", each(value_of(Actor)))
 
     def events(self, front_id: str) -> JobEvents:
         """Return the events of a job, before the first one is read."""

@@ -19,6 +19,7 @@ from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.described import Shape, shape_of
 
 T = TypeVar("T")
 Read = Callable[[Any, str], T]  # from a value and its name in sentences to the value as its type
@@ -197,6 +198,31 @@ def column(items: Sequence[Members], name: str) -> NDArray[np.float64]:
     return _at_once(items, name, floats(None), number)
 
 
+def optional_column(
+    items: Sequence[Members], cls: type, name: str, known: Mapping[str, Any]
+) -> Any:
+    """Return a member of all items; numbers, and lists of these, as an array.
+
+    Args:
+        items: The items.
+        cls: The dataclass of one, which says what the member is.
+        name: The name of the member.
+        known: Of the members before it, by name, something of the same length.
+
+    Returns:
+        None if the first item has none.
+    """
+    if not items or items[0].document.get(name) is None:
+        return None
+    [(of, shaped)] = [(of, shaped) for field, of, shaped in _fields(cls) if field.name == name]
+    if float in (of, *get_args(of)):
+        return column(items, name)
+    if shaped and shaped[0] in _ARRAYS and len(shaped[1].sizes) == 1:
+        return rows(items, name, _ARRAYS[shaped[0]], *shaped[1].after(known))
+    reader = _shaped(*shaped, known) if shaped else _reader(of)
+    return tuple(item.read(name, reader) for item in items)
+
+
 def _at_once(
     items: Sequence[Members], name: str, every: Read[AnyArray], one: Read[Any]
 ) -> AnyArray:
@@ -259,8 +285,7 @@ def value_of(cls: type[T], **own: Read[Any]) -> Read[T]:
     """Return a reader of objects as values of a dataclass, whose fields are named as the members.
 
     A member may be missing where its field has a default or may be None. It is read by the type of
-    the field, or as the field's metadata say under `read`: a function from the fields before it to
-    a reader.
+    the field.
 
     Args:
         cls: The dataclass.
@@ -269,11 +294,10 @@ def value_of(cls: type[T], **own: Read[Any]) -> Read[T]:
 
     def read(value: Any, where: str) -> T:
         found, known = members(value, where), dict[str, Any]()
-        for field, of in _fields(cls):
+        for field, of, shaped in _fields(cls):
             if _has_default(field) and found.document.get(field.name) is None:
                 continue
-            of_known = field.metadata.get("read")
-            by = own.get(field.name) or (of_known(known) if of_known else _reader(of))
+            by = own.get(field.name) or (_shaped(*shaped, known) if shaped else _reader(of))
             may_be_none = NoneType in get_args(of)
             known[field.name] = (found.maybe if may_be_none else found.read)(field.name, by)
         return cls(**known)
@@ -282,10 +306,10 @@ def value_of(cls: type[T], **own: Read[Any]) -> Read[T]:
 
 
 @cache
-def _fields(cls: Any) -> list[tuple[Field[Any], Any]]:
-    """Return the fields of a dataclass, each with its type."""
-    types = get_type_hints(cls)
-    return [(field, types[field.name]) for field in fields(cls)]
+def _fields(cls: Any) -> list[tuple[Field[Any], Any, tuple[Any, Shape] | None]]:
+    """Return the fields of a dataclass, each with its type, and what that has a shape of."""
+    types = get_type_hints(cls, include_extras=True)
+    return [(field, types[field.name], shape_of(types[field.name])) for field in fields(cls)]
 
 
 def _has_default(field: Field[Any]) -> bool:
@@ -303,6 +327,16 @@ def _reader(of: Any) -> Read[Any]:
     return value_of(of) if part is of else _reader(part)
 
 
+def _shaped(of: Any, shape: Shape, known: Mapping[str, Any]) -> Read[Any]:
+    """Return the reader of an array or a list of a shape, given the members before."""
+    sizes = shape.after(known)
+    return _ARRAYS[of](*sizes) if of in _ARRAYS else each(_reader(get_args(of)[0]), *sizes)
+
+
+def _object(value: Any, where: str) -> Mapping[str, Any]:
+    return members(value, where).document
+
+
 def _numbers(value: Any, where: str) -> dict[str, float]:
     found = members(value, where)
     return {name: found.read(name, number) for name in found.document}
@@ -315,7 +349,10 @@ _OF_TYPES: Mapping[Any, Read[Any]] = {
     bool: flag,
     datetime: time,
     Any: anything,
+    Mapping[str, Any]: _object,
     Mapping[str, float]: _numbers,
-    NDArray[np.float64]: floats(None),
-    NDArray[np.int64]: indexes(None),
+}
+_ARRAYS: Mapping[Any, Callable[..., Read[Any]]] = {
+    NDArray[np.float64]: floats,
+    NDArray[np.int64]: indexes,
 }

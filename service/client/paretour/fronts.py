@@ -6,23 +6,21 @@ from dataclasses import dataclass
 from operator import index as whole
 from typing import Any, Generic, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from paretour import display
 from paretour.choice import losses
+from paretour.described import Array, answer, member
 from paretour.questions import OPTIONS, QUESTIONS, Question, ask
 from paretour.text_sets import label, text_set, unnamed
 
-Array = NDArray[np.float64]
 Item = TypeVar("Item")  # a tour, or a plan
 
 
-@dataclass(frozen=True)
+@answer("ObjectiveName", eq=True, kw_only=False)
 class Objective:
-    """The name of an objective as in the request, and its unit or None."""
+    """An objective of a front."""
 
-    name: str
-    unit: str | None
+    name: str = member("as in the request")
+    unit: str | None = member(always=True)
 
     @property
     def label(self) -> str:
@@ -30,19 +28,15 @@ class Objective:
         return label(self.name, self.unit)
 
 
-@dataclass(frozen=True)
+@answer("RequestNote", eq=True, kw_only=False)
 class RequestNote:
-    """A note on a request that was planned: something in it is likely to be a mistake.
+    """A note on a request that was planned: something in it is likely to be a mistake."""
 
-    Attributes:
-        code: Tells notes apart, such as `swapped` or `large-costs`; the guide lists them.
-        text: A sentence.
-        pointer: The JSON pointer of the part of the request that it is about, if it has one.
-    """
-
-    code: str
-    text: str
-    pointer: str | None = None
+    code: str = member("tells notes apart: place, swapped, far, outlier, large-costs or prizes")
+    text: str = member("a sentence")
+    pointer: str | None = member(
+        "JSON pointer to the part of the request that it is about", default=None
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

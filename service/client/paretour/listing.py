@@ -1,38 +1,32 @@
 """Read the list of stored fronts, page by page."""
 
-from dataclasses import dataclass
 from datetime import datetime
 
 import httpx
+from paretour.described import answer, member
 from paretour.expect import unexpected, value_of
 from paretour.fronts import Objective
 
 PAGE = 100  # the most fronts that the service lists at once
 
 
-@dataclass(frozen=True, kw_only=True)
+@answer("ListedFrontItem", eq=True)
 class ListedFront:
-    """A front in a list, without its tours; `client.any_job(id).front()` is the front itself.
+    """A front in a list.
 
-    Attributes:
-        id: Its id.
-        status: queued, running, done, cancelled or failed.
-        kind: front, coverage, fleet or robots.
-        stored_at: When it was submitted or, once it is finished, when it was finished.
-        cities: The number of its cities, stops or places.
-        points: The number of nondominated points found.
-        hypervolume: The hypervolume of the tours that it holds.
-        objectives: Their names and units, if the request named them.
+    It comes without its tours: `client.any_job(id).front()` is the front itself.
     """
 
     id: str
-    status: str
-    kind: str
-    stored_at: datetime
-    cities: int
-    points: int
-    hypervolume: float
-    objectives: tuple[Objective, ...] | None
+    status: str = member("queued, running, done, cancelled or failed")
+    kind: str = member("front, coverage, fleet or robots")
+    stored_at: datetime = member(
+        "when it was submitted or, once it is finished, when it was finished (RFC 3339)"
+    )
+    cities: int = member("its cities, stops or places")
+    points: int = member("how many nondominated points were found")
+    hypervolume: float = member("of the tours or plans that it holds")
+    objectives: tuple[Objective, ...] | None = member("as the request names them")
 
 
 parse_listed = value_of(ListedFront)

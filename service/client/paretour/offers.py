@@ -1,87 +1,72 @@
 """Offers: the slots in which an order can be promised, and what each costs the plan."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
-from paretour.expect import Members, members, value_of
-from paretour.fronts import Array, Objective
+from paretour.described import Lengths, Shape, answer, member
+from paretour.expect import Members, value_of
+from paretour.fronts import Objective
 from paretour.plans import Reason
 
 
-def _object(value: Any, where: str) -> Mapping[str, Any]:
-    return members(value, where).document
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
+@answer("ChoiceItem")
 class OfferChoice:
-    """A place for the order in the plan.
+    """A place for the order in the plan, and its price."""
 
-    Attributes:
-        rise: What each length of the plan grows by, shape (m,).
-        vehicle: The id of the type of the vehicle.
-        arrival: When it arrives; it waits until the slot begins.
-        route: The number of its route in the plan; None for a vehicle that does not leave without
-            the order.
-        after: The stop before the order; None where the route begins there.
-        shift: The number of its shift, if its vehicle has several.
-    """
-
-    rise: Array
-    vehicle: str
-    arrival: float
-    route: int | None = None
-    after: str | None = None
-    shift: int | None = None
+    rise: Lengths = member("what each length of the plan grows by")
+    vehicle: str = member("the id of the type of the vehicle")
+    shift: int | None = member("the number of its shift, if its vehicle has several", default=None)
+    route: int | None = member(
+        "the number of its route in the plan; none for a vehicle that does not leave without the"
+        " order",
+        default=None,
+    )
+    after: str | None = member(
+        "the stop before the order; none where the route begins there", default=None
+    )
+    arrival: float = member("when the vehicle arrives; it waits until the slot begins")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@answer("OfferItem")
 class Offer:
-    """Whether the order can be visited in a slot, and at what price.
+    """Whether the order can be visited in a slot, and at what price."""
 
-    Attributes:
-        slot: When the visit may begin, from and to.
-        possible: Whether some vehicle can visit it then.
-        complete: Whether all places were tried. If not, another may be better.
-        rise: The least that each length of the plan grows by, shape (m,); None if not possible.
-        choices: The places of which none is better in all objectives; the first one is the best
-            compromise.
-        replan: Takes the offer: the members for `replan_fleet` that add the order in this slot.
-        reasons: If it is not possible, for each type of vehicles the rule that forbids it.
-    """
-
-    slot: tuple[float, ...]
+    slot: Annotated[tuple[float, ...], Shape(2)] = member("when the visit may begin, from and to")
     possible: bool
-    complete: bool = True
-    rise: Array | None = None
-    choices: tuple[OfferChoice, ...] = ()
-    replan: Mapping[str, Any] | None = field(default=None, metadata={"read": lambda _: _object})
-    reasons: tuple[Reason, ...] = ()
+    complete: bool = member(
+        "false where the time did not suffice for all places: another may be better", default=True
+    )
+    rise: Lengths | None = member(
+        "the least that each length of the plan grows by: each of its own choice", default=None
+    )
+    choices: tuple[OfferChoice, ...] = member(
+        "the places of which none is better in all objectives, up to five; the first one is the"
+        " best compromise",
+        default=(),
+    )
+    replan: Mapping[str, Any] | None = member(
+        "takes the offer: the request for `POST /front/{id}/replan` that adds the order in this"
+        " slot",
+        default=None,
+    )
+    reasons: tuple[Reason, ...] = member(
+        "if it is not possible: for each type of vehicles the rule that forbids it", default=()
+    )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@answer("OffersAnswer")
 class Offers:
-    """The offers of an order beside the plan of a fleet that is driven.
+    """The offers of an order beside the plan that is driven, in the order of the slots."""
 
-    Attributes:
-        front: The id of the front.
-        plan: The number of the plan.
-        objectives: The objectives, as the request for the front named them.
-        clock: The name and unit of all times.
-        lengths: The lengths of the plan from now on, without the order, shape (m,).
-        unassigned: The ids of the stops that the plan leaves out.
-        offers: One for each slot, in their order.
-        document: The answer of the service.
-    """
-
-    front: str
-    plan: int
+    front: str = member("the front's id")
+    plan: int = member("the number of the plan that is driven")
     objectives: tuple[Objective, ...]
-    clock: Objective
-    lengths: Array
-    unassigned: tuple[str, ...]
+    clock: Objective = member("the name and unit of all times")
+    lengths: Lengths = member("of the plan from now on, without the order")
+    unassigned: tuple[str, ...] = member("the ids of stops that the plan leaves out")
     offers: tuple[Offer, ...]
-    document: Mapping[str, Any] = field(metadata={"read": lambda _: _object})
+    timings_ms: Mapping[str, float] = member(default={}, always=True)
+    document: Mapping[str, Any] = member("the whole answer")
 
     @property
     def possible(self) -> tuple[Offer, ...]:

@@ -1,85 +1,67 @@
 """Fronts of plans, for the vehicles of a fleet or for robots on a map, as immutable values."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import nan
-from typing import Any, TypeVar, Unpack
+from typing import Annotated, Any, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import Choice, choose
+from paretour.described import OF_MORE, OF_TWO, Array, Indexes, Lengths, Shape, answer, member
 from paretour.display import counted, numbers
 from paretour.expect import each, floats, indexes, members, value_of
-from paretour.fronts import Array, Objective, StoredFront
+from paretour.fronts import Objective, StoredFront
 from paretour.ros.paths import Path
 from paretour.values import PAIR, Uncovered, objectives_of, stored_members
 
+OfStops = Annotated[Array, Shape("stops")]
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+
+@answer("RouteItem")
 class FleetRoute:
-    """The route of one vehicle.
+    """The route of one vehicle."""
 
-    Attributes:
-        vehicle: The id of its type.
-        stops: The ids of its stops in order, with its start and end if these are stops.
-        lengths: Its lengths, shape (m,).
-        arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
-            (len(stops),). None without a clock.
-        ends: When the visit at each of these stops ends, shape (len(stops),). None without a clock.
-        breaks: When each break on the way begins.
-        shift: The number of its shift, if its vehicle has several.
-        route: The number of its route in the plan that is driven, if it is on its way.
-        load: The most that it carries at a time, in each dimension.
-        profile: The profile of its vehicle, if it has one.
-        distance: How far it has driven at each of these stops, if its vehicle has a max_distance.
-        driving: How long it has driven at each of them, if its vehicle has a max_driving.
-    """
-
-    vehicle: str
-    stops: tuple[str, ...]
-    lengths: Array
-    arrivals: Array | None = field(metadata={"read": lambda route: floats(len(route["stops"]))})
-    ends: Array | None = field(
-        default=None, metadata={"read": lambda route: floats(len(route["stops"]))}
+    vehicle: str = member("the id of its type")
+    stops: tuple[str, ...] = member("ids in order, with the start and end that are stops")
+    lengths: Lengths = member()
+    load: tuple[int, ...] = member(
+        "the most that it carries at a time, in each dimension", default=()
     )
-    breaks: tuple[float, ...] = ()
-    shift: int | None = None
-    route: int | None = None
-    load: tuple[int, ...] = ()
-    profile: str | None = None
-    distance: tuple[float, ...] = ()
-    driving: tuple[float, ...] = ()
+    shift: int | None = member("the number of its shift, if its vehicle has several", default=None)
+    route: int | None = member(
+        "of a vehicle on its way: the number of its route in the plan that is driven", default=None
+    )
+    profile: str | None = member("the profile of its vehicle, if it has one", default=None)
+    arrivals: OfStops | None = member(
+        "if there is a clock: when it reaches each stop. At the first stop: when it leaves, as late"
+        " as possible without finishing later"
+    )
+    ends: OfStops | None = member(
+        "if there is a clock: when the visit at each stop ends", default=None
+    )
+    breaks: tuple[float, ...] = member("when each break on the way begins", default=())
+    distance: tuple[float, ...] = member(
+        "if its vehicle has a max_distance: how far it has driven at each stop", default=()
+    )
+    driving: tuple[float, ...] = member(
+        "if its vehicle has a max_driving: how long it has driven at each stop", default=()
+    )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@answer("RobotRouteItem")
 class RobotRoute:
-    """The route of one robot.
+    """The route of one robot."""
 
-    Attributes:
-        robot: Its id.
-        tour: Its places in order, from its start to its end, shape (k,).
-        lengths: Its lengths, shape (2,).
-        path: Its path over the map, if the request asked for paths.
-    """
-
-    robot: str
-    tour: NDArray[np.int64]
-    lengths: Array
-    path: Path | None
+    robot: str = member("its id")
+    tour: Indexes = member("its places in order, from its start to its end")
+    lengths: Lengths = member()
+    path: Path | None = member("if `paths` is true")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class _Plan:
-    """A plan of a front: routes of the vehicles or robots used.
+    """A plan of a front: routes of the vehicles or robots used."""
 
-    Attributes:
-        balance: 0 at the least first length of the front, 1 at the least second; NaN under three
-            objectives.
-        lengths: Its lengths, shape (m,).
-        routes: The routes of those that leave.
-    """
-
-    balance: float = nan
     lengths: Array
     routes: tuple[Any, ...]
 
@@ -88,58 +70,60 @@ class _Plan:
         return f"<{type(self).__name__} of {routes}: lengths {numbers(self.lengths)}>"
 
 
-@dataclass(frozen=True, kw_only=True)
+@answer("ReasonItem", eq=True)
 class Reason:
-    """The rule that keeps the vehicles of a type from a stop, and what one would do."""
+    """A rule that keeps the vehicles of a type from a stop."""
 
-    vehicle: str
+    vehicle: str = member("the id of the type")
     rule: str
-    detail: str
+    detail: str = member("what a vehicle would do that the rule forbids")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@answer("LeftOutItem")
 class LeftOut:
-    """A stop that a plan leaves out.
+    """A stop that a plan leaves out: how it can be served, or why it cannot."""
 
-    Attributes:
-        stop: Its id.
-        plan: The number of the plan of the front that serves it at the least price, if one does.
-        price: What each length grows by there, or if the stop is inserted here, shape (m,). None
-            if no vehicle can serve it.
-        reasons: If none can, a reason for each type of vehicles.
-    """
-
-    stop: str
-    plan: int | None
-    price: Array | None
-    reasons: tuple[Reason, ...] = ()
+    stop: str = member("its id")
+    plan: int | None = member("the number of the plan of this front that serves it")
+    price: Annotated[Array, Shape(None)] | None = member(
+        "what each length grows by in that plan, or if the stop is inserted here"
+    )
+    reasons: tuple[Reason, ...] = member(
+        "if no vehicle can serve it: for each type the rule that forbids", default=()
+    )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@answer("PlanItem")
 class FleetPlan(_Plan):
-    """A plan for the vehicles of a fleet.
+    """A plan of a fleet and where it stands."""
 
-    Attributes:
-        unassigned: The ids of the stops that it leaves out.
-        measures: What plans are compared by, by name, as far as the request allows: `vehicles`,
-            `driving` and others, which the reference at `/docs` lists.
-        left_out: For each stop that it leaves out, what it would cost to serve it, or why none can.
-        kept: If it was replanned, the share of the stops left that the same vehicles visit after
-            the same stops.
-    """
+    balance: float = member(OF_TWO, default=nan)
+    losses: Lengths | None = member(OF_MORE, default=None)
+    lengths: Lengths = member()
+    kept: float | None = member(
+        "of a replanned fleet: the share of the stops left that the same vehicles visit after the"
+        " same stops as in the plan that is driven",
+        default=None,
+    )
+    measures: Mapping[str, float] = member(
+        "what plans are compared by, as far as the request allows", default={}, always=True
+    )
+    routes: tuple[FleetRoute, ...] = member("one for each vehicle that leaves")
+    unassigned: tuple[str, ...] = member("the ids of stops with a prize that are left out")
+    left_out: tuple[LeftOut, ...] = member(
+        "for each of these, once the search has ended", default=()
+    )
 
-    routes: tuple[FleetRoute, ...]
-    unassigned: tuple[str, ...]
-    measures: Mapping[str, float] = field(default_factory=dict)
-    left_out: tuple[LeftOut, ...] = ()
-    kept: float | None = None
 
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@answer("RobotPlanItem")
 class RobotPlan(_Plan):
-    """A plan for several robots on a map."""
+    """A plan of several robots and where it stands."""
 
-    routes: tuple[RobotRoute, ...]
+    balance: float = member(
+        "0 at the front's least first length, 1 at its least second", default=nan, always=True
+    )
+    lengths: Lengths = member()
+    routes: tuple[RobotRoute, ...] = member("one for each robot that leaves")
 
 
 Plan = TypeVar("Plan", FleetPlan, RobotPlan)

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import WrongChoice, losses
+from paretour.described import Array, Lengths, answer, member
 from paretour.expect import Members, count, each, value_of
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 QUESTIONS = 3  # asked by default
 MOST_QUESTIONS = 10
@@ -27,19 +27,16 @@ LEAST_OPTIONS, MOST_OPTIONS = 2, 6
 _ROUNDS = 100  # of moving the middles of groups; a few are enough
 
 
-@dataclass(frozen=True, eq=False)
+@answer("OptionItem", kw_only=False)
 class Option:
-    """A point to stand on, and what stays within reach from it.
+    """A point to stand on."""
 
-    Attributes:
-        point: A length of each objective, shape (m,). At the last question it is a tour's.
-        best: The least length of each objective, shape (m,), of all tours within reach.
-        within_reach: The number of tours none of whose lengths exceeds the point's.
-    """
-
-    point: Array
-    best: Array
-    within_reach: int
+    point: Lengths = member(
+        "at the last question the lengths of a tour or plan; before, each is at least as good as"
+        " where you stand"
+    )
+    best: Lengths = member("the least length of each objective within reach")
+    within_reach: int = member("how many tours or plans exceed the point in no objective")
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,18 +1,18 @@
 """Answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from math import nan
-from typing import Any, TypeVar, Unpack
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import Choice, choose
+from paretour.described import OF_MORE, OF_TWO, Array, Indexes, Lengths, Shape, answer, member
 from paretour.display import counted, numbers
 from paretour.expect import (
     Members,
-    Read,
     column,
     count,
     each,
@@ -20,17 +20,26 @@ from paretour.expect import (
     indexes,
     members,
     number,
+    optional_column,
     read_only,
     rows,
     text,
     value_of,
 )
-from paretour.fronts import Array, Objective, RequestNote, StoredFront
+from paretour.fronts import Objective, RequestNote, StoredFront
 from paretour.ros.paths import PAIR, Path
 
-T = TypeVar("T")
 FINAL_STATUSES = ("done", "cancelled", "failed")
 MOST = 4  # objectives
+# The attributes of a front that have a member of each of its tours.
+_COLUMNS = {
+    "tours": "tour",
+    "angles": "angle",
+    "balances": "balance",
+    "paths": "path",
+    "departures": "departure",
+    **{name: name for name in ("stops", "kept", "arrivals", "times", "means", "p90")},
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,81 +51,100 @@ class Progress:
     points: int
 
 
-@dataclass(frozen=True, kw_only=True)
+@answer("ActorName", eq=True)
+class ActorName:
+    """The network that built a front."""
+
+    name: str
+    digest: str = member("SHA-256 of its file, or of its package's name and version")
+
+
+@answer("ActorItem", eq=True)
+class Actor(ActorName):
+    """A network, as its file describes it."""
+
+    commit: str = member("the commit of the source that exported it")
+    inputs: str = member("the kind of instance that it reads")
+    sizes: Any = member("numbers of cities that it was trained on")
+    angles: Any = member("angles that it was trained on")
+    config: Any = member("the configuration of its training")
+    figures: Any = member("what was measured of it")
+    repairs: bool = member("whether it can repair its tours", default=False, always=True)
+    most_objectives: int = member("the most objectives that it takes", default=2, always=True)
+
+
+@answer("UncoveredRegionItem", eq=True)
 class UncoveredRegion:
-    """A region of free cells that no path leads to.
+    """A region of free cells that no path leads to."""
 
-    Attributes:
-        cells: How many cells it has.
-        cell: The row and column of one of them.
-        box: The row and column of the first and of the last cell of its bounding box.
-    """
-
-    cells: int
-    cell: tuple[int, int]
-    box: tuple[tuple[int, int], tuple[int, int]]
+    cells: int = member("how many cells it has")
+    cell: tuple[int, int] = member("row and column of a cell in it")
+    box: tuple[tuple[int, int], tuple[int, int]] = member(
+        "row and column of the first and of the last cell of its bounding box"
+    )
 
 
-@dataclass(frozen=True, kw_only=True)
+@answer("UncoveredItem", eq=True)
 class Uncovered:
-    """The free cells of a map that no path leads to, such as a closed room.
+    """The free cells that no path leads to, as a room that is closed off."""
 
-    Attributes:
-        cells: How many there are.
-        square_metres: Their area.
-        regions: The largest regions that they form, at most 20, the largest first.
-    """
-
-    cells: int
-    square_metres: float
-    regions: tuple[UncoveredRegion, ...]
+    cells: int = member("how many there are")
+    square_metres: float = member("their area")
+    regions: tuple[UncoveredRegion, ...] = member("the largest, at most 20, the largest first")
 
 
-def _of_lengths(tour: Mapping[str, Any]) -> Any:
-    return floats(len(tour["lengths"]))
+@answer("TourItem")
+class TourItem:
+    """A tour and where it stands."""
 
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Tour:
-    """A tour of a front.
-
-    Attributes:
-        front: The id of the front.
-        angle: The direction of its lengths in objective space, in degrees; NaN of more than two
-            objectives.
-        balance: 0 at the least first length of the front, 1 at the least second; NaN of more.
-        lengths: Its length under each objective, shape (m,).
-        tour: Its cities, or over a map its places, in order, shape (n,).
-        arrivals: All its lengths up to each city, and back at the first if it is closed, shape (n
-            + 1, m); None if the request did not ask for them.
-        path: Its path over a map, if the request asked for paths.
-        stops: The ids of its stops in order, if the request had ids.
-        kept: The share of the driven tour's remaining legs that it keeps, if it was replanned.
-        departure: Over the day, when it begins, in seconds of the day.
-        times: Over the day, when it reaches each city, and when it ends, shape (n + 1,).
-        means: Where costs spread, its mean lengths, shape (m,).
-        p90: Where costs spread, the lengths that nine days of ten do not exceed, shape (m,).
-    """
-
-    front: str
-    angle: float = nan
-    balance: float = nan
-    lengths: Array
-    tour: NDArray[np.int64]
-    arrivals: Array | None = field(
-        metadata={"read": lambda tour: floats(None, len(tour["lengths"]))}
+    angle: float = member(
+        "of two objectives: direction of the scaled lengths, in degrees", default=nan
     )
-    path: Path | None
-    stops: tuple[str, ...] | None = field(
-        default=None, metadata={"read": lambda tour: each(text, len(tour["tour"]))}
+    balance: float = member(OF_TWO, default=nan)
+    losses: Lengths | None = member(OF_MORE, default=None)
+    kept: float | None = member(
+        "only in a front that was replanned: the share of the driven tour's remaining legs that"
+        " this tour keeps, in either direction if costs are symmetric",
+        default=None,
     )
-    kept: float | None = None
-    departure: float | None = None
-    times: Array | None = field(
-        default=None, metadata={"read": lambda tour: floats(len(tour["tour"]) + 1)}
+    departure: float | None = member(
+        "where costs change over the day: when the tour begins, in seconds of the day",
+        default=None,
     )
-    means: Array | None = field(default=None, metadata={"read": _of_lengths})
-    p90: Array | None = field(default=None, metadata={"read": _of_lengths})
+    lengths: Lengths = member("its length under each objective")
+    means: Lengths | None = member(
+        "where costs spread: the mean lengths; those in `lengths` may be percentiles", default=None
+    )
+    p90: Lengths | None = member(
+        "where costs spread: the lengths that nine days of ten do not exceed", default=None
+    )
+    tour: Indexes = member("its cities, or over a map its places, in order")
+    arrivals: Annotated[Array, Shape(None, "lengths")] | None = member(
+        "only if `arrivals` is true: all lengths up to each stop, and up to the return of a closed"
+        " tour"
+    )
+    times: Annotated[Array, Shape("tour", more=1)] | None = member(
+        "where costs change over the day: when it reaches each stop, in seconds of the day, and"
+        " when it ends",
+        default=None,
+    )
+    stops: Annotated[tuple[str, ...], Shape("tour")] | None = member(
+        "the ids of its stops, if the request has ids", default=None
+    )
+
+
+@answer("CoverageItem")
+class CoverageItem(TourItem):
+    """A tour through places on a map."""
+
+    path: Path | None = member("if `paths` is true")
+
+
+@answer("TourAnswer")
+class Tour(CoverageItem):
+    """A tour of a front."""
+
+    front: str = member("the front's id")
 
     def __repr__(self) -> str:
         return f"<Tour of {len(self.tour)} cities: lengths {numbers(self.lengths)}>"
@@ -184,21 +212,12 @@ class Front(StoredFront[Tour]):
         return self[choose(self.lengths, self.angles, names, {"angle": angle, **choice})]
 
     def _item(self, number: int) -> Tour:
-        return Tour(
-            front=self.id,
-            angle=float(self.angles[number]),
-            balance=float(self.balances[number]),
-            lengths=self.lengths[number],
-            tour=self.tours[number],
-            arrivals=None if self.arrivals is None else self.arrivals[number],
-            path=None if self.paths is None else self.paths[number],
-            stops=None if self.stops is None else self.stops[number],
-            kept=None if self.kept is None else float(self.kept[number]),
-            departure=None if self.departures is None else float(self.departures[number]),
-            times=None if self.times is None else self.times[number],
-            means=None if self.means is None else self.means[number],
-            p90=None if self.p90 is None else self.p90[number],
-        )
+        known = {of: getattr(self, name) for name, of in _COLUMNS.items()}
+        if self.lengths.shape[1] > PAIR:
+            known["losses"] = self.losses
+        row = {of: None if column is None else column[number] for of, column in known.items()}
+        plain = {of: float(value) for of, value in row.items() if isinstance(value, np.float64)}
+        return Tour(front=self.id, lengths=self.lengths[number], **{**row, **plain})
 
     def _counted(self) -> str:
         return f"{counted(len(self), 'tour')} of {self.tours.shape[1]} cities"
@@ -229,27 +248,24 @@ def parse_front(document: Mapping[str, Any]) -> Front:
     cities = answer.read("cities", count)
     items = answer.read("front", each(members))
     actor = answer.maybe("actor", members)
-    named = answer.maybe("stops", each(members, cities)) is not None
+    answer.maybe("stops", each(members, cities))  # its tours have their ids
     m = _objective_count(answer, items)
     return Front(
         **stored_members(answer, items),
         tours=rows(items, "tour", partial(indexes, below=cities), cities),
-        angles=_of_two_each(items, "angle", m),
-        balances=_of_two_each(items, "balance", m),
+        angles=column(items, "angle") if m == PAIR else _no_numbers(items),
+        balances=column(items, "balance") if m == PAIR else _no_numbers(items),
         hypervolume_bound=answer.maybe("hypervolume_bound", number),
         scale=answer.maybe("scale", floats(m)),
         actor=None if actor is None else actor.read("name", text),
         places=answer.maybe("places", indexes(cities, PAIR)),
-        paths=of_all(items, "path", value_of(Path)),
-        stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
         objectives=objectives_of(answer),
-        kept=column(items, "kept") if _have(items, "kept") else None,
-        arrivals=of_all(items, "arrivals", floats(None, m)),
         uncovered=answer.maybe("uncovered", value_of(Uncovered)),
-        departures=column(items, "departure") if _have(items, "departure") else None,
-        times=rows(items, "times", floats, cities + 1) if _have(items, "times") else None,
-        means=rows(items, "means", floats, m) if _have(items, "means") else None,
-        p90=rows(items, "p90", floats, m) if _have(items, "p90") else None,
+        **{
+            name: optional_column(items, Tour, of, {"tour": range(cities), "lengths": range(m)})
+            for name, of in _COLUMNS.items()
+            if name not in ("tours", "angles", "balances")
+        },
     )
 
 
@@ -265,21 +281,9 @@ def _objective_count(answer: Members, items: Sequence[Members]) -> int:
     return len(lengths) if few else PAIR
 
 
-def _of_two_each(items: Sequence[Members], name: str, objectives: int) -> Array:
-    """Return a number that tours have under two objectives, shape (k,); NaN under more."""
-    if objectives == PAIR:
-        return column(items, name)
+def _no_numbers(items: Sequence[Members]) -> Array:
+    """Return NaN for each item."""
     return read_only(np.full(len(items), nan))
-
-
-def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
-    """Return a member of all items, or None if the first has none."""
-    return tuple(item.read(name, read) for item in items) if _have(items, name) else None
-
-
-def _have(items: Sequence[Members], name: str) -> bool:
-    """Return whether the first item has a member."""
-    return bool(items) and items[0].document.get(name) is not None
 
 
 def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:

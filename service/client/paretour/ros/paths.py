@@ -3,44 +3,37 @@
 import csv
 import io
 from collections import defaultdict
-from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.expect import floats, indexes
+from paretour.described import Array, Shape, answer, member
 
-Array = NDArray[np.float64]
 PAIR = 2  # numbers: of a cell, a point or a length under two objectives
-_PAIRS = {"read": lambda _: indexes(None, PAIR)}
+Pairs = Annotated[NDArray[np.int64], Shape(None, PAIR)]
 _COLUMNS = ("x", "y", "yaw", "place")
 
 
-@dataclass(frozen=True, eq=False)
+@answer("PathItem", kw_only=False)
 class Path:
-    """The way of a tour over a map, and its length.
+    """A way over the map, through all places in the order of a tour."""
 
-    Attributes:
-        cells: Rows and columns, shape (m, 2), from the first place back to it; for an open route,
-            to the last place.
-        metres: The length.
-        points: x and y of the middle of each cell in the frame of the map, in metres, shape (m, 2);
-            None if the origin of the map is not known.
-        yaws: The direction in radians in which the robot leaves each cell, and at the last cell the
-            one in which it arrives, shape (m,). None without points.
-        visits: The index in `cells` and the place, shape (k, 2), for each place of the tour in
-            order, back to the first if it is closed. All other cells are on the way.
-    """
-
-    cells: NDArray[np.int64] = field(metadata=_PAIRS)
-    metres: float
-    points: Array | None = field(
-        default=None, metadata={"read": lambda path: floats(len(path["cells"]), PAIR)}
+    cells: Pairs = member("row and column of each; a closed tour ends with its first cell")
+    metres: float = member("its length")
+    points: Annotated[Array, Shape("cells", PAIR)] | None = member(
+        "x and y of each cell's middle in the frame of the map, in metres, if its origin is known",
+        default=None,
     )
-    yaws: Array | None = field(
-        default=None, metadata={"read": lambda path: floats(len(path["cells"]))}
+    yaws: Annotated[Array, Shape("cells")] | None = member(
+        "with points: the direction in radians in which the robot leaves each cell, and at the last"
+        " cell the one in which it arrives",
+        default=None,
     )
-    visits: NDArray[np.int64] | None = field(default=None, metadata=_PAIRS)
+    visits: Pairs | None = member(
+        "for each place of the tour in order, back to the first if it is closed: the index of its"
+        " cell in cells, and the place; all other cells are on the way",
+        default=None,
+    )
 
     @property
     def poses(self) -> Array:
