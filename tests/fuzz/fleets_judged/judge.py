@@ -6,6 +6,8 @@ from itertools import accumulate, pairwise, permutations
 from math import inf, isclose
 from typing import Any, NamedTuple
 
+from tests.fuzz.fleets_judged.day import is_over_the_day, timelines_of_day, with_days
+from tests.fuzz.fleets_judged.profiles import driven_by
 from tests.fuzz.fleets_judged.timeline import (
     Bounds,
     Json,
@@ -35,10 +37,11 @@ class Judge:
 
     Args:
         request: The request. Its references to stops are numbers, its ids these as text, and its
-            objectives have matrices, maybe one for each profile.
+            objectives have matrices, maybe one for each profile, or costs over the day.
     """
 
     def __init__(self, request: Json) -> None:
+        request = with_days(request)
         self.request = request
         self.stops = request["stops"]
         self.objectives = request["objectives"]
@@ -102,15 +105,13 @@ class Judge:
             return "way"
         if broken := next(self._broken(vehicle, list(stops)), None):
             return broken
-        times, best = None, []
-        if self.clock is not None:
-            best = best_timelines(self.request, self.clock["matrix"], vehicle, list(stops), bounds)
-            if not best:
-                return "times"
-            times = best[0]
+        best = self._timelines(vehicle, list(stops), bounds)
+        if self.clock is not None and not best:
+            return "times"
+        times = best[0] if best else None
         compared = self._compared(times, path)
         reach = 0.0 if times is None else 1e-9 * times.end
-        if wrong := _wrong_length(vehicle, compared, reach) or self._too_far(vehicle, path):
+        if wrong := _wrong_length(vehicle, compared, reach) or self._too_far(vehicle, path, times):
             return wrong
         if times is not None:  # visits begin as early as the departure allows
             times = min(best, key=lambda each: sum(each.begins))
@@ -119,6 +120,13 @@ class Judge:
         lengths[0] *= vehicle.get("per_distance", 1.0)
         lengths[0] += vehicle.get("per_time", 0.0) * duration
         return Judged(vehicle, stops, best, tuple(lengths), compared)
+
+    def _timelines(self, vehicle: Json, stops: list[int], bounds: Bounds) -> list[Timeline]:
+        if self.clock is None:
+            return []
+        if is_over_the_day(self.request):
+            return timelines_of_day(self.request, self.clock, vehicle, stops)
+        return best_timelines(self.request, self.clock["matrix"], vehicle, stops, bounds)
 
     def _broken(self, vehicle: Json, stops: list[int]) -> Iterator[str]:
         """Yield the rules about skills, numbers of stops, trips and loads that a route breaks."""
@@ -196,7 +204,7 @@ class Judge:
         if self.clock is None or isinstance(self.request["clock"], dict):
             return False
         if sum("matrix" in each for each in self.objectives) > 2:
-            return bool(objective["matrix"] == self.clock["matrix"])
+            return all(objective.get(name) == self.clock.get(name) for name in ("matrix", "day"))
         return objective is self.clock
 
     def _length(
@@ -210,14 +218,14 @@ class Judge:
         if "matrix" in objective:
             if times is not None and self._is_clock(objective):
                 return times.end - times.departure
-            return self._sum_of_legs(objective, vehicle, path)
+            return float(sum(self._legs(objective, vehicle, path, times)))
         match objective["measure"]:
             case "vehicles":
                 return 1.0
             case "overtime" | "lateness" | "earliness" | "weighted_arrival" as measure if times:
                 return self._of_times(measure, vehicle, path, times)
             case "load_distance":
-                return self._load_distance(vehicle, stops, path)
+                return self._load_distance(vehicle, stops, path, times)
             case "imbalance":
                 return self._compared(times, path)
             case "overlap":
@@ -269,40 +277,45 @@ class Judge:
         wanted = [(stop["due"][0], begin) for stop, begin in visits if _is_pair(stop.get("due"))]
         return float(sum(due - begin for due, begin in wanted if is_later(due, begin)))
 
-    def _too_far(self, vehicle: Json, path: list[int]) -> str:
+    def _too_far(self, vehicle: Json, path: list[int], times: Timeline | None) -> str:
         """Return whether the legs of a route are over their limits, as the rule; else ""."""
-        others = [
-            each["matrix"]
-            for each in self.objectives
-            if "matrix" in each and not self._is_clock(each)
-        ]
+        others = [each for each in self.objectives if "matrix" in each and not self._is_clock(each)]
         if self.clock is None:
             others = others[:1]
         else:
-            driven = _way(self.clock["matrix"], path) / vehicle.get("speed_factor", 1.0)
+            driven = sum(self._legs(self.clock, vehicle, path, times))
             if is_later(driven, vehicle.get("max_driving", inf)):
                 return "max_driving"
         most = vehicle.get("max_distance", inf)
-        return "max_distance" if any(is_later(_way(each, path), most) for each in others) else ""
+        driven_ways = (sum(self._legs(each, vehicle, path, times)) for each in others)
+        return "max_distance" if any(is_later(way, most) for way in driven_ways) else ""
 
-    def _sum_of_legs(self, objective: Json, vehicle: Json, path: list[int]) -> float:
-        """Return what the legs of a path cost a vehicle."""
-        return float(sum(self._leg(objective, vehicle, a, b) for a, b in pairwise(path)))
+    def _legs(
+        self, objective: Json, vehicle: Json, path: list[int], times: Timeline | None
+    ) -> list[float]:
+        """Return what each leg of a path costs a vehicle, when it drives there."""
+        timed = objective is self.clock or self._is_clock(objective)
+        speed = vehicle.get("speed_factor", 1.0) if timed else 1.0
+        day, legs = objective.get("day"), [*pairwise(path)]
+        if day is None:
+            return [objective["matrix"][a][b] / speed for a, b in legs]
+        assert times is not None
+        if timed:
+            return [b - a for a, b in zip(times.leaves, times.arrivals[1:], strict=False)]
+        pairs = zip(legs, times.leaves, strict=False)
+        return [day.at(a, b, time) for (a, b), time in pairs]
 
-    def _leg(self, objective: Json, vehicle: Json, a: int, b: int) -> float:
-        speed = vehicle.get("speed_factor", 1.0) if self._is_clock(objective) else 1.0
-        return float(objective["matrix"][a][b] / speed)
-
-    def _load_distance(self, vehicle: Json, stops: tuple[int, ...], path: list[int]) -> float:
+    def _load_distance(
+        self, vehicle: Json, stops: tuple[int, ...], path: list[int], times: Timeline | None
+    ) -> float:
         trips = trips_of(vehicle, list(stops))
         loads = [x for i in range(len(trips)) for x in self._loads(vehicle, trips, i, 0)]
         if vehicle.get("start") is None:
             del loads[0]
         if vehicle.get("end") is None:
             del loads[-1]
-        legs = zip(pairwise(path), loads, strict=True)
-        first = self.objectives[0]
-        return sum(self._leg(first, vehicle, a, b) * x for (a, b), x in legs)
+        legs = self._legs(self.objectives[0], vehicle, path, times)
+        return sum(leg * x for leg, x in zip(legs, loads, strict=True))
 
     def lengths(self, routes: list[Judged]) -> tuple[float, ...]:
         """Return the lengths of a plan of these routes."""
@@ -363,25 +376,6 @@ class Judge:
             for each in judged.best
         ):
             yield f"arrivals {route['arrivals']} are {best.arrivals}"
-
-
-def driven_by(profile: str, request: Json) -> Json:
-    """Return a request whose vehicles all drive by one profile."""
-
-    def plain(item: Any) -> Any:
-        if not isinstance(item, dict) or "matrices" not in item:
-            return item
-        [matrix] = [each["matrix"] for each in item["matrices"] if each["profile"] == profile]
-        return {**{k: v for k, v in item.items() if k != "matrices"}, "matrix": matrix}
-
-    vehicles = [{k: v for k, v in each.items() if k != "profile"} for each in request["vehicles"]]
-    objectives = [plain(each) for each in request["objectives"]]
-    clock = plain(request.get("clock"))
-    return {**request, "vehicles": vehicles, "objectives": objectives, "clock": clock}
-
-
-def _way(matrix: Any, path: list[int]) -> float:
-    return float(sum(matrix[a][b] for a, b in pairwise(path)))
 
 
 def _wrong_length(vehicle: Json, length: float, reach: float) -> str:

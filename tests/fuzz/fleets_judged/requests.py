@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
+from tests.fuzz.fleets_judged.day import is_over_the_day
+from tests.fuzz.fleets_judged.days import OVER_THE_DAY, add_day, keep_to_day, may_have_day
 from tests.fuzz.fleets_judged.timeline import Json
 
 _MEASURES = (
@@ -62,6 +64,8 @@ def _add_some(rng: random.Random, request: Json, matrices: Sequence[Any], depots
         _add_pickups(rng, request)
     if rng.random() < PROFILED:
         _add_profiles(rng, request, matrices)
+    if may_have_day(request, len(matrices[0]) - depots) and rng.random() < OVER_THE_DAY:
+        add_day(rng, request)
 
 
 def _add_pickups(rng: random.Random, request: Json) -> None:
@@ -313,6 +317,8 @@ def with_bounds_at_arrivals(rng: random.Random, request: Json, plan: Json) -> Js
             _bound(rng, changed, changed["stops"][int(stop)], rng.choice((arrival, other)))
         vehicle = next(v for v in changed["vehicles"] if v["id"] == route["vehicle"])
         _bound_vehicle(rng, vehicle, times)
+    if is_over_the_day(changed):
+        keep_to_day(changed)
     return changed
 
 

@@ -36,6 +36,7 @@ class Timeline(NamedTuple):
     arrivals: tuple[float, ...]
     breaks: tuple[float, ...]
     begins: tuple[float, ...]  # of the visits
+    leaves: tuple[float, ...] = ()  # over the day, when it leaves each place
 
 
 def is_later(a: float, b: float) -> bool:
