@@ -149,11 +149,13 @@ def _with_longer(share: int, _: str, vehicle: VehicleType) -> Members:
 def _longest_shift(asked: AskedFleet) -> float:
     """Return the length of the longest shift that ends; 0 without one.
 
-    Where all are over, it is about the time for all stops, each on a way of its own.
+    Where some are over, it is at least about the time for all stops, each on a way of its own.
     """
     shifts = [vehicle.shift for vehicle in asked.rules.vehicles]
     lengths = [end - begin for begin, end in shifts if end < inf]
-    return max(lengths) or _time_for_all(asked.fleet) if lengths else 0.0
+    if 0.0 in lengths:
+        lengths.append(_time_for_all(asked.fleet))
+    return max(lengths, default=0.0)
 
 
 def _time_for_all(fleet: Fleet) -> float:

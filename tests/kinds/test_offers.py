@@ -140,7 +140,11 @@ def test_without_time_an_offer_says_that_places_were_not_tried() -> None:
 WRONG = [
     ({}, "/slots", "one of slots and every is required, got none"),
     ({"slots": [[1, 2]], "every": HOURS}, "/slots", "one of slots and every is required, got both"),
-    ({"slots": [[2, 1]]}, "/slots/0", "slots/0 must not end before it begins, got 2 to 1"),
+    (
+        {"slots": [[2, 1]]},
+        "/slots/0",
+        "slots/0 must be a begin and then an end that is not before it, got 2 and 1",
+    ),
     (
         {"every": {**HOURS, "to": NINE}},
         "/every/to",

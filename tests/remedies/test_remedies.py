@@ -179,14 +179,14 @@ def test_whatever_is_told_of_a_request_helps(case: str) -> None:
             check_that_all_help(asked, Refused(refusal.document("")))
 
 
-@pytest.mark.parametrize("on_the_way", [False, True])
-def test_where_all_shifts_are_over_overtime_from_now_on_helps(on_the_way: bool) -> None:
-    """Whether the vans have left or not: as their shifts are over, none may go on."""
+@pytest.mark.parametrize("on_the_way", [0, 1, 2])
+def test_where_all_shifts_are_over_overtime_from_now_on_helps(on_the_way: int) -> None:
+    """However many vans have left: as their shifts are over, none may go on."""
     asked = fleet_request()
     for stop in asked["stops"]:
         stop.pop("window", None)
     front = as_stored(stored_fleet(asked))
-    routes = json.loads(front.found.split()[0])["routes"] if on_the_way else []
+    routes = json.loads(front.found.split()[0])["routes"][:on_the_way]
     ways = [{"route": n, "done": each["stops"][1:3]} for n, each in enumerate(routes)]
     late = {"plan": 0, "now": FIVE + 600, "routes": ways, "time_limit": 1}
 

@@ -71,7 +71,7 @@ def vehicles_of_rest(
     known = list(_not_gone(request, fleet, used, now))
     able = [each for each in known if not _is_over(each[1])]
     waiting = [each for each in able if each[1].count > 0]
-    if not left and not waiting:  # with more overtime, those could leave whose shift is over
+    if not waiting:  # with more overtime, those could leave whose shift is over
         waiting = [each for each in known if each[1].count > 0]
     if by_routes or any(name.route is not None for name, _, _ in waiting):
         waiting = list(by_route(waiting, day.waiting))
