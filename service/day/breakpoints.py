@@ -32,6 +32,12 @@ class Breakpoints:
         known: NDArray[np.bool_] = self.spans[..., 0] < self.spans[..., 1]
         return known
 
+    @property
+    def count(self) -> int:
+        """The number of breakpoints of all pairs of different stops."""
+        numbers = self.spans[..., 1] - self.spans[..., 0]
+        return int(numbers.sum() - np.trace(numbers))
+
     def has(self, a: int, b: int) -> bool:
         """Return whether a pair has breakpoints."""
         return bool(self.spans[a, b, 0] < self.spans[a, b, 1])
@@ -71,19 +77,40 @@ class Breakpoints:
         """Return costs and times multiplied by powers of two."""
         return Breakpoints(self.spans, np.ldexp(self.times, times), np.ldexp(self.costs, costs))
 
-    def least(self) -> Array:
-        """Return the least cost of each pair that has breakpoints, in their order by rows."""
+    def bound(self, better: np.ufunc) -> Array:
+        """Return the least, or the greatest, cost of each pair that has breakpoints, by rows.
+
+        `better` is np.minimum or np.maximum.
+        """
         # What is after the end of a span is in every second result. The last span may end with all.
         ends = self.spans[self.known].ravel()
-        least: Array = np.minimum.reduceat(np.append(self.costs, np.inf), ends)[::2]
-        return least
+        bound: Array = better.reduceat(np.append(self.costs, 0.0), ends)[::2]
+        return bound
 
     def at(self, times: Array) -> Array:
         """Return the costs at k times, shape (k, n, n); infinite where a pair has no breakpoints.
 
-        O(k n^2).
+        O(k n^2 log b) for b breakpoints of a pair.
         """
-        found = np.full((len(times), *self.spans.shape[:2]), np.inf)
-        for a, b in np.argwhere(self.known).tolist():
-            found[:, a, b] = np.interp(times, *self.of(a, b))
+        known = self.known
+        first, end = self.spans[known].T
+        found = np.full((len(times), *known.shape), np.inf)
+        for costs, time in zip(found, times.tolist(), strict=True):
+            costs[known] = self._costs_at(time, first, end)
+        return found
+
+    def _costs_at(self, time: float, first: NDArray[np.int64], end: NDArray[np.int64]) -> Array:
+        """Return the costs at a time between breakpoints from `first` on and before `end`."""
+        # By bisection, of all pairs at once: the first breakpoint after the time.
+        low, high = first, end
+        for _ in range(int((end - first).max(initial=0)).bit_length()):
+            middle = (low + high) // 2
+            passed = (low < high) & (self.times[np.minimum(middle, end - 1)] <= time)
+            low, high = np.where(passed, middle + 1, low), np.where(passed, high, middle)
+        before, after = np.maximum(low - 1, first), np.minimum(low, end - 1)
+        times, costs = self.times[before], self.costs[before]
+        between = before < after
+        span = np.where(between, self.times[after] - times, 1.0)
+        slopes = np.where(between, (self.costs[after] - costs) / span, 0.0)
+        found: Array = slopes * (time - times) + costs
         return found

@@ -71,15 +71,22 @@ class CostsOfDay:
         return float(self.factors[known] * self.matrices[self.layers[known], a, b])
 
     def least(self) -> Array:
-        """Return the least costs of all slices, shape (n, n)."""
+        """Return the least costs of the day, shape (n, n)."""
+        return self._bound(np.minimum)
+
+    def greatest(self) -> Array:
+        """Return the greatest costs of the day, shape (n, n)."""
+        return self._bound(np.maximum)
+
+    def _bound(self, better: np.ufunc) -> Array:
         used = np.unique(self.layers)
-        factors = [self.factors[self.layers == layer].min() for layer in used]
+        factors = [better.reduce(self.factors[self.layers == layer]) for layer in used]
         costs = (self.matrices[layer] * each for layer, each in zip(used, factors, strict=True))
-        least = reduce(np.minimum, costs)
+        bound: Array = reduce(better, costs)
         if self.pairs is not None:
-            least = np.array(least)
-            least[self.pairs.known] = self.pairs.least()
-        return least
+            bound = np.array(bound)
+            bound[self.pairs.known] = self.pairs.bound(better)
+        return bound
 
     def among(self, stops: NDArray[np.int64]) -> "CostsOfDay":
         """Return the costs between some stops, which may repeat."""

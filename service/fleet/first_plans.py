@@ -72,6 +72,22 @@ def network_sequences(fleet: Fleet, constructor: Constructor) -> list[Indices]:
     return [places[tour] for tour in (different if depot is None else different[:, 1:])]
 
 
+def without_changes(fleet: Fleet) -> Iterator[Fleet]:
+    """Yield fleets to cut tours for, whose costs do not change over the day.
+
+    Yield first one with the mean costs, and then one with the greatest times of the day: true times
+    are never later than these, so no window is missed that is kept by them. A fleet without changes
+    comes alone.
+    """
+    profiles, clock = fleet.profiles or (fleet.costs,), fleet.rules.clock
+    yield Fleet.of_profiles(fleet.rules, profiles) if fleet.days else fleet
+    if fleet.days and clock is not None:
+        slowest = [costs.copy() for costs in profiles]
+        for costs, day in zip(slowest, fleet.days, strict=True):
+            costs[clock] = day[clock].greatest()
+        yield Fleet.of_profiles(fleet.rules, slowest)
+
+
 def _angular_costs(costs: Array) -> Array:
     """Return costs that are small between stops in the same direction from the first, the depot.
 

@@ -8,7 +8,7 @@ from service.errors import Cancelled, Refusal
 from service.fleet.conflicts import no_plan
 from service.fleet.enumeration import MOST_STOPS, exact_plans, is_enumerable, some_plan
 from service.fleet.evaluation import violations
-from service.fleet.first_plans import Cutter, network_sequences, plain_plans
+from service.fleet.first_plans import Cutter, network_sequences, plain_plans, without_changes
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions, front_of
 from service.fleet.left_out import with_all_stops
@@ -135,15 +135,14 @@ def _constructed(
     fleet: Fleet, constructor: Constructor | None, watch: Watch[FleetFront]
 ) -> list[Plan]:
     """Return the plans made by cutting the tours of a network into routes."""
-    if fleet.day is not None:
-        reason = "costs that change over the day need a time_limit over 0"
-        raise Refusal("no-plan", reason=reason)
     if constructor is None:
         raise Refusal("no-actor", kind="fleets with time_limit 0")
-    cutter = Cutter(fleet, network_sequences(fleet, constructor), watch.stopped)
-    plans = [plan for plan in cutter.plans() if not violations(fleet, plan)]
-    if plans:
-        return plans
+    sequences = network_sequences(fleet, constructor)
+    for each in without_changes(fleet):
+        cutter = Cutter(each, sequences, watch.stopped)
+        plans = [plan for plan in cutter.plans() if not violations(fleet, plan)]
+        if plans:
+            return plans
     if watch.stopped():
         raise Cancelled
     reason = "no cut of the network's tours keeps every rule: a time_limit over 0 may find a plan"

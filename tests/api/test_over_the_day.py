@@ -268,6 +268,43 @@ def test_fleets_are_driven_by_breakpoints_and_no_vehicle_slower_than_these(
     refused(client.post("/fleet", json=fleet), "/vehicles/0/speed_factor")
 
 
+def test_fleets_have_plans_of_a_network_alone_at_true_times(client: httpx.Client) -> None:
+    places = [[i * i % 11, i * 7 % 13] for i in range(13)]
+    seconds = [[300 * (abs(a - c) + abs(b - d)) for c, d in places] for a, b in places]
+    visits = [{"id": f"{i}", "window": [6 * HOUR, 11 * HOUR]} for i in range(1, len(places))]
+    fleet = {
+        "stops": [{"id": "0"}, *visits],
+        "vehicles": [
+            {"id": "van", "count": 9, "start": "0", "end": "0", "shift": [6 * HOUR, 14 * HOUR]}
+        ],
+        "objectives": [
+            {"name": "time", "matrix": seconds, "over_the_day": [[0, 1], [9 * HOUR, 3]]},
+            {"name": "vans", "measure": "vehicles"},
+        ],
+        "clock": "time",
+        "time_limit": 0,
+    }
+    answer = client.post("/fleet", json=fleet)
+    assert answer.status_code == 200, answer.text
+    for plan in answer.json()["front"]:
+        assert sorted(stop for each in plan["routes"] for stop in each["stops"][1:-1]) == sorted(
+            each["id"] for each in visits
+        )
+        total = 0.0
+        for route in plan["routes"]:
+            arrivals = route["arrivals"]
+            for leg, (leaves, arrives) in zip(
+                pairwise(map(int, route["stops"])), pairwise(arrivals), strict=True
+            ):
+                # Before 9 a second brings the vehicle on by one second of the way, then by a third.
+                early = max(0.0, min(arrives, 9 * HOUR) - leaves)
+                late = arrives - leaves - early
+                assert early + late / 3 == pytest.approx(seconds[leg[0]][leg[1]])
+            assert all(time <= 11 * HOUR for time in arrivals[1:-1])
+            total += arrivals[-1] - arrivals[0]
+        assert plan["lengths"] == pytest.approx([total, len(plan["routes"])])
+
+
 def test_a_leg_that_one_slice_forbids_is_never_driven(client: httpx.Client) -> None:
     request = sliced()
     closed = [list(row) for row in TIMES]

@@ -9,13 +9,14 @@ import pytest
 
 from service.errors import Refusal
 from service.fleet.evaluation import plan_lengths, violations
-from service.fleet.first_plans import Cutter
+from service.fleet.first_plans import Cutter, without_changes
 from service.fleet.fleet import Fleet
 from service.fleet.optimal_split import Indices
 from service.fleet.plans import Plan
 from service.fleet.rules import Rules
 from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.pareto import nondominated
+from tests.helpers.fleet_days import day_fleet
 from tests.helpers.fleets import Point, every_plan, hull_corners, random_fleet
 from tests.helpers.sampled import third
 
@@ -115,3 +116,19 @@ def test_what_cannot_be_cut_is_refused() -> None:
     fleet = Fleet(rules=Rules(visits=(Visit(),) * 12, vehicles=many), costs=np.ones((2, 12, 12)))
     with pytest.raises(Refusal, match="this many stops, types"):
         cut(fleet, np.arange(1, 12))
+
+
+def test_whatever_breaks_a_rule_over_the_day_breaks_it_at_the_greatest_times() -> None:
+    planned = 0
+    for seed in range(third(60)):
+        fleet = day_fleet(seed)
+        *_, slowest = without_changes(fleet)
+        try:
+            plans = cut(slowest, np.array(fleet.rules.clients))
+        except Refusal:  # it has shipments, breaks or several windows
+            continue
+        for plan in plans:
+            broken = {each.rule for each in violations(fleet, plan)} - {"shortest"}
+            assert broken <= {each.rule for each in violations(slowest, plan)}
+            planned += not broken
+    assert planned > 10
