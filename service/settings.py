@@ -44,6 +44,7 @@ _MOST_REQUESTS = 1_000_000  # of one caller: the time of each is remembered
 _MOST_CITIES = 1_000_000  # the search's arrays of a row for each city take gigabytes
 _MOST_PAIRED_CITIES = 46_000  # their pairs are numbered in 32 bits
 _MOST_FLEET_STOPS = 10_000  # to read the legs between all of them takes seconds
+_MOST_BREAKPOINTS = 2**26  # of 16 bytes, and 200 while they are parsed
 _MOST_CELLS = 2**28  # the paths over them number three times as many in 32 bits
 _MOST_PATH_CELLS = 2**23  # of up to 40 bytes each, which are stored as one value
 _MOST_TOURS = 10_000  # choosing these from the search's 50,000 takes 2 GB
@@ -233,6 +234,8 @@ class Settings(BaseSettings):
     """the most stops of a fleet in straight lines, and places that several robots share"""
     max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = 2**20
     """the most cells of a map"""
+    max_breakpoints: Annotated[int, _whole(1, _MOST_BREAKPOINTS)] = 2**20
+    """the most breakpoints of all pairs of stops, in all objectives"""
     max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = 2**21
     """the most path cells, or stops of tours, of an answer"""
     max_survey_seconds: Seconds = 10.0

@@ -13,7 +13,6 @@ from service.requests.arrays import check_rows
 from service.requests.fields import IS_TIME, Items, Pair
 
 LATEST = 864_000  # ten days
-_MOST = 2**20  # of all pairs
 _MOST_OF_PAIR = 1000
 _ROUNDING = 1e-6  # seconds by which who leaves later may arrive earlier
 TimeOfDay = Annotated[float, Field(ge=0, le=LATEST, allow_inf_nan=False), IS_TIME]
@@ -27,8 +26,8 @@ def read_breakpoints(part: str, rows: Sequence[Sequence[OfPair | None]], n: int)
     """Return the breakpoints of all pairs of n stops; from a stop to itself it takes no time.
 
     Raises:
-        Refusal: They do not fit the stops or are too many, times are not ascending, or who leaves
-            later arrives earlier.
+        Refusal: They do not fit the stops, times are not ascending, or who leaves later arrives
+            earlier.
     """
     check_rows(part, n, len(rows))
     for i, row in enumerate(rows):
@@ -38,8 +37,6 @@ def read_breakpoints(part: str, rows: Sequence[Sequence[OfPair | None]], n: int)
         (pair or []) if i != j else [] for i, row in enumerate(rows) for j, pair in enumerate(row)
     ]
     ends = np.cumsum([len(pair) for pair in of_pairs])
-    if ends[-1] > _MOST:
-        raise invalid(part, "too-many-breakpoints", limit=_MOST, came=int(ends[-1]))
     knots = np.array(list(chain.from_iterable(of_pairs)), np.float64).reshape(-1, 2)
     spans = np.stack((np.append(0, ends[:-1]), ends), axis=1).reshape(n, n, 2)
     found = Breakpoints(spans, knots[:, 0].copy(), knots[:, 1].copy())

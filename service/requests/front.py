@@ -33,7 +33,7 @@ from service.requests.fields import (
     one_of,
     optional,
 )
-from service.requests.limits import Limits, check_router, tours_within_limits
+from service.requests.limits import Limits, check_breakpoints, check_router, tours_within_limits
 from service.requests.npy import read_npy
 from service.requests.spread_fields import read_spreads
 from service.requests.stop_fields import (
@@ -238,6 +238,7 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
     if request.matrices.size:
         _check_matrices(request)
     if request.stops:
+        check_breakpoints(request.sources, limits)
         check_router(request.sources, limits)
 
 

@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from service.errors import Refusal, invalid
+from service.day.breakpoints import Breakpoints
+from service.errors import Fault, Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Array, Kind
 from service.requests.fields import PlanFields, PlanRequest, SearchFields
@@ -37,6 +38,7 @@ class Limits:
         preferences: Preferences of a front.
         repairs: Repairs of the network's tours.
         size: Tours to return, or initial tours in a request.
+        breakpoints: Breakpoints of all pairs of stops, in all objectives.
         seconds: The time limit of planning.
         roads: Whether a routing engine is configured, so that costs may be by road.
         traffic: Whether it has historical traffic.
@@ -55,6 +57,7 @@ class Limits:
     survey_seconds: float = 10.0
     fleet_stops: int = 5000
     repairs: int = 200
+    breakpoints: int = 2**20
     roads: bool = False
     traffic: bool = False
     profiles: tuple[str, ...] = ()
@@ -100,7 +103,9 @@ def check_structure(body: bytes, limits: Limits) -> None:
     strings = (body.count(b'"') + 1) // 2
     arrays, objects = body.count(b"["), body.count(b"{")
     most_strings = 1000 + (8 + _TOURS_BY_ID) * limits.cities
-    most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + limits.cells // 8
+    # A breakpoint is an array, and so are those of a pair.
+    most_rows = max(limits.cells // 8, 2 * limits.breakpoints)
+    most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + most_rows
     most_objects = 1000 + 8 * limits.cities + 2 * limits.size
     for name, limit, actual in (
         ("objects", most_objects, objects),
@@ -221,6 +226,16 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
         if asked:
             raise _over("too-many-for-network", part, limits.network_cities, n)
     return replace(options, directions=options.directions[:0])
+
+
+def check_breakpoints(sources: Sequence[Source], limits: Limits) -> None:
+    """Raise a refusal where costs have too many breakpoints; the same costs count once."""
+    by_pair = {id(source): source for source in sources if isinstance(source, Breakpoints)}
+    count = sum(source.count for source in by_pair.values())
+    if count > limits.breakpoints:
+        most = limits.breakpoints
+        fault = Fault.of("objectives", "too-many-breakpoints", limit=most, came=count)
+        raise Refusal("invalid-request", errors=[fault], limit=most, actual=count)
 
 
 def check_router(sources: Sequence[Source], limits: Limits) -> None:

@@ -18,6 +18,7 @@ from service.requests.fleet import parse_fleet_request
 from service.requests.front import FrontRequest, parse_front_request
 from service.requests.limits import (
     Limits,
+    check_breakpoints,
     check_fleet,
     check_reference_point,
     check_router,
@@ -150,6 +151,7 @@ def read_fleet(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     request = parse_fleet_request(source.body, limits)
     fleet = request.subject()
     check_fleet("stops", fleet.stops, limits, request.time_limit)
+    check_breakpoints(fleet.stops.sources, limits)
     check_router(fleet.stops.sources, limits)
     request.check_road_profiles(limits.profiles)
     return Task(

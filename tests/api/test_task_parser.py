@@ -22,7 +22,7 @@ from service.instance import Kind
 from service.requests.task import Task, TaskSource
 from tests.helpers.serving import ACTORS, LIMITS
 
-LARGE = replace(LIMITS, cities=1000, cells=2**20, size=1000)
+LARGE = replace(LIMITS, cities=1000, cells=2**20, size=1000, breakpoints=1000)
 BOUNDS = ParserBounds(seconds=60, memory=2**30)
 INFO = {actor.info.name: actor.info for actor in ACTORS}
 NUMBERS = TaskSource("front", b'{"matrices":[[[' + 7_000_000 * b"0," + b"0]],[[0]]]}")

@@ -136,7 +136,9 @@ def by_paretour(known: Known, seconds: float) -> dict[str, Any]:
 
 @cache
 def _planner() -> LocalPlanner:
-    return load_planner(settings().model_copy(update={"max_cells": 2**24}))  # so many breakpoints
+    return load_planner(
+        settings().model_copy(update={"max_breakpoints": 2**24})
+    )  # so many breakpoints
 
 
 def by_kayros(known: Known) -> dict[str, Any]:

@@ -1,15 +1,23 @@
 """Requests over a limit are refused, and defaults never are."""
 
+import json
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from service.errors import Refusal
+from service.kinds.parsing import parse_task
 from service.requests.fields import PlanRequest
 from service.requests.json_schemas import limited_schemas
-from service.requests.limits import tours_within_limits, within_limits, within_network
-from tests.helpers.serving import LIMITS
+from service.requests.limits import (
+    check_structure,
+    tours_within_limits,
+    within_limits,
+    within_network,
+)
+from service.requests.task import TaskSource
+from tests.helpers.serving import ACTORS, LIMITS
 
 N = 12
 
@@ -130,3 +138,36 @@ def test_the_schema_has_the_limits_and_the_actors() -> None:
     for name in ("start", "end"):
         assert fields[name]["anyOf"][0]["maximum"] == LIMITS.cities - 1
     assert fields["actor"]["enum"] == ["a", "b"]
+
+
+@pytest.mark.parametrize("path", ["front", "fleet"])
+def test_breakpoints_of_all_objectives_have_a_limit_of_their_own(path: str) -> None:
+    one = [[0, 5]]
+    times = [[None, [[0, 5], [60, 9]], one], [one, None, one], [one, None, None]]
+    tolls = [[pair and one for pair in row] for row in times]
+    body = {
+        "stops": [{"id": name} for name in "abc"],
+        "objectives": [
+            {"name": "time", "breakpoints": times},
+            {"name": "tolls", "breakpoints": tolls},
+        ],
+        **(
+            {"vehicles": [{"id": "van", "start": "a"}], "clock": "time"}
+            if path == "fleet"
+            else {"departure": 0}
+        ),
+    }
+    source = TaskSource(path, json.dumps(body).encode())
+    actors = {actor.info.name: actor.info for actor in ACTORS}
+    parse_task(source, replace(LIMITS, breakpoints=11), actors)
+    with pytest.raises(Refusal, match="at most 10 breakpoints in all, got 11") as refused:
+        parse_task(source, replace(LIMITS, breakpoints=10), actors)
+    assert (refused.value.limit, refused.value.actual) == (10, 11)
+
+
+def test_as_many_arrays_may_come_as_the_most_breakpoints_need() -> None:
+    limits = replace(LIMITS, breakpoints=10_000)
+    check_structure(b"[" * 20_000, limits)
+    with pytest.raises(Refusal) as refused:
+        check_structure(b"[" * 22_000, limits)
+    assert refused.value.code == "body-too-complex"

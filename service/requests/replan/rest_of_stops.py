@@ -10,7 +10,7 @@ from service.actor_info import ActorInfo
 from service.errors import Refusal, invalid
 from service.errors.parts import by_stop
 from service.objectives import Objective
-from service.requests.limits import Limits, check_router, within_limits
+from service.requests.limits import Limits, check_breakpoints, check_router, within_limits
 from service.requests.parser import front_task
 from service.requests.replan.costs import (
     AllStops,
@@ -68,6 +68,8 @@ def rest_of_stops(
         _check_cities("add", rest, front.sources, limits)
     objectives, sources, changed = _all_costs(front, request, stops)
     _check_cities("objectives" if request.objectives else "costs", rest, sources, limits)
+    if request.objectives:
+        check_breakpoints(sources, limits)
     labels = Labels(
         tuple(stops.stops[index] for index in rest.stops),
         objectives,
