@@ -13,12 +13,15 @@ import pytest
 
 from tests.helpers.command import COMMAND, ROOT, paretour
 from tests.helpers.fleet_requests import fleet_request
+from tests.helpers.several_plans import with_several_plans
 
 
 @pytest.fixture(scope="module")
 def front(url: str) -> dict[str, Any]:
     """A front of plans that the service has."""
-    return dict(httpx.post(f"{url}/fleet", json=fleet_request(), timeout=60).json())
+    return with_several_plans(
+        lambda: dict(httpx.post(f"{url}/fleet", json=fleet_request(), timeout=60).json())
+    )
 
 
 @pytest.fixture
