@@ -7,9 +7,8 @@ document type is refused, and so are more elements than stops need.
 import codecs
 import io
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from xml.etree.ElementTree import Element
 from xml.parsers import expat
 
 from service.files.cells.ids import each_once
@@ -18,16 +17,16 @@ from service.files.other_files import STOPS, XML
 from service.files.places import check_range
 from service.files.reading import Source, UnreadableFile, quoted
 from service.files.tables import Table, number_in, table_of
-from service.files.xml_elements import elements
+from service.files.xml_feed import feed
 
 _MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _BEGINS = (b"<", b"<\0", b"\0<")
+_DEEPEST = 50
 _LONGEST = 2000  # characters of a text
 _MOST_COLUMNS = 50
 _MOST_NAMED, _LONGEST_NAME = 8, 40
 _PLACES = ("id", "longitude", "latitude", "place", "x", "y")
 _OTHER_SHAPES = {"LineString", "LinearRing", "Polygon", "Track", "MultiTrack", "Model"}
-_WANTED = {"gpx": ("wpt", "rtept", "trkpt"), "kml": ("Placemark", "NetworkLink")}
 _TEXTS = {"name": "id", "desc": "description", "cmt": "comment", "description": "description"}
 
 
@@ -56,20 +55,13 @@ def table_of_xml(source: Source) -> Table:
         UnreadableFile: It is not GPX or KML, or has no points, or something hostile.
     """
     found = _Points(source)
-    read = io.BytesIO(source.file.data).read
-    try:
-        for each in elements(source, read, found.wanted, found.doctype):
-            found.add(each)
-    except UnreadableFile:  # which is a ValueError
-        raise
-    except (expat.ExpatError, LookupError, ValueError) as error:  # the latter of its encoding
-        raise source.refusal("not-xml", reason=str(error)[:200]) from None
+    found.parse()
     points = found.of_gpx() if found.root == "gpx" else found.of_kml()
     return table_of(source, _rows(source, points), first=0)
 
 
 class _Points:
-    """Collects the points of a document."""
+    """Collects the points of a document while it is parsed."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -79,19 +71,54 @@ class _Points:
         self.recorded = 0  # points of tracks
         self._places = 0
         self.unused: dict[str, None] = {}  # names of elements in points of GPX
+        self._path: list[str] = []
+        self._open: _Point | None = None
+        self._column: str | None = None  # what the text of the current element is
+        self._named = ""  # the name of the current Data of KML
+        self._text: list[str] = []
 
-    def wanted(self, root: str) -> Collection[str]:
-        """Return the names of the elements that are read, given that of the outermost one."""
-        self.root = root.casefold()
-        if self.root not in _WANTED:
-            raise self._another_format(root)
-        return _WANTED[self.root]
+    def parse(self) -> None:
+        """Parse the document.
 
-    def doctype(self, name: str) -> UnreadableFile:
-        """Return the exception for a document type."""
+        Raises:
+            UnreadableFile: It is not XML, or hostile.
+        """
+        parser = expat.ParserCreate()
+        parser.buffer_text = True
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = self._end
+        parser.CharacterDataHandler = self._characters
+        parser.StartDoctypeDeclHandler = self._doctype
+        try:
+            feed(self.source, parser, io.BytesIO(self.source.file.data).read)
+        except UnreadableFile:  # which is a ValueError
+            raise
+        except (expat.ExpatError, LookupError, ValueError) as error:  # the latter of its encoding
+            raise self.source.refusal("not-xml", reason=str(error)[:200]) from None
+
+    def _doctype(self, name: str, *_: object) -> None:
         if name.casefold() == "html":
-            return self._another_format(name)
-        return self.source.refusal("document-type", came=name)
+            raise self._another_format(name)
+        raise self.source.refusal("document-type", came=name)
+
+    def _start(self, name: str, attributes: Mapping[str, str]) -> None:
+        name = name.rpartition(":")[2]
+        if not self._path:
+            self._check_root(name)
+        if len(self._path) >= _DEEPEST:
+            raise self.source.refusal("too-deep", most=_DEEPEST)
+        self._path.append(name)
+        self._text = []
+        self._column = None
+        if self.root == "gpx":
+            self._start_gpx(name, attributes)
+        else:
+            self._start_kml(name, attributes)
+
+    def _check_root(self, name: str) -> None:
+        self.root = name.casefold()
+        if self.root not in ("gpx", "kml"):
+            raise self._another_format(name)
 
     def _another_format(self, name: str) -> UnreadableFile:
         """Return the exception for XML that begins with another element."""
@@ -99,42 +126,55 @@ class _Points:
         wanted, given = XML.get(name.casefold(), other)
         return self.source.refusal("another-format", wanted=wanted, given=given)
 
-    def add(self, element: Element) -> None:
-        """Add the point that an element is, or what else it says."""
-        if element.tag == "trkpt":
-            self.recorded += 1
-        elif element.tag == "NetworkLink":
-            self.links = True
-        else:
-            point = _Point(element.tag)
-            self.points.append(point)
-            if element.tag == "Placemark":
-                self._add_placemark(point, element)
-            else:
-                self._add_waypoint(point, element)
+    def _start_gpx(self, name: str, attributes: Mapping[str, str]) -> None:
+        self.recorded += name == "trkpt"
+        if name in ("wpt", "rtept"):
+            self._open = _Point(name, [(attributes.get("lon", ""), attributes.get("lat", ""))])
+            self.points.append(self._open)
+            if name == self.points[0].kind:
+                self._count_place()
+        elif self._open is not None and len(self._path) >= 2 and self._path[-2] == self._open.kind:
+            self._column = _TEXTS.get(name)
+            if self._column is None and len(self.unused) < _MOST_COLUMNS:
+                self.unused[name] = None
 
-    def _add_waypoint(self, point: _Point, element: Element) -> None:
-        point.places.append((element.get("lon", ""), element.get("lat", "")))
-        if point.kind == self.points[0].kind:
-            self._count_place()
-        for each in element:
-            if column := _TEXTS.get(each.tag):
-                self._add(point, column, each)
-            elif len(self.unused) < _MOST_COLUMNS:
-                self.unused[each.tag] = None
-
-    def _add_placemark(self, point: _Point, element: Element) -> None:
-        """Add the places and texts in a placemark, or in an element of it."""
-        for each in element:
-            point.shapes += each.tag in _OTHER_SHAPES
-            if column := _column_of(each, element):
-                self._add(point, column, each)
-            self._add_placemark(point, each)
-
-    def _add(self, point: _Point, column: str, element: Element) -> None:
-        if len(element):
+    def _start_kml(self, name: str, attributes: Mapping[str, str]) -> None:
+        parent = self._path[-2] if len(self._path) > 1 else ""
+        self.links |= name == "NetworkLink"
+        if name == "Placemark":
+            self._open = _Point(name)
+            self.points.append(self._open)
+        elif self._open is None:
             return
-        text = " ".join((element.text or "").split())[:_LONGEST]
+        elif name in _OTHER_SHAPES:
+            self._open.shapes += 1
+        else:
+            self._column = self._column_of(name, parent, attributes)
+
+    def _column_of(self, name: str, parent: str, attributes: Mapping[str, str]) -> str | None:
+        """Return the column of the text of an element in a placemark."""
+        if parent == "Placemark" and name in ("name", "description", "address"):
+            return _TEXTS.get(name, name)
+        if name == "Data":
+            self._named = attributes.get("name", "")
+        named = attributes.get("name", "") if name == "SimpleData" else ""
+        if parent == "Data" and name == "value":
+            named = self._named
+        return name if parent == "Point" and name == "coordinates" else named[:_LONGEST] or None
+
+    def _characters(self, text: str) -> None:
+        if self._column is not None and len(self._text) < _LONGEST:
+            self._text.append(text[:_LONGEST])
+
+    def _end(self, name: str) -> None:
+        self._path.pop()
+        if self._open is not None and self._column:
+            self._add(self._open, self._column, " ".join("".join(self._text).split())[:_LONGEST])
+        self._column = None
+        if self._open is not None and name.rpartition(":")[2] == self._open.kind:
+            self._open = None
+
+    def _add(self, point: _Point, column: str, text: str) -> None:
         if column == "coordinates":
             longitude, _, rest = text.partition(",")
             point.places.append((longitude.strip(), rest.partition(",")[0].strip()))
@@ -196,18 +236,6 @@ class _Points:
             text = f"{len(others)} placemarks of lines and areas were not used."
             self.source.note("left-out", text)
         return stops
-
-
-def _column_of(element: Element, parent: Element) -> str | None:
-    """Return the column of the text of an element in a placemark."""
-    if parent.tag == "Placemark" and element.tag in ("name", "description", "address"):
-        return _TEXTS.get(element.tag, element.tag)
-    if parent.tag == "Point" and element.tag == "coordinates":
-        return element.tag
-    named = element if element.tag == "SimpleData" else None
-    if parent.tag == "Data" and element.tag == "value":
-        named = parent
-    return None if named is None else named.get("name", "")[:_LONGEST]
 
 
 def _rows(source: Source, points: list[_Point]) -> Iterator[list[str]]:

@@ -3,13 +3,11 @@
 import io
 import posixpath
 import zipfile
-import zlib
-from collections.abc import Iterator
-from xml.etree.ElementTree import Element
+from collections.abc import Callable, Mapping
 from xml.parsers import expat
 
 from service.files.reading import Source, UnreadableFile
-from service.files.xml_elements import elements
+from service.files.xml_feed import feed
 
 _MOST_PARTS = 2000
 _ENTRY = b"PK\x01\x02"  # of each part, in the list at the end of a zip file
@@ -24,6 +22,9 @@ _OTHERS = {
     "word/document.xml": "a document of Word: save its table as .xlsx or CSV",
     "doc.kml": "KMZ: unpack it first, and send the KML in it",
 }
+
+Start = Callable[[str, dict[str, str]], None]
+End = Callable[[str], None]
 
 
 class Package:
@@ -62,13 +63,22 @@ class Package:
         """Return the id, the kind and the part of each relation of a part."""
         folder, name = posixpath.split(part)
         found: list[tuple[str, str, str]] = []
-        for each in self.elements(posixpath.join(folder, "_rels", f"{name}.rels"), "Relationship"):
-            if each.get("TargetMode") != "External":
-                target = each.get("Target", "").replace("\\", "/")
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            if tag == "Relationship" and attributes.get("TargetMode") != "External":
+                target = attributes.get("Target", "").replace("\\", "/")
                 whole = posixpath.normpath(posixpath.join("/", folder, target)).lstrip("/")
-                kind = each.get("Type", "").rpartition("/")[2]
-                found.append((each.get("Id", ""), kind, whole))
+                kind = attributes.get("Type", "").rpartition("/")[2]
+                found.append((attributes.get("Id", ""), kind, whole))
+
+        self.parse(posixpath.join(folder, "_rels", f"{name}.rels"), start)
         return found
+
+    def parse(self, part: str, start: Start, end: End | None = None) -> None:
+        """Call functions for the tags of a part, named without their prefixes; if there is one."""
+        parser = expat.ParserCreate()
+        _attach(parser, start, end)
+        self.feed(part, parser)
 
     def earn(self, units: int) -> None:
         """Earn units of work for a cell with text, as many as a file of this length may have."""
@@ -76,8 +86,8 @@ class Package:
         if self._earned_at_most >= 0:
             self.source.work.earn(units)
 
-    def elements(self, part: str, *names: str) -> Iterator[Element]:
-        """Yield the elements of a part that have these names; none if there is no such part.
+    def feed(self, part: str, parser: "expat.XMLParserType") -> None:
+        """Parse a part, if there is one.
 
         Raises:
             UnreadableFile: It cannot be unpacked, is not XML, or takes too much work.
@@ -85,26 +95,40 @@ class Package:
         info = self._parts.get(_plain(part))
         if info is None:
             return
+        parser.StartDoctypeDeclHandler = self._refuse_doctype
         if info.compress_type not in _COMPRESSIONS:
             raise self.source.refusal("not-deflated")
         try:
             with self._zip.open(info) as file:
-                yield from elements(self.source, file.read, lambda _: names, self._doctype)
+                feed(self.source, parser, file.read)
         except UnreadableFile:  # which is a ValueError
             raise
         except (zipfile.BadZipFile, OSError, EOFError, RuntimeError, ValueError) as error:
             raise self.source.refusal("not-xlsx", reason=str(error)) from None
-        except (zlib.error, expat.ExpatError) as error:
+        except Exception as error:
+            if type(error).__module__ not in ("zlib", "pyexpat", "xml.parsers.expat"):
+                raise
             raise self.source.refusal("not-xlsx", reason=f"{part}: {error}") from None
 
-    def _doctype(self, _: str) -> UnreadableFile:
+    def _refuse_doctype(self, *_: object) -> None:
         given = "XML with a DOCTYPE, which it never has"
-        return self.source.refusal("another-format", wanted="XLSX", given=given)
+        raise self.source.refusal("another-format", wanted="XLSX", given=given)
 
 
-def relation_of(element: Element) -> str:
-    """Return the id of the relation of an element, whatever the prefix of the attribute is."""
-    return next((value for name, value in element.items() if name.endswith(":id")), "")
+def _attach(parser: "expat.XMLParserType", start: Start, end: End | None) -> None:
+    parser.StartElementHandler = lambda tag, attributes: start(local(tag), attributes)
+    if end is not None:
+        parser.EndElementHandler = lambda tag: end(local(tag))
+
+
+def local(tag: str) -> str:
+    """Return the name of a tag without its prefix."""
+    return tag.rpartition(":")[2]
+
+
+def relation_in(attributes: Mapping[str, str]) -> str:
+    """Return the id of a relation in attributes, whatever its prefix is."""
+    return next((value for name, value in attributes.items() if name.endswith(":id")), "")
 
 
 def _plain(name: str) -> str:

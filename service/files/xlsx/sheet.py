@@ -1,11 +1,13 @@
 """Read the cells of a sheet of XLSX: their texts, what is hidden, and formulas without results."""
 
 import re
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
-from xml.etree.ElementTree import Element
+from xml.parsers import expat
 
 from service.files.xlsx.formats import GENERAL, MOST_DIGITS, Format, text_of
-from service.files.xlsx.package import Package
+from service.files.xlsx.package import Package, local
 
 MOST_COLUMNS = 16384  # of a spreadsheet
 _MOST_ROWS = 2**20
@@ -65,14 +67,18 @@ def _column_of(letters: str) -> int:
     return column
 
 
-def text_in(element: Element) -> str:
-    """Return the text in a cell or in a shared text: all its runs, without their pronunciation."""
-    texts = [
-        (each.text or "") if each.tag in ("v", "t") else text_in(each)
-        for each in element
-        if each.tag != "rPh"
-    ]
-    return "".join(texts)
+def read_sheet(
+    package: Package, part: str, title: str, styles: "Styles", most_rows: int = _MOST_ROWS
+) -> Sheet:
+    """Return the cells of the sheet in a part; only those of its first rows, if there are more."""
+    reader = _SheetReader(package, Sheet(title), styles, most_rows)
+    with suppress(_EnoughError):
+        package.feed(part, reader.parser)
+    return reader.sheet
+
+
+class _EnoughError(Exception):
+    """Enough rows are read."""
 
 
 @dataclass(frozen=True)
@@ -83,60 +89,83 @@ class Styles:
     from_1904: bool = False
 
 
-def read_sheet(
-    package: Package, part: str, title: str, styles: Styles, most_rows: int = _MOST_ROWS
-) -> Sheet:
-    """Return the cells of the sheet in a part; only those of its first rows, if there are more."""
-    reader = _SheetReader(package, Sheet(title), styles)
-    left = most_rows
-    for each in package.elements(part, "row", "col"):
-        if each.tag == "col":
-            reader.add_columns(each)
-        elif left:
-            left -= 1
-            reader.add_row(each)
-        else:
-            break
-    return reader.sheet
-
-
 class _SheetReader:
-    """Adds rows to a sheet."""
+    """The handlers of the tags of a sheet."""
 
-    def __init__(self, package: Package, sheet: Sheet, styles: Styles) -> None:
+    def __init__(self, package: Package, sheet: Sheet, styles: Styles, most_rows: int) -> None:
+        self._rows_left = most_rows
         self.sheet = sheet
         self._package, self._source = package, package.source
         self._formats, self._from_1904 = styles.formats, styles.from_1904
+        self.parser = parser = expat.ParserCreate()
+        parser.buffer_text = True
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = self._end
+        self._begins: dict[str, Callable[[dict[str, str]], None]] = {
+            "c": self._begin_cell,
+            "v": self._begin_text,
+            "t": self._begin_text,
+            "row": self._begin_row,
+            "f": self._begin_formula,
+            "rPh": self._begin_phonetic,
+            "col": self._begin_columns,
+        }
+        self._texts: list[str] = []
         self._row, self._column = 0, 0
+        self._cells: dict[int, Cell] = {}
+        self._cell: dict[str, str] = {}
+        self._is_hidden = self._is_formula = False
+        self._phonetic = 0
         self._count = 0
         self._columns: dict[str, int] = {}
 
-    def add_columns(self, columns: Element) -> None:
-        """Add a span of columns, if they are hidden."""
-        span = (columns.get("min", ""), columns.get("max", ""))
-        hidden = columns.get("hidden") in _TRUE and all(map(str.isdecimal, span))
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        begin = self._begins.get(tag) or self._begins.get(local(tag))
+        if begin:
+            begin(attributes)
+
+    def _end(self, tag: str) -> None:
+        name = local(tag)
+        if name in ("v", "t"):
+            self.parser.CharacterDataHandler = None
+        elif name == "c":
+            self._end_cell()
+        elif name == "rPh":
+            self._phonetic -= 1
+
+    def _begin_cell(self, attributes: dict[str, str]) -> None:
+        self._cell = attributes
+        self._is_formula = False
+        self._texts.clear()
+        self._place(attributes.get("r"))
+
+    def _begin_text(self, _: dict[str, str]) -> None:
+        if not self._phonetic:
+            self.parser.CharacterDataHandler = self._texts.append
+
+    def _begin_formula(self, _: dict[str, str]) -> None:
+        self._is_formula = True
+
+    def _begin_phonetic(self, _: dict[str, str]) -> None:
+        self._phonetic += 1
+
+    def _begin_columns(self, attributes: dict[str, str]) -> None:
+        span = (attributes.get("min", ""), attributes.get("max", ""))
+        hidden = attributes.get("hidden") in _TRUE and all(map(str.isdecimal, span))
         if hidden and len(self.sheet.hidden_columns) < _FEW:
             self.sheet.hidden_columns.append((int(span[0]), int(span[1])))
 
-    def add_row(self, row: Element) -> None:
-        """Add the cells of a row that have texts."""
+    def _begin_row(self, attributes: dict[str, str]) -> None:
         self._source.spend(1)
-        number = row.get("r", "")
+        self._rows_left -= 1
+        if self._rows_left < 0:
+            raise _EnoughError
+        number = attributes.get("r", "")
         self._row = int(number) if number.isdecimal() and len(number) < 8 else self._row + 1
-        self._source.check_count("rows", _MOST_ROWS, self._row)
         self._column = 0
-        cells = self.sheet.rows.get(self._row, {})
-        for each in row.iterfind("c"):
-            self._place(each.get("r"))
-            if (cell := self._content(each)) == "":
-                continue
-            if not cells:
-                self.sheet.rows[self._row] = cells
-                if row.get("hidden") in _TRUE:
-                    self.sheet.hidden_rows.append(self._row)
-            if self._column in cells:
-                raise self._source.refusal("cell-twice", f"cell {self._name()}")
-            cells[self._column] = cell
+        self._is_hidden = attributes.get("hidden") in _TRUE
+        self._source.check_count("rows", _MOST_ROWS, self._row)
+        self._cells = self.sheet.rows.get(self._row, {})
 
     def _place(self, ref: str | None) -> None:
         """Set the column of a cell: that of its reference, or else the next one."""
@@ -150,31 +179,41 @@ class _SheetReader:
             self._source.check_count("columns", MOST_COLUMNS, column)
         self._column = column
 
-    def _content(self, cell: Element) -> Cell:
-        """Return what is in a cell, and count it; "" if that is nothing."""
-        text, kind = text_in(cell), cell.get("t", "n")
-        if cell.find("f") is not None:
+    def _end_cell(self) -> None:
+        text = "".join(self._texts) if self._texts else ""
+        kind = self._cell.get("t", "n")
+        if self._is_formula:
             self._note_formula(text, kind)
-        content = self._read(cell, text, kind) if text else ""
-        if content != "":
-            self._count += 1
-            self._source.check_count("fields", self._source.bounds.cells // 2, self._count)
-            self._source.spend(_READ)
-            self._package.earn(_READ + _FIELD + (_TEXT if kind == "s" else 0))
-        return content
+        if not text:
+            return
+        cell = self._content(text, kind)
+        if cell == "":
+            return
+        self._count += 1
+        self._source.check_count("fields", self._source.bounds.cells // 2, self._count)
+        self._source.spend(_READ)
+        self._package.earn(_READ + _FIELD + (_TEXT if kind == "s" else 0))
+        if not self._cells:
+            self.sheet.rows[self._row] = self._cells
+            if self._is_hidden:
+                self.sheet.hidden_rows.append(self._row)
+        if self._column in self._cells:
+            raise self._source.refusal("cell-twice", f"cell {self._name()}")
+        self._cells[self._column] = cell
 
-    def _read(self, cell: Element, text: str, kind: str) -> Cell:
+    def _content(self, text: str, kind: str) -> Cell:
         if kind == "s":
             if not text.isdecimal() or len(text) > _MOST_DIGITS:
                 raise self._source.refusal("no-shared-text", f"cell {self._name()}", came=text)
             return int(text)
         if kind == "n":
-            return self._number(text, cell.get("s", "0"))
+            return self._number(text)
         if kind == "b":
             return _BOOLEANS.get(text, text)
         return text.replace("T", " ").removesuffix("Z") if kind == "d" else text
 
-    def _number(self, text: str, style: str) -> str:
+    def _number(self, text: str) -> str:
+        style = self._cell.get("s", "0")
         at = int(style) if style.isdecimal() else 0
         shown = self._formats[at] if at < len(self._formats) else GENERAL
         written = text_of(text, shown, self._from_1904)

@@ -1,12 +1,12 @@
 """Open a workbook of XLSX: its visible sheets, the formats of its cells, and its shared texts."""
 
 from typing import NamedTuple
-from xml.etree.ElementTree import Element
 
 from service.files.reading import Source
-from service.files.xlsx.formats import Format, format_of
-from service.files.xlsx.package import Package, relation_of
-from service.files.xlsx.sheet import Cell, Sheet, Styles, read_sheet, text_in
+from service.files.xlsx.formats import GENERAL, Format, format_of
+from service.files.xlsx.package import Package, relation_in
+from service.files.xlsx.sheet import Cell, Sheet, Styles, read_sheet
+from service.files.xlsx.texts import TextsReader
 
 _FIRST_ROWS = 200  # by which a sheet is recognised
 _TRUE = ("1", "true")
@@ -39,33 +39,40 @@ class Workbook:
         self._by_kind = {kind: part for _, kind, part in related}
         self.sheets: list[Listed] = []
         self.recalculates = self._from_1904 = False
-        for each in self._package.elements(self._package.root, "sheet", "workbookPr", "calcPr"):
-            self._read(each)
+        self._package.parse(self._package.root, self._list)
         self._styles = Styles(self._formats(), self._from_1904)
         self._texts: list[str] | None = None
 
-    def _read(self, element: Element) -> None:
-        """Read an element of the part that lists the sheets."""
-        if element.tag == "workbookPr":
-            self._from_1904 = element.get("date1904") in _TRUE
-        elif element.tag == "calcPr":
-            self.recalculates = element.get("fullCalcOnLoad") in _TRUE
-        elif element.get("state", "visible") == "visible":
-            part = self._parts.get(relation_of(element), "")
+    def _list(self, tag: str, attributes: dict[str, str]) -> None:
+        if tag == "sheet" and attributes.get("state", "visible") == "visible":
+            part = self._parts.get(relation_in(attributes), "")
             if "chartsheets" not in part:
-                self.sheets.append(Listed(element.get("name", ""), part))
+                self.sheets.append(Listed(attributes.get("name", ""), part))
+        elif tag == "workbookPr":
+            self._from_1904 = attributes.get("date1904") in _TRUE
+        elif tag == "calcPr":
+            self.recalculates = attributes.get("fullCalcOnLoad") in _TRUE
 
     def _formats(self) -> list[Format]:
-        """Return the format of each style."""
         codes: dict[int, str] = {}
         numbers: list[int] = []
-        for each in self._package.elements(self._by_kind.get("styles", ""), "numFmt", "cellXfs"):
-            if each.tag == "numFmt":
-                codes[_whole(each.get("numFmtId"))] = each.get("formatCode", "")
-            else:
-                numbers += [_whole(style.get("numFmtId")) for style in each.iter("xf")]
+        inside: list[str] = []
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            if tag == "cellXfs":
+                inside.append(tag)
+            elif tag == "numFmt":
+                codes[_whole(attributes.get("numFmtId"))] = attributes.get("formatCode", "")
+            elif tag == "xf" and inside:
+                numbers.append(_whole(attributes.get("numFmtId")))
+
+        def end(tag: str) -> None:
+            if tag == "cellXfs":
+                inside.clear()
+
+        self._package.parse(self._by_kind.get("styles", ""), start, end)
         known = {each: format_of(each, codes.get(each)) for each in set(numbers)}
-        return [known[each] for each in numbers]
+        return [known.get(each, GENERAL) for each in numbers]
 
     def read(self, listed: Listed, *, first: bool = False) -> Sheet:
         """Return the cells of a sheet, or of its first rows alone."""
@@ -77,11 +84,15 @@ class Workbook:
         if isinstance(cell, str):
             return cell
         if self._texts is None:
-            part = self._by_kind.get("sharedStrings", "")
-            self._texts = [text_in(each) for each in self._package.elements(part, "si")]
+            self._texts = self._shared_texts()
         if cell >= len(self._texts):
             raise self.source.refusal("too-few-texts", number=cell, came=len(self._texts))
         return self._texts[cell]
+
+    def _shared_texts(self) -> list[str]:
+        reader = TextsReader()
+        self._package.feed(self._by_kind.get("sharedStrings", ""), reader.parser)
+        return reader.texts
 
 
 def _whole(text: str | None) -> int:
