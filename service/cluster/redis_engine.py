@@ -23,6 +23,7 @@ from service.errors import (
     ShuttingDown,
     StoreUnavailable,
 )
+from service.jobs.cancelling import cancel_all
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import UNFINISHED, Record, StopReason, as_ended, as_failed
@@ -127,9 +128,7 @@ class RedisEngine:
     async def close(self) -> None:
         """Take no more jobs. Unfinished ones go on in the workers."""
         self._closed = True
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await cancel_all(self._tasks)
 
     async def stats(self) -> EngineStats:
         """Return the numbers of the whole cluster, as last known."""

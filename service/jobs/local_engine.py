@@ -17,6 +17,7 @@ from service.errors import (
     StoreUnavailable,
     WorkerLost,
 )
+from service.jobs.cancelling import cancel_all
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
@@ -145,9 +146,7 @@ class LocalEngine:
     async def close(self) -> None:
         """Close the workers. Unfinished jobs stay in the store."""
         await self._workers.close()
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await cancel_all(self._tasks)
 
     async def stats(self) -> EngineStats:
         """Return the numbers for the metrics."""

@@ -37,7 +37,8 @@ from service.requests.validation import nearest
 _MOST_LOAD = 10**9
 _MOST_COUNT = 10**6
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
-Loads = Annotated[list[Load], at_most(8)]
+_MOST_DIMENSIONS = 8
+Loads = Annotated[list[Load], at_most(_MOST_DIMENSIONS)]
 Skills = Annotated[list[Text], at_most(50)]
 SpeedFactor = Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)]
 ServiceFactor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]

@@ -224,7 +224,10 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
         ("preferences", not options.fewer),
     ):
         if asked:
-            raise _over("too-many-for-network", part, limits.network_cities, n)
+            most = limits.network_cities
+            raise Refusal(
+                "too-many-for-network", name=part, pointer=f"/{part}", limit=most, actual=n
+            )
     return replace(options, directions=options.directions[:0])
 
 
@@ -273,7 +276,10 @@ def check_fleet(
     if not are_straight(stops.sources):
         raise too_many_cities(part, most, stops.n, code)
     if time_limit == 0:
-        raise _over("too-many-for-network", "time_limit", most, stops.n)
+        part = "time_limit"
+        raise Refusal(
+            "too-many-for-network", name=part, pointer=f"/{part}", limit=most, actual=stops.n
+        )
 
 
 def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
@@ -292,8 +298,4 @@ def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
 def check_limit(name: str, limit: float, actual: float) -> None:
     """Raise a refusal where a field is over its limit."""
     if actual > limit:
-        raise _over("over-limit", name, limit, actual)
-
-
-def _over(code: str, part: str, limit: float, actual: float) -> Refusal:
-    return Refusal(code, name=part, pointer=f"/{part}", limit=limit, actual=actual)
+        raise Refusal("over-limit", name=name, pointer=f"/{name}", limit=limit, actual=actual)

@@ -20,6 +20,7 @@ from typing import Literal
 from pydantic_core import to_json
 
 from service.errors import StoreUnavailable
+from service.jobs.cancelling import cancel_all
 from service.jobs.outbox import Delivery, Outbox
 from service.jobs.record import Status
 from service.webhooks.signature import Secret, signed_headers
@@ -67,8 +68,7 @@ class Webhooks:
         try:
             yield
         finally:
-            running.cancel()
-            await asyncio.wait([running])
+            await cancel_all([running])
             await sender.close()
 
 
@@ -95,9 +95,7 @@ class _Sender:
 
     async def close(self) -> None:
         """Cancel the attempts in progress. Once their leases end, they are made again."""
-        for attempt in self._attempts:
-            attempt.cancel()
-        await asyncio.gather(*self._attempts, return_exceptions=True)
+        await cancel_all(self._attempts)
         self._transport.close()
 
     async def _begin(self) -> None:

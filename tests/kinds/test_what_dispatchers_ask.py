@@ -773,10 +773,12 @@ def test_the_rest_of_a_day_is_planned_at_its_own_times() -> None:
     ("members", "pointer", "code"),
     [
         ({"clock": None, "vehicles": [{"id": "van", "start": 0}]}, "/clock", "no-clock-of-day"),
-        ({"time_limit": 0}, None, "no-plan"),
+        ({"time_limit": 0}, None, "no-actor"),
     ],
 )
-def test_a_day_needs_a_clock_and_a_search(members: Json, pointer: str | None, code: str) -> None:
+def test_a_day_needs_a_clock_and_without_time_a_network(
+    members: Json, pointer: str | None, code: str
+) -> None:
     stops = {f"{at}": {"at": at} for at in range(7)}
     request = {**over_the_day(fleet(stops), **RUSH), **members}
     with pytest.raises(Refusal) as refused:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from service.errors import NoWorker, WarmingUp
+from service.jobs.cancelling import cancel_all
 from service.jobs.submission import Submission
 from service.jobs.workers.messages import Stage, Unable, Warm, WarmUp
 from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
@@ -84,9 +85,7 @@ class WorkerSet:
 
     async def close(self) -> None:
         """Kill the processes."""
-        for keeper in self._keepers:
-            keeper.cancel()
-        await asyncio.gather(*self._keepers, return_exceptions=True)
+        await cancel_all(self._keepers)
 
     def check_ready(self) -> None:
         """Raise NoWorker while none can be started, WarmingUp while none can search few cities."""
