@@ -10,8 +10,8 @@ _AGAIN = 1.0  # seconds
 async def cancel_all(tasks: Iterable[asyncio.Task[Any]]) -> None:
     """Cancel tasks, again and again until each has ended. What they raise is dropped.
 
-    A task can miss its cancellation: where that comes just as what the task waits for ends, some
-    libraries go on with the result. To wait for such a task alone would take forever.
+    A task can miss its cancellation, and to wait for it would then take forever: in Python 3.11
+    asyncio.wait_for() returns a result that comes just then, and redis-py sends commands by it.
     """
     left = {task for task in tasks if not task.done()}
     while left:
