@@ -155,7 +155,7 @@ def test_the_service_and_its_parsers_load_nothing_that_plans(
 ) -> None:
     with served(tmp_path, **quick_actors) as (process, url):
         until_ok(f"{url}/health/ready", process, log_of(tmp_path))
-        with httpx.Client(base_url=url, timeout=60) as client:
+        with httpx.Client(base_url=url, timeout=300) as client:
             layer, robots = {"cost_layer": [[1] * 4] * 3}, {"robots": [{"id": "r"}]}
             ids = []
             for path, body in (
