@@ -6,7 +6,8 @@ pair of stops, with the best known sums of the durations of all routes, many of 
 `MAMUT-routing-TDVRPTW-Vu2020` beside it, and the folder `S1` of `MAMUT-routing-TDVRPTW-Lera2026`.
 
 `paretour.plan_fleet` is asked for durations against vehicles, from the request to the answer, on
-one thread; times are `breakpoints`. The package kayros (PyPI, MIT) plans for the same seconds, with
+one thread; times are `breakpoints`, or of Lera2026, which says at which speed each pair is driven
+at which hours, `slices`. The package kayros (PyPI, MIT) plans for the same seconds, with
 its own settings; its seconds are without reading the file. The checker of the sets
 (mamut-routing-lib) prices the plans of both. Stores `results/congestion.json`.
 """
@@ -14,14 +15,20 @@ its own settings; its seconds are without reading the file. The checker of the s
 import argparse
 import json
 import time
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import kayros
 import numpy as np
 from mamut_routing_lib.models import BenchmarkSolution
-from mamut_routing_lib.td import LoadedTDInstance, check_td_solution, load_td_instance
+from mamut_routing_lib.td import (
+    LoadedTDInstance,
+    check_td_solution,
+    load_instance_categories,
+    load_td_instance,
+)
+from mamut_routing_lib.td.models import TD_IGP_MODEL
 from numpy.typing import NDArray
 from paretour.bars import Silent
 from paretour.plans import FleetFront
@@ -39,11 +46,15 @@ _JUMP = 1e-3  # seconds in which times rise where they jump up in the file
 
 
 class Known(NamedTuple):
-    """An instance of a set, and the best known sum of durations."""
+    """An instance of a set, the best known sum of durations, and the slices of its day if it has.
+
+    Without these each pair of stops has arrival times of its own.
+    """
 
     name: str
     given: LoadedTDInstance
     least: float
+    slices: list[dict[str, Any]] | None
 
 
 def main(arguments: list[str]) -> None:
@@ -57,24 +68,35 @@ def main(arguments: list[str]) -> None:
         for n in options.stops:
             paths = sorted((folder / f"n={n}").glob("*.vrp.json"))
             spread = np.linspace(0, len(paths) - 1, min(len(paths), options.count)).astype(int)
-            instances = [read(paths[index]) for index in spread]
-            if not instances:
+            if not paths:
                 continue
-            by_paretour(instances[0], 0.1)  # compiled before it is timed
-            key = f"{instances[0].given.instance.benchmark_name.value}, {n} stops"
+            by_paretour(paths[0], 0.1)  # compiled before it is timed
+            key = f"{read(paths[0]).given.instance.benchmark_name.value}, {n} stops"
             measures = {
                 f"{key}, Paretour": partial(by_paretour, seconds=SECONDS),
                 f"{key}, kayros": by_kayros,
             }
-            resume_beside("congestion", measures, instances)
+            resume_beside("congestion", measures, [paths[index] for index in spread])
     print(congestion_table())
 
 
+@lru_cache(1)  # of 1,000 stops an instance takes gigabytes
 def read(path: Path) -> Known:
     """Read an instance, its arrival times and its best known sum, which lie beside each other."""
     name = path.name.removesuffix(".vrp.json")
     best = json.loads(path.with_name(f"{name}.bks.Duration.json").read_text(encoding="utf-8"))
-    return Known(name, load_td_instance(path), best["cost"])
+    given = load_td_instance(path)
+    td, places = given.instance.td, np.array(given.instance.coordinates, np.float64)
+    if td is None or td.model != TD_IGP_MODEL:
+        return Known(name, given, best["cost"], None)
+    rows = load_instance_categories(path.with_name(td.categories_path)).categories
+    steps = places[:, np.newaxis] - places
+    of_pairs = np.array(td.speeds)[np.array([list(map(int, row)) for row in rows])]
+    slices = [
+        {"from": begin, "matrix": (np.hypot(*steps.T).T / of_pairs[..., period]).tolist()}
+        for period, (begin, _) in enumerate(td.time_periods)
+    ]
+    return Known(name, given, best["cost"], slices)
 
 
 def breakpoints(leaves: Array, reached: Array) -> list[list[float]]:
@@ -97,21 +119,18 @@ def _reached(leaves: Array, reached: Array, time: float) -> float:
 
 def request_of(known: Known, seconds: float) -> dict[str, Any]:
     """Return the request."""
-    given, arcs = known.given.instance, known.given.atfs.arcs
+    given = known.given.instance
     rows = zip(given.demands, given.service_times, given.time_windows, strict=True)
     stops = [
         {"id": str(stop), "demand": [demand], "service": service, "window": window}
         for stop, (demand, service, window) in enumerate(rows)
     ]
-    of_pairs: list[list[Any]] = [[None] * len(stops) for _ in stops]
-    for (i, j), arrival in arcs.items():
-        of_pairs[i][j] = breakpoints(np.array(arrival.xs), np.array(arrival.ys))
     van = {"id": "van", "count": given.num_vehicles, "capacity": [given.vehicle_capacity]}
     return {
         "stops": [{"id": "0"}, *stops[1:]],
         "vehicles": [{**van, "start": "0", "end": "0", "shift": given.horizon}],
         "objectives": [
-            {"name": "time", "breakpoints": of_pairs},
+            {"name": "time", **_times(known)},
             {"name": "vans", "measure": "vehicles"},
         ],
         "clock": "time",
@@ -120,8 +139,20 @@ def request_of(known: Known, seconds: float) -> dict[str, Any]:
     }
 
 
-def by_paretour(known: Known, seconds: float) -> dict[str, Any]:
+def _times(known: Known) -> dict[str, Any]:
+    """Return the source of the times of travel."""
+    if known.slices is not None:
+        return {"slices": known.slices}
+    n = len(known.given.instance.demands)
+    of_pairs: list[list[Any]] = [[None] * n for _ in range(n)]
+    for (i, j), arrival in known.given.atfs.arcs.items():
+        of_pairs[i][j] = breakpoints(np.array(arrival.xs), np.array(arrival.ys))
+    return {"breakpoints": of_pairs}
+
+
+def by_paretour(path: Path, seconds: float) -> dict[str, Any]:
     """Return the least sum of durations that Paretour finds, and its front."""
+    known = read(path)
     request = request_of(known, seconds)
     began = time.monotonic()
     front = _planner().plan(fleet_plan(request), Silent()).front()
@@ -141,8 +172,9 @@ def _planner() -> LocalPlanner:
     )  # so many breakpoints
 
 
-def by_kayros(known: Known) -> dict[str, Any]:
+def by_kayros(path: Path) -> dict[str, Any]:
     """Return the sum of durations that kayros finds."""
+    known = read(path)
     began = time.monotonic()
     found = kayros.solve(known.given, time_limit=SECONDS, seed=1)
     spent = time.monotonic() - began
