@@ -12,6 +12,9 @@ from service.errors import CityNames, uncoverable
 from service.instance import CLOSED, RouteEnds
 from service.objectives import Objective
 
+METRES, SECONDS = Objective("distance", "m"), Objective("time", "s")
+COSTS = Objective("cost", None)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Robot:
@@ -44,6 +47,24 @@ class Robot:
         return RouteEnds(self.closed, start, poses.get(f"{part}/end_pose", self.end))
 
 
+@dataclass(frozen=True, kw_only=True)
+class RobotHours:
+    """When robots leave, how fast they are, and how costs change over the day.
+
+    Args:
+        speed: Metres a second, before the factors of the first objective.
+        earliest: The first second of the day at which a robot may leave.
+        latest: The last one.
+        factors: For each of the different costs, ascending seconds of the day, each with the factor
+            that holds from then on. The first one holds before that too. There may be none.
+    """
+
+    speed: float
+    earliest: float
+    latest: float
+    factors: tuple[tuple[tuple[float, float], ...], ...]
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coverage:
     """A coverage task.
@@ -73,6 +94,7 @@ class Coverage:
         second_coordinates: Coordinates of the places in a plane, shape (n, 2).
         robots: The robots that share the places. Each has a start of its own, which replaces
             `start`, `ends` and both poses. Empty if one robot visits all places.
+        hours: The day, if costs depend on the time. The first objective is then seconds.
 
     Raises:
         InvalidCoverage: A size is not positive, a cost layer does not fit the grid or has an
@@ -95,6 +117,7 @@ class Coverage:
     detours: bool = False
     second_coordinates: Array | None = None
     robots: tuple[Robot, ...] = ()
+    hours: RobotHours | None = None
     stops: ClassVar[None] = None  # a map has places
 
     def __post_init__(self) -> None:
@@ -145,6 +168,13 @@ class Coverage:
     def objectives(self) -> int:
         """The number of objectives: metres, and the layers or the one other source."""
         return 2 if self.cost_layers is None else 1 + len(self.cost_layers)
+
+    @property
+    def names(self) -> tuple[Objective, ...]:
+        """The names of all objectives; none where the caller gave none and they are metres."""
+        if self.hours is not None:
+            return (SECONDS, *(self.layers or (COSTS,)))
+        return (METRES, *self.layers) if self.layers else ()
 
     @property
     def has_costs(self) -> bool:

@@ -27,8 +27,6 @@ from service.errors import Cancelled, Refusal, uncoverable
 from service.instance import Instance, RouteEnds
 from service.objectives import Objective
 
-METRES = Objective("distance", "m")
-
 
 @dataclass(frozen=True, eq=False)
 class Survey:
@@ -42,7 +40,7 @@ class Survey:
         to_visit: The number of places that the caller gave or that cover a region, as in Places.
         uncovered: The cells to which no path leads.
         robots: The places at which each robot starts and ends, as in Places.
-        objectives: The names of all objectives, if the caller named the cost layers.
+        objectives: The names of all objectives, as in Coverage.names.
     """
 
     places: Cells
@@ -199,7 +197,7 @@ def survey(
         places.to_visit,
         uncovered(free, cells[0], coverage.cell_size),
         places.robots,
-        (METRES, *coverage.layers) if coverage.layers else (),
+        coverage.names,
     )
 
 

@@ -62,9 +62,11 @@ class Compiling:
         return WarmingUp(str(self), self.seconds_left)
 
 
-def parts_for_robots(_: SharedCoverage, __: Task) -> frozenset[Part]:
+def parts_for_robots(shared: SharedCoverage, _: Task) -> frozenset[Part]:
     """Return the parts that several robots on a map need."""
-    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, *_OF_DAYS}
+    timed = shared.coverage.hours is not None
+    unneeded = {*_OF_DAYS} - {Part.FLEETS_OVER_THE_DAY} | {Part.FLEETS} if timed else {*_OF_DAYS}
+    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, *unneeded}
 
 
 def parts_for_fleet(fleet: UnmeasuredFleet, _: Task) -> frozenset[Part]:
@@ -77,7 +79,9 @@ def parts_for_fleet(fleet: UnmeasuredFleet, _: Task) -> frozenset[Part]:
 def parts_for_map(coverage: Coverage, _: Task) -> frozenset[Part]:
     """Return the parts that one robot on a map needs."""
     unneeded = {Part.FLEETS, *_OF_DAYS}
-    if coverage.objectives == OBJECTIVES:
+    if coverage.hours is not None:
+        unneeded.remove(Part.OVER_THE_DAY)
+    elif coverage.objectives == OBJECTIVES:
         unneeded.add(Part.SEVERAL_OBJECTIVES)
     return frozenset(Part) - unneeded
 

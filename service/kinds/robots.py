@@ -9,6 +9,7 @@ robot, and a stop to visit.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -21,11 +22,13 @@ from service.coverage.survey import Survey, survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.fleet.rules import Over, Rules
+from service.fleet.rules import Rules
+from service.fleet.schedule import schedule
 from service.fleet.vehicles import VehicleType, Visit
 from service.kinds.fleet import document_of_plans, plan_front
 from service.kinds.front_document import FrontDocument, encode_path, with_member
 from service.kinds.kind import Tools
+from service.kinds.map_day import costs_of_day
 from service.kinds.tour_document import on_map
 from service.kinds.tours import seconds_to_survey, unless_cancelled
 from service.requests.task import SharedCoverage, Task
@@ -42,7 +45,7 @@ def run_robots(
     began = watch.spent
     most, seconds = limits.most_places(shared=True), seconds_to_survey(task, limits)
     surveyed = survey(subject.coverage, most, watch.stopped, seconds)
-    fleet = robot_fleet(surveyed, subject.over)
+    fleet = robot_fleet(surveyed, subject)
     known = {**on_map(surveyed), **subject.members}
 
     def encoded(front: FleetFront, paths: Iterable[CoveragePath] | None = None) -> FrontDocument:
@@ -92,22 +95,49 @@ class RobotFleet:
 
     def way(self, route: Route) -> Indices:
         """Return the places of a route in order, from its start to its end if it has one."""
-        places = self.places[list(path_of(self.fleet.rules, route))]
-        moves = np.append(True, places[1:] != places[:-1])
-        return places[moves]
+        places = self._places_of(route)
+        return places[_moves(places)]
+
+    def times(self, route: Route) -> list[float]:
+        """Return when the robot is at each place of `way`; the fleet has a clock."""
+        arrivals = np.array(schedule(self.fleet, route).arrivals)
+        return arrivals[_moves(self._places_of(route))].tolist()
+
+    def _places_of(self, route: Route) -> Indices:
+        return self.places[list(path_of(self.fleet.rules, route))]
 
 
-def robot_fleet(surveyed: Survey, over: tuple[Over, Over]) -> RobotFleet:
-    """Return the fleet of the robots of a survey; `over` is that of its two objectives."""
+def _moves(places: Indices) -> NDArray[np.bool_]:
+    """Return at which of some places a robot has not been just before."""
+    return np.append(True, places[1:] != places[:-1])
+
+
+def robot_fleet(surveyed: Survey, shared: SharedCoverage) -> RobotFleet:
+    """Return the fleet of the robots of a survey."""
     assert surveyed.instance.matrices is not None
     places, types = _stops_and_types(surveyed)
-    vehicles = tuple(
+    costs = surveyed.instance.matrices[:, places[:, np.newaxis], places]
+    vehicles = [
         VehicleType(start=start, end=end, count=len(robots))
         for (start, end), robots in types.items()
+    ]
+    visits, hours = (Visit(),) * len(places), shared.coverage.hours
+    if hours is None:
+        rules = Rules(visits=visits, vehicles=tuple(vehicles), over=shared.over)
+        return RobotFleet(Fleet(rules=rules, costs=costs), places, list(types.values()))
+    seconds, *further = costs_of_day(hours, costs)
+    rules = Rules(
+        visits=visits,
+        vehicles=tuple(
+            replace(vehicle, shift=(hours.earliest, inf), leaves_by=hours.latest)
+            for vehicle in vehicles
+        ),
+        over=shared.over,
+        layers=(0, len(further)),
+        clock=0,
     )
-    rules = Rules(visits=(Visit(),) * len(places), vehicles=vehicles, over=over)
-    costs = surveyed.instance.matrices[:, places[:, np.newaxis], places]
-    return RobotFleet(Fleet(rules=rules, costs=costs), places, list(types.values()))
+    fleet = Fleet.over_the_day(rules, seconds, *(further or [seconds]))
+    return RobotFleet(fleet, places, list(types.values()))
 
 
 def _stops_and_types(
@@ -139,13 +169,13 @@ def _encode_plan(
     """Return a plan as JSON; the paths of its routes are the next ones, if there are any."""
     routes = []
     for robot, route in fleet.routes(plan):
-        encoded = to_json(
-            {
-                "robot": robots[robot].id,
-                "tour": fleet.way(route).tolist(),
-                "lengths": list(route_lengths(fleet.fleet, route)),
-            }
-        )
-        path = next(paths)
+        content = {
+            "robot": robots[robot].id,
+            "tour": fleet.way(route).tolist(),
+            "lengths": list(route_lengths(fleet.fleet, route)),
+        }
+        if fleet.fleet.rules.clock is not None:
+            content["times"] = fleet.times(route)
+        encoded, path = to_json(content), next(paths)
         routes.append(encoded if path is None else with_member(encoded, b"path", encode_path(path)))
     return with_member(to_json(members), b"routes", b"[" + b",".join(routes) + b"]")

@@ -16,7 +16,9 @@ from service.instance import Instance, step_lengths, tour_steps
 from service.kinds.detours import PlanWithDetours
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Tools
+from service.kinds.map_day import day_on_map
 from service.kinds.tour_document import encode_front
+from service.over_the_day.day import Day
 from service.over_the_day.plan import plan_over_the_day
 from service.planner import plan
 from service.reliability.plan import plan_reliably
@@ -36,7 +38,7 @@ def run_front(stops: Stops, task: Task, tools: Tools, watch: Watch[FrontDocument
     if task.timings or not stops.measured:  # else it was checked when it came
         check_instance(task, instance)
         timings = {**task.timings, "costs": 1000 * (watch.spent - began)}
-    front = _plan(task, instance, tools, watch)
+    front = _plan(task, instance, tools, watch, day=stops.day)
     if timings:
         front = replace(front, timings={**timings, **front.timings})
     return encode_front(
@@ -54,11 +56,13 @@ def run_coverage(
     limits = tools.limits
     began = watch.spent
     surveyed = survey_map(coverage, task, limits, watch.stopped)
-    check_instance(task, surveyed.instance)
+    day = day_on_map(coverage.hours, surveyed.instance)
+    instance = surveyed.instance if day is None else day.instance
+    check_instance(task, instance)
     surveyed_at = watch.spent
-    options = within_network(task.options, surveyed.instance.n, limits)
+    options = within_network(task.options, instance.n, limits)
     task = replace(task, options=replace(options, start=surveyed.start))
-    front = _plan(task, surveyed.instance, tools, watch, surveyed)
+    front = _plan(task, instance, tools, watch, surveyed, day=day)
     planned_at = watch.spent
     paths = None
     if task.paths:
@@ -106,10 +110,20 @@ def _plan(
     tools: Tools,
     watch: Watch[FrontDocument],
     surveyed: Survey | None = None,
+    *,
+    day: Day | None,
 ) -> Front:
-    """Plan or replan the front of a task; `surveyed` is the map, if it has one."""
+    """Plan or replan the front of a task.
+
+    Args:
+        task: The task.
+        instance: The costs; over the day the mean ones.
+        tools: What plans.
+        watch: The watch over the work.
+        surveyed: The map, if it has one.
+        day: The costs over the day, if they depend on the time.
+    """
     actor, options = tools.actors[task.actor], task.options
-    day = None if task.stops is None else task.stops.day
 
     def encoded(front: Front) -> FrontDocument:
         return encode_front(front, actor.info.identity, surveyed, labels=task.labels)
@@ -165,8 +179,8 @@ def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float6
 
 def _arrivals_on_map(task: Task, surveyed: Survey, front: Front) -> NDArray[np.float64] | None:
     """Return the same on a map, where each leg takes its own path."""
-    if not task.arrivals:
-        return None
+    if not task.arrivals or front.reached is not None:
+        return _arrivals(task, surveyed.instance, front)
     legs = tour_steps(surveyed.instance, front.tours)
     return _cumulated(surveyed.legs.lengths(legs, front.leg_paths))
 

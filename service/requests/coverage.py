@@ -29,6 +29,7 @@ from service.requests.fields import (
     unless_given,
 )
 from service.requests.limits import Limits, tours_within_limits
+from service.requests.maps.day import MapDayFields
 from service.requests.maps.fields import CostLayers, Layer, MapRequest, empty_rows, stacked
 from service.requests.stop_fields import check_unique
 from service.requests.task import SharedCoverage
@@ -76,7 +77,7 @@ class RobotItem(StrictModel):
         )
 
 
-class CoverageRequest(MapRequest):
+class CoverageRequest(MapDayFields, MapRequest):
     """Places on a map, the objectives between them, and the options of their front."""
 
     robot_radius: Annotated[
@@ -165,7 +166,16 @@ class CoverageRequest(MapRequest):
             detours=self.detours,
             second_coordinates=np.array(points, dtype=np.float64) if points else None,
             robots=tuple(robot.robot(self.closed) for robot in self.robots),
+            hours=self.hours(self._costs),
         )
+
+    @property
+    def _costs(self) -> int:
+        """The number of different costs between places."""
+        if self.cost_layers:
+            return 1 + len(self.cost_layers)
+        second = self.second_matrix.size or self.cost_layer.size or self.second_coordinates
+        return 2 if second or not self.robots else 1
 
     def _layers(self) -> Array | None:
         """Return all cost layers, shape (layers, rows, columns); None without one."""
@@ -189,6 +199,8 @@ def parse_coverage_request(
     check_unique([item.name for item in request.cost_layers], "cost_layers", "name")
     if request.cost_layer.size and request.cost_layers:
         raise invalid("cost_layers", "or-left-out", member="cost_layer")
+    if request.detours and request.departure is not None:
+        raise invalid("detours", "not-beside", member="departure")
     most = limits.most_places(shared=bool(request.robots))
     if len(request.places) > most:
         raise too_many_cities("places", most, len(request.places))

@@ -44,6 +44,7 @@ _MOST_TIMES = 2**23  # of travel, in all slices of one objective
 _MOST_SLICES = 100  # every quarter of an hour, and a few more
 _LEAST_FACTOR, _MOST_FACTOR = 0.01, 100.0
 Factor = Annotated[float, Field(ge=0, allow_inf_nan=False), IS_TIME]  # or a second of the day
+Factors = Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)]
 
 
 class SliceItem(StrictModel):
@@ -124,11 +125,9 @@ class StopItem(NamedStop):
 class TimedObjectiveItem(ObjectiveItem):
     """An objective, whose costs may change over the day."""
 
-    over_the_day: Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)] = (
-        empty_list(
-            "pairs of a second of the day and a factor: from then on the costs are those of the"
-            " source times the factor; the first one holds before it too"
-        )
+    over_the_day: Factors = empty_list(
+        "pairs of a second of the day and a factor: from then on the costs are those of the"
+        " source times the factor; the first one holds before it too"
     )
     slices: SliceItems = empty_list(
         "in place of one matrix: one for each slice of the day, which the next one ends; the first"
@@ -174,13 +173,9 @@ class TimedObjectiveItem(ObjectiveItem):
             raise invalid(f"{part}/traffic", "needs-road-time")
         if not self.over_the_day:
             return base
-        begins, factors = zip(*self.over_the_day, strict=True)
-        _check_times(f"{part}/over_the_day", [f"{k}/0" for k in range(len(begins))], begins)
-        for k, factor in enumerate(factors):
-            if not _LEAST_FACTOR <= factor <= _MOST_FACTOR:
-                bounds = {"least": _LEAST_FACTOR, "most": _MOST_FACTOR}
-                raise invalid(f"{part}/over_the_day/{k}/1", "not-between", **bounds, came=factor)
-        return OverTheDay(base, np.array(begins, np.float64), np.array(factors, np.float64))
+        check_factors(f"{part}/over_the_day", self.over_the_day)
+        begins, factors = np.array(self.over_the_day, np.float64).T.copy()
+        return OverTheDay(base, begins, factors)
 
     def _given(self, part: str, source: str, n: int) -> Source:
         """Return the costs in slices or by breakpoints."""
@@ -245,6 +240,29 @@ class DayFields(StrictModel):
     )
 
 
+def check_factors(part: str, pairs: Sequence[Sequence[float]]) -> None:
+    """Raise a refusal unless the times of pairs are ascending and their factors within bounds."""
+    _check_times(part, [f"{k}/0" for k in range(len(pairs))], [time for time, _ in pairs])
+    for k, (_, factor) in enumerate(pairs):
+        if not _LEAST_FACTOR <= factor <= _MOST_FACTOR:
+            bounds = {"least": _LEAST_FACTOR, "most": _MOST_FACTOR}
+            raise invalid(f"{part}/{k}/1", "not-between", **bounds, came=factor)
+
+
+def range_of(departure: float | DepartureRange) -> tuple[float, float]:
+    """Return the earliest and the latest departure.
+
+    Raises:
+        Refusal: The latest one is before the earliest.
+    """
+    if not isinstance(departure, DepartureRange):
+        return departure, departure
+    earliest, latest = departure.earliest, departure.latest
+    if latest < earliest:
+        raise invalid("departure/latest", "too-early", earliest=earliest, came=latest)
+    return earliest, latest
+
+
 def read_hours(
     request: DayFields,
     stops: Sequence[StopItem],
@@ -259,13 +277,7 @@ def read_hours(
     if request.departure is None:
         _check_no_day(request, stops, items)
         return None
-    earliest = latest = request.departure
-    if isinstance(request.departure, DepartureRange):
-        earliest, latest = request.departure.earliest, request.departure.latest
-        if latest < earliest:
-            raise invalid("departure/latest", "too-early", earliest=earliest, came=latest)
-    assert isinstance(earliest, float)
-    assert isinstance(latest, float)
+    earliest, latest = range_of(request.departure)
     service = np.array([stop.service for stop in stops], np.float64)
     return Hours(_clock(request, items, objectives), service, earliest, latest)
 

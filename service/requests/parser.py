@@ -81,7 +81,7 @@ def check_instance(task: Task, instance: Instance) -> None:
     """
     if instance.matrices is not None:  # else no leg is forbidden
         check_legs(instance, task.city_names)
-    if task.stops is not None and task.stops.hours is not None:
+    if task.is_over_the_day:
         return  # a tour may be shorter than under mean costs
     check_reference_point(task.options, partial(least_lengths, instance))
 
@@ -126,11 +126,11 @@ def coverage_task(
 
     Raises:
         Refusal: No actor serves it, the actor cannot do what it asks for, or it asks for a bound
-            of tours with detours.
+            of tours with detours or over the day.
     """
     m = coverage.objectives
-    if coverage.detours and request.bound:
-        raise invalid("bound", "bound-of-detours")
+    if request.bound and (coverage.detours or coverage.hours is not None):
+        raise invalid("bound", "bound-of-detours" if coverage.detours else "bound-of-the-day")
     name = choose_actor(actors, "matrices", request.requested_actor, m)
     return Task(
         subject=coverage,

@@ -32,6 +32,7 @@ from service.requests.straight_sources import are_straight, lines_of
 KindName = Literal["front", "coverage", "fleet", "robots"]
 _MOST_STORED = 500  # stops; costs of more are worked out faster than read, where they are lines
 _METRES = {"sum": "total distance", "max": "longest route"}
+_SECONDS = {"sum": "total time", "max": "longest route"}
 _COSTS = {"sum": "total cost", "max": "greatest cost"}
 
 
@@ -155,13 +156,14 @@ class SharedCoverage:
         """The members of an answer about its objectives, and about open routes."""
         first, second = self.over
         closed = all(robot.closed for robot in self.coverage.robots)
+        ways, unit = (_METRES, "m") if self.coverage.hours is None else (_SECONDS, "s")
         costs = {"name": _COSTS[second], "unit": None}
-        metres = {"name": _METRES[second], "unit": "m"}
+        longest = {"name": ways[second], "unit": unit}
         return {
             "closed": None if closed else False,
             "objectives": [
-                {"name": _METRES[first], "unit": "m", "over": first},
-                {**(costs if self.coverage.has_costs else metres), "over": second},
+                {"name": ways[first], "unit": unit, "over": first},
+                {**(costs if self.coverage.has_costs else longest), "over": second},
             ],
         }
 
@@ -203,6 +205,12 @@ class Task:
     def stops(self) -> Stops | None:
         """The stops, with the sources of the costs between them; None on a map."""
         return self.subject.stops
+
+    @property
+    def is_over_the_day(self) -> bool:
+        """Whether it is of tours whose lengths depend on when they begin."""
+        subject = self.subject
+        return isinstance(subject, Stops | Coverage) and subject.hours is not None
 
     @property
     def needs_roads(self) -> bool:

@@ -51,6 +51,17 @@ REQUESTS: list[tuple[str, dict[str, Any]]] = [
     (
         "/coverage",
         {
+            **GRID,
+            "places": PLACES,
+            "second_matrix": MATRIX,
+            "robot_speed": 0.5,
+            "departure": {"earliest": 0, "latest": 9},
+            "over_the_day": [[[0, 1], [2, 1.5]], []],
+        },
+    ),
+    (
+        "/coverage",
+        {
             **BY_MESSAGE,
             "occupancy_grid": MESSAGE,
             "spacing": 0.5,

@@ -84,7 +84,7 @@ def test_three_robots_share_the_warehouse_in_several_ways() -> None:
     limits = Settings().limits
     task = parse_coverage_request((EXAMPLES / ROBOTS).read_bytes(), limits).shared()
     surveyed = survey(task.coverage, limits.most_places(shared=True), lambda: False)
-    fleet = robot_fleet(surveyed, task.over)
+    fleet = robot_fleet(surveyed, task)
     front = plan_fleet(fleet.fleet, FleetOptions(time_limit=inf, iterations=400))
     robots = [{robot for robot, _ in fleet.routes(plan)} for plan in front.plans]
     assert len(robots) > 1

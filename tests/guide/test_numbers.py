@@ -25,9 +25,10 @@ from service.jobs import outbox
 from service.jobs.workers import worker_pool
 from service.kinds.parsing import parse_task
 from service.mcp import arguments, summaries, tools
-from service.requests import coverage, day_fields, fields, fleet_fields
+from service.requests import breakpoint_fields, coverage, day_fields, fields, fleet_fields
 from service.requests.coverage import CoverageRequest
 from service.requests.front import FrontRequest
+from service.requests.maps import day
 from service.requests.notes import costs, places
 from service.requests.task import TaskSource
 from service.search import schedule, sizes
@@ -80,6 +81,16 @@ def cells(page: Path, heading: str) -> list[list[str]]:
         (r"their (\d+) largest `regions`", [grid._MOST_REGIONS]),
         (r"`robots` \| up to (\d+)", [coverage.MOST_ROBOTS]),
         (r"up to (\d+) pairs of a second and a factor", [day_fields._MOST_SLICES]),
+        (
+            r"Factors are from ([\d.]+) to (\d+), speeds from ([\d.]+) to (\d+)",
+            [day_fields._LEAST_FACTOR, 100, day._LEAST_SPEED, day._MOST_SPEED],
+        ),
+        (
+            r"There may be ([\d,]+) breakpoints of a pair, and ([\d,]+) in all objectives",
+            [breakpoint_fields._MOST_OF_PAIR, LIMITS.breakpoints],
+        ),
+        (r"80 stops may have (\d+) for each pair", [LIMITS.breakpoints // (80 * 79)]),
+        (r"At (\d+) bytes each", [LIMITS.body_bytes / LIMITS.breakpoints]),
         (r"lie more than ([\d,]+) km from the middle", [places._FAR / 1000]),
         (r"a stop more than (\d+) km from any other one", [places._APART / 1000]),
         (r"at least ([\d,]+) times the median", [costs._TIMES]),

@@ -100,6 +100,8 @@ def _make_coverable(body: dict[str, Any]) -> None:
         body |= {"start": 0, "actor": "pa-one-matrix"}
     if "cell_size" in body:
         body["cell_size"] = 1
+    for name in ("departure", "robot_speed", "over_the_day"):  # they go together
+        body.pop(name, None)
     body.pop("initial_tours", None)
     body.pop("start_pose", None)
     body.pop("end_pose", None)

@@ -83,6 +83,12 @@ def requests() -> Iterator[tuple[str, Asked]]:
     layer = np.random.default_rng(7).integers(1, 9, (_SIDE, _SIDE)).tolist()
     costly = {**on_map(), "cost_layer": layer, "detours": True}
     yield "detours", Asked(("coverage",), "/coverage", costly, "coverage", "tour")
+    morning = {"robot_speed": 0.5, "departure": 9 * 3600 - 60}
+    rush = [[0, 1.0], [9 * 3600, 1.5]]
+    timed = {**covered, **morning, "over_the_day": [rush, []]}
+    yield "day on a map", Asked(("coverage",), "/coverage", timed, "coverage", "tour")
+    timed = {**shared, **morning, "over_the_day": [rush]}
+    yield "day of robots", Asked(("coverage",), "/coverage", timed, "robots", "places")
 
 
 def rest_of(kind: str, front: Mapping[str, Any]) -> Asked:

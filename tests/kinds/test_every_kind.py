@@ -34,19 +34,20 @@ LONG = 60.0  # seconds of search: no test waits until they are over
 LATER = {"Prefer": "respond-async"}
 KINDS = (
     *("cities", "stops", "coverage", "robots", "fleet", "three", "day", "detours"),
+    *("day on a map", "day of robots"),
     *("replanned stops", "replanned coverage", "replanned fleet"),
 )
 # The service alone has the earlier front.
 HERE_NOT = ("replanned stops", "replanned coverage", "replanned fleet")
-ON_MAP = {"coverage", "robots", "detours", "replanned coverage"}
-OF_PLANS = {"robots", "fleet", "replanned fleet"}
+ON_MAP = {"coverage", "robots", "detours", "day on a map", "day of robots", "replanned coverage"}
+OF_PLANS = {"robots", "day of robots", "fleet", "replanned fleet"}
 # The command plans these as others of their kinds do: over HTTP they are searched, too.
-ALIKE = ("three", "day", "detours", "replanned fleet")
+ALIKE = ("three", "day", "detours", "day on a map", "day of robots", "replanned fleet")
 UNLIKE = [kind for kind in KINDS if kind not in ALIKE]
 # What requests are about. All other members are options, and have a row in the table.
 SUBJECT = {
     *("coordinates", "matrices", "stops", "objectives", "closed", "start", "end"),
-    *("departure", "clock", "vehicles", "shipments"),
+    *("departure", "clock", "vehicles", "shipments", "robot_speed", "over_the_day"),
     *("grid", "occupancy_grid", "cell_size", "origin", "mode", "negate", "occupied_thresh"),
     *("free_thresh", "obstacle_from", "unknown", "robot_radius", "places", "spacing"),
     *("start_pose", "end_pose", "second_matrix", "cost_layer", "cost_layers"),
@@ -64,14 +65,17 @@ REFUSED: Mapping[tuple[str, str], tuple[int, str, str]] = {
     **{("geojson", kind): (406, "no-locations", NO_STOPS) for kind in ("cities", "three")},
     **{("geojson", kind): (406, "no-locations", NO_EARTH) for kind in ON_MAP},
     **{("tour", kind): (404, "no-tours", PLANS) for kind in OF_PLANS},
-    ("replan", "robots"): (409, "not-replannable", "only tours and fleets are replanned"),
+    **{
+        ("replan", kind): (409, "not-replannable", "only tours and fleets are replanned")
+        for kind in ("robots", "day of robots")
+    },
     **{
         (option, kind): (422, "invalid-request", why)
         for option, kinds, why in (
             ("preferences", OF_PLANS, SINGLE),
             (
                 "bound",
-                {*OF_PLANS, "day", "detours"},
+                {*OF_PLANS, "day", "day on a map", "detours"},
                 f"{SINGLE}; a bound is of fixed, shortest legs",
             ),
             ("repairs", OF_PLANS, SINGLE),
@@ -375,7 +379,7 @@ def test_the_command_chooses_a_tour_or_names_the_command_that_plans(
     command = asked[kind].command[0]
     tour = replace(asked[kind], command=("tour",))
     result = planned(tour, place, "--knee")
-    if kind not in ("robots", "fleet"):
+    if kind not in OF_PLANS:
         assert result.exit_code == 0, result.stderr
         assert len(result.stdout.split()) == CITIES
     else:

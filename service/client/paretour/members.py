@@ -107,6 +107,9 @@ class CoverageRequest(PlanOptions, total=False):
     free_thresh: float
     obstacle_from: int
     unknown: Literal["blocked", "free"]
+    departure: float | DepartureRangeRequest | None
+    robot_speed: float | None
+    over_the_day: ArrayLike
     robot_radius: float
     places: ArrayLike
     spacing: float

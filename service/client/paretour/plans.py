@@ -57,6 +57,10 @@ class RobotRoute:
     tour: Indexes = member("its places in order, from its start to its end")
     lengths: Lengths = member()
     path: Path | None = member("if `paths` is true")
+    times: Annotated[Array, Shape("tour")] | None = member(
+        "where costs change over the day: when it is at each of them, in seconds of the day",
+        default=None,
+    )
 
 
 class _Plan:

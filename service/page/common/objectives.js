@@ -15,6 +15,9 @@ export const unnamed = (axis) => ({ name: `length ${axis + 1}`, unit: "" });
 /** The first objective on a map. */
 export const DISTANCE = { name: "distance", unit: "m" };
 
+/** It over the day. */
+export const DURATION = { name: "time", unit: "s" };
+
 export const UNNAMED = [unnamed(0), unnamed(1)];
 
 /** Whether the service named these objectives, since the request did not. */

@@ -3,7 +3,7 @@
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
-import { DISTANCE, UNNAMED, namesIn, unnamed } from "../common/objectives.js";
+import { DISTANCE, DURATION, UNNAMED, namesIn, unnamed } from "../common/objectives.js";
 import { framed } from "./map_ends.js";
 import { isCity, nameOf } from "./places.js";
 import { Problem } from "../planning/service.js";
@@ -50,8 +50,8 @@ export function requestFor({ rounded: whole, ids, names, unknownCells: _, shaded
 }
 
 /** The names of the objectives of more than two matrices or of cost layers; undefined for any other request. */
-export function ownNames({ matrices, cost_layers: layers }) {
-  if (layers) return namesIn({ objectives: [DISTANCE, ...layers] });
+export function ownNames({ matrices, cost_layers: layers, departure }) {
+  if (layers) return namesIn({ objectives: [departure == null ? DISTANCE : DURATION, ...layers] });
   return matrices?.length > 2 ? matrices.map((_, axis) => unnamed(axis)) : undefined;
 }
 

@@ -163,7 +163,7 @@ class ReplanRequest(PlanFields):
 
 
 _OF_MAPS = ("pose", "grid", "blocked", "freed", "cost_layer", "cost_layers", "paths")
-_OF_STOPS = ("costs", "objectives", "geometry", "now")
+_OF_STOPS = ("costs", "objectives", "geometry")
 
 
 def check_fields(request: ReplanRequest, *, on_map: bool) -> None:

@@ -12,6 +12,7 @@ from service.coverage.coverage import Coverage, check_layer, size_of
 from service.errors import Fault, InvalidCoverage, invalid
 from service.requests.arrays import Array, check_grid
 from service.requests.limits import Limits, within_limits
+from service.requests.maps.day import hours_from
 from service.requests.parser import coverage_task
 from service.requests.replan.fields import ReplanRequest, check_fields
 from service.requests.replan.way import (
@@ -62,6 +63,7 @@ def rest_of_map(
         "second_coordinates": None if points is None else points[rest.stops],
         "start": rest.begin or 0,
         "ends": rest.ends_in_rest,
+        "hours": hours_from(coverage.hours, request.now),
         **dict.fromkeys(("spacing", "start_pose", "end_pose")),
         **changes,
     }
