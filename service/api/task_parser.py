@@ -6,6 +6,7 @@ import os
 import resource
 import warnings
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -14,7 +15,7 @@ from anyio import BrokenWorkerProcess, CancelScope, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.api.turns import FairTurns
-from service.errors import Refusal
+from service.errors import NoWorker, Refusal
 from service.files.upload import Upload, read_upload
 from service.kinds.offers import answer_offers, parse_offers
 from service.kinds.parsing import check_replan as check_replan_body
@@ -29,6 +30,7 @@ _SHORT = 2**17  # bytes that this process parses, in a few milliseconds
 _FEW_QUOTES = 2000  # as 300 stops have, whose faults take a few milliseconds to describe
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
+_STARTS = 3  # tries to start a process, each of which anyio ends after 20 seconds
 _MOST_WAITING = 16  # bodies for each process
 _MOST_OF_CLIENT = 8  # of these
 _NICENESS = 5  # like the processes that plan: the event loop comes first
@@ -84,6 +86,7 @@ class TaskParser:
             Refusal: The body is malformed, too complex or over a limit, or no actor serves it.
             InvalidInstance: The cities or the map cannot be planned.
             QueueFull: Too many bodies wait to be parsed.
+            NoWorker: The process that parses it does not start.
         """
         length = source.length
         short = length <= _SHORT and source.upload is None
@@ -121,9 +124,11 @@ class TaskParser:
 
         Raises:
             QueueFull: Too many requests wait for theirs.
+            NoWorker: The process does not start.
         """
-        async with self._finding.turn(client, self._bounds.seconds):
-            return await self._parse_in_process(answer_offers, asked)
+        seconds = self._bounds.seconds
+        async with self._finding.turn(client, seconds):
+            return await self._parse_in_process(answer_offers, asked, seconds + asked.seconds)
 
     def _check(self, body: bytes) -> None:
         """Raise a refusal where a body is too complex or, unless it is long, nested too deeply.
@@ -148,19 +153,18 @@ class TaskParser:
 
         Raises:
             QueueFull: Too many bodies wait, or they take too long.
+            NoWorker: The process does not start.
         """
-        turns = self._medium if length <= _MEDIUM else self._long
-        async with turns.turn(client, self._bounds.seconds):
-            return await self._parse_in_process(parse, source)
+        turns, seconds = self._medium if length <= _MEDIUM else self._long, self._bounds.seconds
+        async with turns.turn(client, seconds):
+            return await self._parse_in_process(parse, source, seconds)
 
-    async def _parse_in_process(self, parse: _Parse[S, T], source: S) -> T:
-        seconds = self._bounds.seconds
+    async def _parse_in_process(self, parse: _Parse[S, T], source: S, seconds: float) -> T:
         for _ in range(_ATTEMPTS):
             # Joining the body took a while, and so will sending it: let other requests in between.
             await asyncio.sleep(0)
+            await self._start_process()
             try:
-                with CancelScope(shield=True):  # anyio does not end one that is left as it starts
-                    await to_process.run_sync(_nothing, limiter=self._processes)
                 # After that time the call is cancelled, which kills the process.
                 async with asyncio.timeout(seconds):
                     result, caught = await to_process.run_sync(
@@ -183,6 +187,19 @@ class TaskParser:
             except TimeoutError:
                 raise _too_complex(f"within {seconds:g} s, and was not") from None
         raise _too_complex("without the loss of its process, and two were lost")
+
+    async def _start_process(self) -> None:
+        """Start a process unless one is idle. The body is not to blame where that takes long.
+
+        Raises:
+            NoWorker: It does not start; the machine may have no time for it.
+        """
+        for _ in range(_STARTS):
+            with suppress(BrokenWorkerProcess), CancelScope(shield=True):
+                # Shielded, as anyio does not end a process that is left as it starts.
+                await to_process.run_sync(_nothing, limiter=self._processes)
+                return
+        raise NoWorker("the process that parses bodies does not start")
 
 
 def _nothing() -> None:

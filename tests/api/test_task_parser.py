@@ -8,10 +8,12 @@ import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import psutil
 import pytest
+from anyio import BrokenWorkerProcess, to_process
 
 from service.actor_info import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
@@ -19,7 +21,10 @@ from service.errors import QueueFull, Refusal
 from service.files.reading import NamedFile
 from service.files.upload import Upload
 from service.instance import Kind
+from service.kinds.offers import parse_offers
+from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskSource
+from tests.helpers.offers import FIVE, HOUR, NEW_PLACE, NINE, as_stored, fleet_request, stored_fleet
 from tests.helpers.serving import ACTORS, LIMITS
 
 LARGE = replace(LIMITS, cities=1000, cells=2**20, size=1000, breakpoints=1000)
@@ -98,6 +103,40 @@ def test_a_body_that_takes_too_long_ends_its_process() -> None:
 def test_a_body_that_takes_too_much_memory_is_refused() -> None:
     refused = refusal(NUMBERS, parser(memory=2**26))
     assert refused.code == "body-too-complex"
+
+
+@pytest.mark.parametrize("failures", [2, 3])
+def test_a_body_is_not_to_blame_for_processes_that_start_too_slowly(
+    failures: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    starts, started = [], to_process.run_sync
+
+    async def start(*arguments: Any, **options: Any) -> Any:
+        starts.append(arguments)
+        if len(starts) <= failures:
+            raise BrokenWorkerProcess  # as anyio does after 20 seconds
+        return await started(*arguments, **options)
+
+    monkeypatch.setattr("service.api.task_parser.to_process.run_sync", start)
+    if failures == 2:
+        assert asyncio.run(parser().parse(HONEST)).actor == "pa-one-matrix"
+    else:
+        assert (refusal(HONEST, parser()).code, len(starts)) == ("no-worker", 3)
+
+
+def test_offers_may_take_their_time_limit_beside_the_seconds_of_parsing() -> None:
+    asked = json.dumps(
+        {
+            "order": {"id": "new", "location": NEW_PLACE},
+            "every": {"from": NINE, "to": FIVE, "length": HOUR},
+            "time_limit": 30,
+        }
+    )
+    front = as_stored(stored_fleet(fleet_request()))
+    limits = replace(LARGE, seconds=60)
+    task = parse_offers(ReplanSource(asked.encode(), front), limits, INFO)
+    offers = asyncio.run(parser(seconds=0).find_offers(task))
+    assert b'"possible":true' in offers
 
 
 @dataclass(frozen=True, kw_only=True)
