@@ -3,6 +3,7 @@
 import asyncio
 import json
 import os
+import time
 import tracemalloc
 import warnings
 from collections.abc import Callable
@@ -17,7 +18,7 @@ from anyio import BrokenWorkerProcess, to_process
 
 from service.actor_info import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
-from service.errors import QueueFull, Refusal
+from service.errors import NoWorker, QueueFull, Refusal
 from service.files.reading import NamedFile
 from service.files.upload import Upload
 from service.instance import Kind
@@ -87,17 +88,56 @@ def test_a_body_of_too_many_things_is_refused_before_it_is_parsed(
     assert refused.detail.startswith(sentence)
 
 
-def test_a_body_that_takes_too_long_ends_its_process() -> None:
-    async def scenario() -> str:
+@dataclass(frozen=True, kw_only=True)
+class BusyActor(ActorInfo):
+    """An actor whose choice never ends."""
+
+    def serves(self, kind: Kind, objectives: int = 2) -> bool:  # noqa: ARG002
+        while True:
+            pass
+
+
+def test_a_body_that_takes_too_long_is_refused_and_its_process_goes_on() -> None:
+    actors = {"pa-one-matrix": BusyActor(**vars(INFO["pa-one-matrix"]))}
+
+    async def scenario() -> tuple[str, bool]:
         earlier = psutil.Process().children()  # of the tests before, which may not have ended yet
         with pytest.raises(Refusal) as refused:
-            await parser(seconds=0.2).parse(NUMBERS)
-        async with asyncio.timeout(60):
-            while parsing_processes(earlier):
-                await asyncio.sleep(0.01)
-        return refused.value.detail
+            await TaskParser(LARGE, actors, ParserBounds(seconds=0.2)).parse(HONEST)
+        left = parsing_processes(earlier)
+        await parser().parse(HONEST)
+        return refused.value.detail, parsing_processes(earlier) == left
 
-    assert asyncio.run(scenario()) == "the body must be parsed within 0.2 s, and was not"
+    detail, same = asyncio.run(scenario())
+    assert detail == "the body must be parsed within 0.2 s of a processor, and was not"
+    assert same
+
+
+@dataclass(frozen=True, kw_only=True)
+class SleepyActor(ActorInfo):
+    """An actor whose choice takes time, and none of a processor."""
+
+    def serves(self, kind: Kind, objectives: int = 2) -> bool:
+        time.sleep(1)
+        return super().serves(kind, objectives)
+
+
+def test_time_that_other_work_takes_does_not_count_until_it_is_far_too_long() -> None:
+    actors = {"pa-one-matrix": SleepyActor(**vars(INFO["pa-one-matrix"]))}
+
+    async def scenario(patience: float) -> Task | None:
+        earlier = psutil.Process().children()
+        parsing = TaskParser(LARGE, actors, ParserBounds(seconds=0.5, patience=patience))
+        try:
+            return await parsing.parse(HONEST)
+        except NoWorker:
+            async with asyncio.timeout(60):
+                while parsing_processes(earlier):
+                    await asyncio.sleep(0.01)
+            return None
+
+    assert asyncio.run(scenario(60)) is not None
+    assert asyncio.run(scenario(0.1)) is None
 
 
 def test_a_body_that_takes_too_much_memory_is_refused() -> None:
