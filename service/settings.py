@@ -221,7 +221,7 @@ class Settings(BaseSettings):
     bodies_bytes: Annotated[int, _whole(2**20, _MOST_BYTES)] = 2**27
     """the most bytes of all request bodies in progress; as many for answers"""
     parse_seconds: Seconds = 20.0
-    """how long a body may take to parse"""
+    """how long a body may take to parse, in seconds of a processor"""
     parse_bytes: Annotated[int, _whole(2**26, _MOST_BYTES)] = 2**29 + 2**28
     """memory that parsing a body may take"""
     max_cities: Annotated[int, _whole(1, _MOST_CITIES)] = 10_000

@@ -1,12 +1,15 @@
 """Parse request bodies into tasks: short ones in this process, others in bounded ones."""
 
 import asyncio
+import gc
 import logging
 import os
 import resource
+import signal
 import warnings
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -14,7 +17,7 @@ from anyio import BrokenWorkerProcess, CancelScope, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.api.turns import FairTurns
-from service.errors import Refusal
+from service.errors import NoWorker, Refusal
 from service.files.upload import Upload, read_upload
 from service.kinds.offers import answer_offers, parse_offers
 from service.kinds.parsing import check_replan as check_replan_body
@@ -29,6 +32,7 @@ _SHORT = 2**17  # bytes that this process parses, in a few milliseconds
 _FEW_QUOTES = 2000  # as 300 stops have, whose faults take a few milliseconds to describe
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
+_STARTS = 3  # tries to start a process, each of which anyio ends after 20 seconds
 _MOST_WAITING = 16  # bodies for each process
 _MOST_OF_CLIENT = 8  # of these
 _NICENESS = 5  # like the processes that plan: the event loop comes first
@@ -42,12 +46,15 @@ class ParserBounds:
     """The bounds of a process that parses.
 
     Args:
-        seconds: The time for one body, and the time that one may wait for its turn.
+        seconds: The time of a processor for one body, and the time that one may wait for its turn.
         memory: Bytes that a process may take beyond what it has when it is idle.
+        patience: By how many more seconds of the clock it may take, where the machine has other
+            work.
     """
 
     seconds: float = 20.0
     memory: int = 2**29 + 2**28
+    patience: float = 60.0
 
 
 S = TypeVar("S")
@@ -60,8 +67,8 @@ class TaskParser:
 
     There are three processes: one for bodies of up to 1 MiB, one for longer ones, and one that
     finds offers, so that the shorter need not wait for the longer. The clients that wait for one
-    have turns. Each is started for its first body, and again if it was lost. A body that takes too
-    long, or too much memory, ends its process.
+    have turns. Each is started for its first body, and again if it was lost. A body may take some
+    seconds of a processor, and some memory. A process that takes far longer by the clock is killed.
     """
 
     def __init__(
@@ -84,6 +91,7 @@ class TaskParser:
             Refusal: The body is malformed, too complex or over a limit, or no actor serves it.
             InvalidInstance: The cities or the map cannot be planned.
             QueueFull: Too many bodies wait to be parsed.
+            NoWorker: The process that parses it does not start.
         """
         length = source.length
         short = length <= _SHORT and source.upload is None
@@ -121,9 +129,11 @@ class TaskParser:
 
         Raises:
             QueueFull: Too many requests wait for theirs.
+            NoWorker: The process does not start.
         """
-        async with self._finding.turn(client, self._bounds.seconds):
-            return await self._parse_in_process(answer_offers, asked)
+        seconds = self._bounds.seconds
+        async with self._finding.turn(client, seconds):
+            return await self._parse_in_process(answer_offers, asked, seconds + asked.seconds)
 
     def _check(self, body: bytes) -> None:
         """Raise a refusal where a body is too complex or, unless it is long, nested too deeply.
@@ -148,28 +158,27 @@ class TaskParser:
 
         Raises:
             QueueFull: Too many bodies wait, or they take too long.
+            NoWorker: The process does not start.
         """
-        turns = self._medium if length <= _MEDIUM else self._long
-        async with turns.turn(client, self._bounds.seconds):
-            return await self._parse_in_process(parse, source)
+        turns, seconds = self._medium if length <= _MEDIUM else self._long, self._bounds.seconds
+        async with turns.turn(client, seconds):
+            return await self._parse_in_process(parse, source, seconds)
 
-    async def _parse_in_process(self, parse: _Parse[S, T], source: S) -> T:
-        seconds = self._bounds.seconds
+    async def _parse_in_process(self, parse: _Parse[S, T], source: S, seconds: float) -> T:
         for _ in range(_ATTEMPTS):
             # Joining the body took a while, and so will sending it: let other requests in between.
             await asyncio.sleep(0)
+            await self._start_process()
             try:
-                with CancelScope(shield=True):  # anyio does not end one that is left as it starts
-                    await to_process.run_sync(_nothing, limiter=self._processes)
                 # After that time the call is cancelled, which kills the process.
-                async with asyncio.timeout(seconds):
+                async with asyncio.timeout(seconds + self._bounds.patience):
                     result, caught = await to_process.run_sync(
                         _parse_bounded,
                         parse,
                         source,
                         self._limits,
                         self._actors,
-                        self._bounds.memory,
+                        replace(self._bounds, seconds=seconds),
                         cancellable=True,
                         limiter=self._processes,
                     )
@@ -181,31 +190,70 @@ class TaskParser:
             except BrokenWorkerProcess:
                 continue
             except TimeoutError:
-                raise _too_complex(f"within {seconds:g} s, and was not") from None
+                raise NoWorker("the one that parses bodies gets too little time") from None
         raise _too_complex("without the loss of its process, and two were lost")
+
+    async def _start_process(self) -> None:
+        """Start a process unless one is idle. The body is not to blame where that takes long.
+
+        Raises:
+            NoWorker: It does not start; the machine may have no time for it.
+        """
+        for _ in range(_STARTS):
+            with suppress(BrokenWorkerProcess), CancelScope(shield=True):
+                # Shielded, as anyio does not end a process that is left as it starts.
+                await to_process.run_sync(_nothing, limiter=self._processes)
+                return
+        raise NoWorker("the process that parses bodies does not start")
 
 
 def _nothing() -> None:
     """Do nothing, in a process that is started for it if none is idle."""
 
 
-def _parse_bounded(
-    parse: _Parse[S, T], source: S, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
-) -> tuple[T | Refusal, list[str]]:
-    """Parse a body in this process, which may take `memory` bytes more than when idle.
+class _TimeOver(BaseException):
+    """A body has taken its time of a processor."""
 
-    Return the result and Python's warnings.
-    """
-    _bound_process(memory)
+
+def _parse_bounded(
+    parse: _Parse[S, T],
+    source: S,
+    limits: Limits,
+    actors: Mapping[str, ActorInfo],
+    bounds: ParserBounds,
+) -> tuple[T | Refusal, list[str]]:
+    """Parse a body in this process, within the bounds. Return the result and Python's warnings."""
+    _bound_process(bounds.memory)
     with warnings.catch_warnings(record=True) as caught:
         result: T | Refusal
         try:
-            result = parse(source, limits, actors)
+            with _time_bounded(bounds.seconds):
+                result = parse(source, limits, actors)
         except MemoryError:
-            result = _too_complex(f"in {memory} bytes of memory, and was not")
+            result = _too_complex(f"in {bounds.memory} bytes of memory, and was not")
+        except _TimeOver:
+            result = _too_complex(f"within {bounds.seconds:g} s of a processor, and was not")
         except Refusal as refusal:
+            # Else all that was parsed stays in memory with its frames.
+            refusal.__traceback__ = refusal.__context__ = None
             result = refusal
+    gc.collect()
     return result, [_warning_text(each) for each in caught[:_MOST_WARNINGS]]
+
+
+@contextmanager
+def _time_bounded(seconds: float) -> Iterator[None]:
+    """Raise _TimeOver once this process has computed so long. Other work does not count."""
+
+    def end(*_: object) -> None:
+        raise _TimeOver
+
+    signal.signal(signal.SIGPROF, end)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
 
 
 def _warning_text(caught: warnings.WarningMessage) -> str:
@@ -214,10 +262,16 @@ def _warning_text(caught: warnings.WarningMessage) -> str:
 
 
 def _bound_process(memory: int) -> None:
-    """Bound the memory of this process and lower its priority, the first time."""
+    """Bound the memory of this process and lower its priority, the first time.
+
+    From then on garbage is collected after each body only. To look for it again and again takes
+    half the time of a body of a million lists, or more, and there is little.
+    """
     _, bound = resource.getrlimit(resource.RLIMIT_DATA)
     if bound == resource.RLIM_INFINITY:
         os.nice(_NICENESS)
+        gc.disable()
+        gc.freeze()  # the modules
         # Pages of data and stack, the sixth number (proc(5)).
         pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[5])
         limit = pages * resource.getpagesize() + memory

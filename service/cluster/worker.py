@@ -28,6 +28,7 @@ from service.cluster.records import StoredRecord
 from service.cluster.script import connect_redis
 from service.cluster.worker_store import TakenOver, WorkerStore
 from service.errors import Cancelled, NoWorker, WarmingUp, WorkerLost
+from service.jobs.cancelling import cancel_all
 from service.jobs.record import as_failed
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.worker_pool import WorkerPool
@@ -99,8 +100,8 @@ class RecordWorker:
         self._heartbeats = asyncio.create_task(self._send_heartbeats())
 
     async def close(self) -> None:
-        """End the processes."""
-        self._heartbeats.cancel()
+        """End the heartbeats and the processes."""
+        await cancel_all([self._heartbeats])
         await self._pool.close()
 
     def drain(self) -> None:

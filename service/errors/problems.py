@@ -189,7 +189,7 @@ PROBLEMS: Mapping[str, Problem] = {
         (*_BODIES, _STORED),
     ),
     "no-worker": Problem(
-        503, "a worker must be running, and none is: {reason}", ("GET /health/ready", *_PLANS)
+        503, "a worker must be running, and none is: {reason}", ("GET /health/ready", *_BODIES)
     ),
     "queue-full": Problem(
         503, "the queue must have a free place, and all are taken: ask again", _BODIES

@@ -3,23 +3,29 @@
 import asyncio
 import json
 import os
+import time
 import tracemalloc
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import psutil
 import pytest
+from anyio import BrokenWorkerProcess, to_process
 
 from service.actor_info import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
-from service.errors import QueueFull, Refusal
+from service.errors import NoWorker, QueueFull, Refusal
 from service.files.reading import NamedFile
 from service.files.upload import Upload
 from service.instance import Kind
+from service.kinds.offers import parse_offers
+from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskSource
+from tests.helpers.offers import FIVE, HOUR, NEW_PLACE, NINE, as_stored, fleet_request, stored_fleet
 from tests.helpers.serving import ACTORS, LIMITS
 
 LARGE = replace(LIMITS, cities=1000, cells=2**20, size=1000, breakpoints=1000)
@@ -82,22 +88,95 @@ def test_a_body_of_too_many_things_is_refused_before_it_is_parsed(
     assert refused.detail.startswith(sentence)
 
 
-def test_a_body_that_takes_too_long_ends_its_process() -> None:
-    async def scenario() -> str:
+@dataclass(frozen=True, kw_only=True)
+class BusyActor(ActorInfo):
+    """An actor whose choice never ends."""
+
+    def serves(self, kind: Kind, objectives: int = 2) -> bool:  # noqa: ARG002
+        while True:
+            pass
+
+
+def test_a_body_that_takes_too_long_is_refused_and_its_process_goes_on() -> None:
+    actors = {"pa-one-matrix": BusyActor(**vars(INFO["pa-one-matrix"]))}
+
+    async def scenario() -> tuple[str, bool]:
         earlier = psutil.Process().children()  # of the tests before, which may not have ended yet
         with pytest.raises(Refusal) as refused:
-            await parser(seconds=0.2).parse(NUMBERS)
-        async with asyncio.timeout(60):
-            while parsing_processes(earlier):
-                await asyncio.sleep(0.01)
-        return refused.value.detail
+            await TaskParser(LARGE, actors, ParserBounds(seconds=0.2)).parse(HONEST)
+        left = parsing_processes(earlier)
+        await parser().parse(HONEST)
+        return refused.value.detail, parsing_processes(earlier) == left
 
-    assert asyncio.run(scenario()) == "the body must be parsed within 0.2 s, and was not"
+    detail, same = asyncio.run(scenario())
+    assert detail == "the body must be parsed within 0.2 s of a processor, and was not"
+    assert same
+
+
+@dataclass(frozen=True, kw_only=True)
+class SleepyActor(ActorInfo):
+    """An actor whose choice takes time, and none of a processor."""
+
+    def serves(self, kind: Kind, objectives: int = 2) -> bool:
+        time.sleep(1)
+        return super().serves(kind, objectives)
+
+
+def test_time_that_other_work_takes_does_not_count_until_it_is_far_too_long() -> None:
+    actors = {"pa-one-matrix": SleepyActor(**vars(INFO["pa-one-matrix"]))}
+
+    async def scenario(patience: float) -> Task | None:
+        earlier = psutil.Process().children()
+        parsing = TaskParser(LARGE, actors, ParserBounds(seconds=0.5, patience=patience))
+        try:
+            return await parsing.parse(HONEST)
+        except NoWorker:
+            async with asyncio.timeout(60):
+                while parsing_processes(earlier):
+                    await asyncio.sleep(0.01)
+            return None
+
+    assert asyncio.run(scenario(60)) is not None
+    assert asyncio.run(scenario(0.1)) is None
 
 
 def test_a_body_that_takes_too_much_memory_is_refused() -> None:
     refused = refusal(NUMBERS, parser(memory=2**26))
     assert refused.code == "body-too-complex"
+
+
+@pytest.mark.parametrize("failures", [2, 3])
+def test_a_body_is_not_to_blame_for_processes_that_start_too_slowly(
+    failures: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    starts, started = [], to_process.run_sync
+
+    async def start(*arguments: Any, **options: Any) -> Any:
+        starts.append(arguments)
+        if len(starts) <= failures:
+            raise BrokenWorkerProcess  # as anyio does after 20 seconds
+        return await started(*arguments, **options)
+
+    monkeypatch.setattr("service.api.task_parser.to_process.run_sync", start)
+    if failures == 2:
+        assert asyncio.run(parser().parse(HONEST)).actor == "pa-one-matrix"
+    else:
+        assert (refusal(HONEST, parser()).code, len(starts)) == ("no-worker", 3)
+
+
+def test_offers_may_take_their_time_limit_beside_the_seconds_of_parsing() -> None:
+    asked = json.dumps(
+        {
+            "order": {"id": "new", "location": NEW_PLACE},
+            "every": {"from": NINE, "to": FIVE, "length": HOUR},
+            "time_limit": 30,
+        }
+    )
+    front = as_stored(stored_fleet(fleet_request()))
+    limits = replace(LARGE, seconds=60)
+    task = parse_offers(ReplanSource(asked.encode(), front), limits, INFO)
+    offers = asyncio.run(parser(seconds=0).find_offers(task))
+    assert b'"possible":true' in offers
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -68,10 +68,13 @@ globalThis.fetch = (path, options) => {{
 }};
 """
 
-# By night the service, files and the clipboard are late, as on a busy machine: what a test does not
-# wait for is not there yet.
+# By night the service, files, the clipboard and what is drawn are late, as on a busy machine: what
+# a test does not wait for is not there yet.
 COME_LATE = """
 const late = () => new Promise(done => setTimeout(done, 400));
+const frames = globalThis.requestAnimationFrame;
+globalThis.requestAnimationFrame = draw => setTimeout(() => frames(draw), 400);
+globalThis.cancelAnimationFrame = clearTimeout;
 const answered = globalThis.fetch;
 globalThis.fetch = async (...asked) => {
   await late();
@@ -294,8 +297,12 @@ def plan_by_network_alone(page: Page, path: str) -> None:
 
 
 def wait_until_planned(page: Page) -> None:
-    """Wait until the page shows the end of what it is planning."""
+    """Wait until the page shows the end of what it is planning.
+
+    The page says that it is done in one frame, and draws what it has chosen in the next.
+    """
     expect(page.locator("#status")).to_contain_text("Done", timeout=300 * SECOND)
+    wait_for_next_frame(page)
 
 
 def plan_city_deliveries(page: Page) -> None:

@@ -15,6 +15,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     number_in,
     open_files,
+    wait_for_next_frame,
     wait_until_planned,
 )
 
@@ -99,6 +100,7 @@ def pick_always_the_first(window: Page, by_keyboard: bool) -> dict[str, Any]:
             assert count == 1 or f"{count} " in card.inner_text()
     expect(window.get_by_role("button", name="Help me choose")).to_be_focused()
     expect(window.locator("#question")).to_be_hidden()
+    wait_for_next_frame(window)
     return asked
 
 

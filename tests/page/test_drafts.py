@@ -10,6 +10,7 @@ from tests.helpers.browsing import (
     open_page,
     open_unplanned,
     running_first,
+    wait_for_next_frame,
     wait_until_planned,
 )
 from tests.helpers.sampled import few
@@ -45,6 +46,7 @@ def plan(page: Page) -> None:
 
 
 def choice(page: Page) -> str:
+    wait_for_next_frame(page)
     return page.locator("#choice").inner_text()
 
 

@@ -89,6 +89,7 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
     count = tours_of_front(page)
     slider.press("ArrowLeft")
     expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {count - 1} of {count}"))
+    wait_for_next_frame(page)
     marker = page.locator("#front-chart .marker.selected").bounding_box()
     slider.press("Home")
     page.mouse.click(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
@@ -144,6 +145,7 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(planned: Page) -> 
     )
     place = f"distance {metres(knee.json()['lengths'][0])}"
     expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
+    wait_for_next_frame(planned)
     marker = planned.locator("#front-chart .marker.selected").bounding_box()
     label = planned.get_by_role("button", name="compromise").bounding_box()
     # Its name stands on one side of its point.

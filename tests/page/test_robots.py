@@ -162,6 +162,7 @@ def test_each_cost_layer_of_a_robot_has_a_limit_of_its_own(window: Page) -> None
     window.get_by_role("slider", name="Dust", exact=True).press("Home")
     expect(window.locator("#caps-said")).to_contain_text("are within the limits")
     least = min(item["lengths"][2] for item in json.loads(saved(window, "json"))["front"])
+    wait_for_next_frame(window)
     shown = window.locator("#comparison tbody td:nth-child(2)").nth(2).inner_text()
     assert number_in(shown) == pytest.approx(least, rel=1e-3)
 
