@@ -65,8 +65,8 @@ class Compiling:
 def parts_for_robots(shared: SharedCoverage, _: Task) -> frozenset[Part]:
     """Return the parts that several robots on a map need."""
     timed = shared.coverage.hours is not None
-    unneeded = {*_OF_DAYS} - {Part.FLEETS_OVER_THE_DAY} | {Part.FLEETS} if timed else {*_OF_DAYS}
-    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, *unneeded}
+    other = Part.FLEETS if timed else Part.FLEETS_OVER_THE_DAY
+    return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES, Part.OVER_THE_DAY, other}
 
 
 def parts_for_fleet(fleet: UnmeasuredFleet, _: Task) -> frozenset[Part]:
