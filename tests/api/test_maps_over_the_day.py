@@ -1,6 +1,7 @@
 """POST /coverage over the day, over HTTP, beside robots that are driven step by step here."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise, permutations
 from typing import Any
 
@@ -14,7 +15,7 @@ from service.api.schemas import documented
 from tests.api.test_cost_layers import costs_of
 from tests.api.test_plan_coverage import GRID, PLACES
 from tests.helpers.robot_plans import best_plans, distances
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 NOON = 43200.0
 SPEED = 0.5
@@ -22,7 +23,13 @@ SPEED = 0.5
 SLOWER = [[NOON, 1.0], [NOON + 5, 2.5], [NOON + 11, 0.7]]
 CROWDS = [[0, 0.5], [NOON + 4, 6.0], [NOON + 9, 1.0]]
 COSTS = np.random.default_rng(3).integers(1, 30, (len(PLACES), len(PLACES))).tolist()
-ON_MAP = {"grid": GRID, "cell_size": 0.5, "places": PLACES, "robot_speed": SPEED}
+ON_MAP = {
+    "grid": GRID,
+    "cell_size": 0.5,
+    "places": PLACES,
+    "robot_speed": SPEED,
+    "time_limit": 30.0,
+}
 REQUEST = {
     **ON_MAP,
     "second_matrix": COSTS,
@@ -36,7 +43,8 @@ Point = tuple[float, ...]
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=60) as client:
+    app = app_of(limits=replace(LIMITS, seconds=30.0))
+    with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
         yield client
 
 
@@ -44,6 +52,7 @@ def plan(client: httpx.Client, request: dict[str, Any]) -> dict[str, Any]:
     answer = client.post("/coverage", json=request)
     assert answer.status_code == 200, answer.text
     found: dict[str, Any] = answer.json()
+    assert found["terminated"] == "converged"  # long before its time is over
     return found
 
 
@@ -134,13 +143,13 @@ def test_the_rest_of_a_tour_is_replanned_from_now(client: httpx.Client) -> None:
     answer = plan(client, REQUEST)
     path = f"/front/{answer['id']}/replan"
     refused(client.post(path, json={"done": [0]}), "/now")
-    rest = client.post(path, json={"done": [0, 3], "now": NOON + 6}).json()
+    rest = client.post(path, json={"done": [0, 3], "now": NOON + 6, "time_limit": 30}).json()
     points = set()
     for left in permutations((1, 2, 4)):
         times, costs = driven([3, *left, 0], NOON + 6)
         points.add((times[-1] - NOON - 6, costs))
     np.testing.assert_allclose([tour["lengths"] for tour in rest["front"]], best_of(points))
-    same_all_day = {name: REQUEST[name] for name in ("grid", "cell_size", "places")}
+    same_all_day = {name: REQUEST[name] for name in ("grid", "cell_size", "places", "time_limit")}
     answer = plan(client, {**same_all_day, "second_matrix": COSTS})
     refused(client.post(f"/front/{answer['id']}/replan", json={"done": [0], "now": 1}), "/now")
 
