@@ -54,7 +54,7 @@ class ParserBounds:
 
     seconds: float = 20.0
     memory: int = 2**29 + 2**28
-    patience: float = 60.0
+    patience: float = 20.0
 
 
 S = TypeVar("S")

@@ -62,8 +62,12 @@ def refusal(source: TaskSource, parser: TaskParser) -> Refusal:
     ("body", "sentence"),  # bodies are made by the tests, since every process collects them all
     [
         (
-            lambda: json.dumps({f"{i:x}": 0 for i in range(200_000)}).encode(),
+            lambda: json.dumps([f"{i:x}" for i in range(200_000)]).encode(),
             "the body must have at most 109000 strings, got 200000",
+        ),
+        (
+            lambda: json.dumps({f"{i:x}": 0 for i in range(40_000)}).encode(),
+            "the body must have at most 33000 members, got 40000",
         ),
         (
             lambda: b'{"grid":[' + 400_000 * b"[0]," + b"[0]]}",
