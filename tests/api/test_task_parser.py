@@ -92,6 +92,15 @@ def test_a_body_of_too_many_things_is_refused_before_it_is_parsed(
     assert refused.detail.startswith(sentence)
 
 
+def test_a_body_that_takes_all_memory_ends_its_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RUST_BACKTRACE", "1")  # as developers may have it
+    body = json.dumps({f"{i:x}": 0 for i in range(1_079_000)}).encode()
+    limits, bounds = replace(LARGE, cities=100_000), ParserBounds(patience=60)
+    with pytest.raises(Refusal) as refused:
+        asyncio.run(TaskParser(limits, INFO, bounds).parse(TaskSource("front", body)))
+    assert refused.value.code == "body-too-complex"
+
+
 @dataclass(frozen=True, kw_only=True)
 class BusyActor(ActorInfo):
     """An actor whose choice never ends."""
