@@ -54,7 +54,7 @@ class ParserBounds:
 
     seconds: float = 20.0
     memory: int = 2**29 + 2**28
-    patience: float = 60.0
+    patience: float = 20.0
 
 
 S = TypeVar("S")
@@ -272,6 +272,8 @@ def _bound_process(memory: int) -> None:
         os.nice(_NICENESS)
         gc.disable()
         gc.freeze()  # the modules
+        # Else pydantic stands still where it has no memory to print how it ran out of it.
+        os.environ["RUST_BACKTRACE"] = "0"
         # Pages of data and stack, the sixth number (proc(5)).
         pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[5])
         limit = pages * resource.getpagesize() + memory

@@ -94,20 +94,24 @@ class Limits:
 def check_structure(body: bytes, limits: Limits) -> None:
     """Raise a refusal where a body has more of anything than any request under the limits.
 
-    A parser spends a hundred bytes or more on each string, array and object. They are counted by
-    their first characters, before parsing.
+    A parser spends a hundred bytes or more on each string, array and object, and most on members
+    that no request has. They are counted by their characters, before parsing.
 
     Raises:
         Refusal: There are more.
     """
     strings = (body.count(b'"') + 1) // 2
-    arrays, objects = body.count(b"["), body.count(b"{")
+    arrays, objects, members = body.count(b"["), body.count(b"{"), body.count(b":")
     most_strings = 1000 + (8 + _TOURS_BY_ID) * limits.cities
     # A breakpoint is an array, and so are those of a pair.
     most_rows = max(limits.cells // 8, 2 * limits.breakpoints)
     most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + most_rows
     most_objects = 1000 + 8 * limits.cities + 2 * limits.size
+    most_members = 1000 + 32 * limits.cities
+    if members > most_members:  # or texts have colons, as times and ids do
+        members = body.translate(None, b" \t\r\n").count(b'":')
     for name, limit, actual in (
+        ("members", most_members, members),
         ("objects", most_objects, objects),
         ("strings", most_strings, strings),
         ("arrays", most_arrays, arrays),

@@ -62,8 +62,12 @@ def refusal(source: TaskSource, parser: TaskParser) -> Refusal:
     ("body", "sentence"),  # bodies are made by the tests, since every process collects them all
     [
         (
-            lambda: json.dumps({f"{i:x}": 0 for i in range(200_000)}).encode(),
+            lambda: json.dumps([f"{i:x}" for i in range(200_000)]).encode(),
             "the body must have at most 109000 strings, got 200000",
+        ),
+        (
+            lambda: json.dumps({f"{i:x}": 0 for i in range(40_000)}).encode(),
+            "the body must have at most 33000 members, got 40000",
         ),
         (
             lambda: b'{"grid":[' + 400_000 * b"[0]," + b"[0]]}",
@@ -86,6 +90,15 @@ def test_a_body_of_too_many_things_is_refused_before_it_is_parsed(
     assert peak < 2**20
     assert (refused.code, refused.status) == ("body-too-complex", 413)
     assert refused.detail.startswith(sentence)
+
+
+def test_a_body_that_takes_all_memory_ends_its_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RUST_BACKTRACE", "1")  # as developers may have it
+    body = json.dumps({f"{i:x}": 0 for i in range(1_079_000)}).encode()
+    limits, bounds = replace(LARGE, cities=100_000), ParserBounds(patience=60)
+    with pytest.raises(Refusal) as refused:
+        asyncio.run(TaskParser(limits, INFO, bounds).parse(TaskSource("front", body)))
+    assert refused.value.code == "body-too-complex"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,10 +4,10 @@ For five minutes, at the deployed limits: two workers, 1,024 descriptors, 2 GiB,
 the configuration of service/deploy. Memory is counted in pages of the server and its processes;
 what they share counts once. 160 uploads of 16 MB come over a link of a gigabit and stall, 1,100
 connections are idle or drip, two clients hang up while their fronts are planned, one repeats a key
-on a full queue, and two send hostile bodies as fast as they are answered. Each crowd has an address
-of its own, idle connections five. Honest requests come at a steady rate from fifty other addresses,
-first alone and then beside the crowds. Server, crowds and honest clients share the cores: on a
-machine that does anything else the waiting says little.
+on a full queue, two send hostile bodies as fast as they are answered, and three long ones of two
+million lists. Each crowd has an address of its own, idle connections five. Honest requests come at
+a steady rate from fifty other addresses, first alone and then beside the crowds. Server, crowds and
+honest clients share the cores: on a machine that does anything else the waiting says little.
 Stores `results/attack.json`, and says what does not hold.
 """
 

@@ -1,7 +1,7 @@
 """Crowds that attack a service, each from an address of its own, in a process beside the benchmark.
 
-Stalled uploads, idle connections, clients that hang up, repeats of a key on a full queue, and
-hostile bodies. Each counts what it was answered.
+Stalled uploads, idle connections, clients that hang up, repeats of a key on a full queue, hostile
+bodies, and long ones of two million lists. Each counts what it was answered.
 """
 
 import asyncio
@@ -18,6 +18,7 @@ import httpx
 import numpy as np
 
 from service.requests.task import TaskSource
+from tests.benchmarks.long_bodies import lists
 from tests.fuzz.attack import message_of, strict_json
 from tests.fuzz.bodies import GENERATORS, extreme
 
@@ -27,6 +28,7 @@ IDLE_ADDRESSES, IDLE_EACH = 5, 220  # 1,100 connections: more than there are des
 HANGING_UP = 2
 REPEATS = 60
 HOSTILE = 2
+LISTS = 3
 _CHUNK = bytes(2**16).replace(b"\0", b" ")
 _PAUSE = 0.5  # seconds of a client that was refused, until it comes again
 _REFUSED = (ConnectionError, OSError, asyncio.IncompleteReadError, TimeoutError)
@@ -199,6 +201,19 @@ async def _post_hostile(crowd: Crowd, number: int) -> None:
             await asyncio.sleep(0.01)
 
 
+async def _post_lists(crowd: Crowd, _: int) -> None:
+    """Post a long body of very many lists, which takes about a second to refuse."""
+    bodies = lists()
+    body = bodies[crowd.answers.total() % len(bodies)]
+    async with crowd.client() as client:
+        headers = {"Content-Type": "application/json"}
+        answer = await client.post("/front", content=body, headers=headers)
+    crowd.answered(answer)
+    if answer.status_code == 200:
+        crowd.faults.append(f"a body of lists was planned: {body[:60]!r}")
+    await asyncio.sleep(_PAUSE)
+
+
 def _head(length: int) -> bytes:
     return (
         "POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
@@ -242,6 +257,7 @@ CROWDS: Crowds = {
     "hang-ups": Kind("127.0.0.3", HANGING_UP, _hang_up),
     "repeats of a key": Kind("127.0.0.4", 1, _repeat_a_key),
     "hostile bodies": Kind("127.0.0.5", HOSTILE, _post_hostile),
+    "bodies of lists": Kind("127.0.0.6", LISTS, _post_lists),
 }
 
 

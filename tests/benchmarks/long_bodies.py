@@ -1,11 +1,15 @@
-"""Bodies of ten megabytes, of every kind, sent again and again beside what is measured."""
+"""Bodies of ten megabytes, of every kind, sent again and again beside what is measured.
+
+And bodies with as many lists as any may have, of which none can be planned.
+"""
 
 import gzip
 import json
 import threading
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import cache
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -13,6 +17,21 @@ import numpy as np
 from tests.benchmarks.traffic import Client
 
 LONG = 10_000_000  # bytes
+_BYTES, _LISTS = 2**24 - 200, 2_180_000  # nearly as many as a body may have
+_BY_PAIR = (
+    b'{"departure":0,"stops":[{"id":"a"},{"id":"b"}],"objectives":[{"name":"t","breakpoints":['
+)
+_SHAPES = (  # of lists: the head of a body, what it repeats, and its tail
+    (b'{"coordinates":[', b"[0,0,0,0],", b"[]]}"),
+    (b'{"matrices":[', b"[],", b"[]]}"),
+    (b'{"matrices":[[', b"[0],", b"[]]]}"),
+    (b'{"matrices":[[[', b"0," * 8, b"0]]]}"),
+    (b'{"seed":null,"matrices":[[', b"[0],", b"[]]]}"),
+    (b'{"unknown":[', b"[" * 90 + b"]" * 90 + b",", b"0]}"),
+    (b'{"coordinates":[[0,0,0,0]],"initial_tours":[', b"[0],", b"[]]}"),
+    (_BY_PAIR, b"[[[0,5]]],", b"[]]}]}"),
+    (_BY_PAIR + b"[", b"[[0,5]],", b"[]]]}]}"),
+)
 _PAUSE = 0.2  # seconds of a sender between two bodies
 
 
@@ -37,6 +56,15 @@ def kinds() -> Mapping[str, Long]:
         "brackets": Long(b"[" * LONG),
         "gzip": Long(gzip.compress(rng.bytes(LONG), 1), "gzip"),
     }
+
+
+@cache
+def lists() -> Sequence[bytes]:
+    """Bodies of fronts with as many lists as one may have under the default settings, or bytes."""
+    return [
+        head + unit * min(_BYTES // len(unit), _LISTS // max(unit.count(b"["), 1)) + tail
+        for head, unit, tail in _SHAPES
+    ]
 
 
 class Senders:

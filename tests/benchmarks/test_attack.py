@@ -91,7 +91,7 @@ def test_every_crowd_reaches_a_service_and_sees_no_fault_of_it(seen_by: Attack) 
         address = ("127.0.0.1", int(url.rpartition(":")[2]))
         seen = seen_by(two_of_each, address, 6)
     assert [name for name, each in seen.items() if not each["answers"]] == []
-    assert [each["faults"] for each in seen.values()] == [[]] * 5
+    assert [each["faults"] for each in seen.values()] == [[]] * len(seen)
 
 
 def test_honest_requests_are_asked_for_when_due_and_told_lost() -> None:

@@ -171,3 +171,12 @@ def test_as_many_arrays_may_come_as_the_most_breakpoints_need() -> None:
     with pytest.raises(Refusal) as refused:
         check_structure(b"[" * 22_000, limits)
     assert refused.value.code == "body-too-complex"
+
+
+def test_colons_in_texts_are_no_members() -> None:
+    limits = replace(LIMITS, cities=10)
+    check_structure(json.dumps(["a:b:c:d"] * 900).encode(), limits)
+    spaced = b'{"a"\t \n: 0, "b" :0}'
+    check_structure(spaced * 600, limits)
+    with pytest.raises(Refusal, match="at most 1320 members, got 1400"):
+        check_structure(spaced * 700, limits)
