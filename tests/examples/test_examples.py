@@ -3,9 +3,9 @@
 import asyncio
 import gzip
 import json
-import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from itertools import permutations
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -26,14 +26,17 @@ from service.requests.coverage import parse_coverage_request
 from service.requests.fleet import parse_fleet_request
 from service.roads.client import RoadClient, RoadCosts
 from service.roads.great_circle import great_circle_distances
-from service.roads.router import RouterSettings
+from service.roads.router import Line, RouterSettings
+from service.roads.streets import Leg
 from service.settings import Settings
+from tests.examples.__main__ import main
 from tests.examples.deliveries import BLACK_SPOTS
 from tests.examples.helsinki import CROWDS, metres_beside, people_along
-from tests.examples.streets import KINDS
+from tests.examples.streets import KINDS, lines_of
 from tests.examples.warehouse import DOCKS
 from tests.helpers.actors import Shuffler
 from tests.helpers.helsinki import Array
+from tests.helpers.sampled import at_night
 from tests.helpers.serving import app_of, serving
 from tests.helpers.valhalla import RunningValhalla
 
@@ -61,15 +64,17 @@ def test_the_index_names_every_example() -> None:
 @pytest.mark.parametrize("example", OF_TOURS, ids=lambda example: example["file"])
 def test_an_example_is_answered_with_a_choice_of_tours(url: str, example: dict[str, Any]) -> None:
     body = json.loads((EXAMPLES / example["file"]).read_bytes())
-    body["time_limit"] = 3 * body.get("time_limit", 1.0)  # on a busy machine
-    answer = httpx.post(url + example["path"], json=body, timeout=60)
-    assert answer.status_code == 200, answer.text
-    lengths = np.array([item["lengths"] for item in answer.json()["front"]])
     # All objectives can be lowered by more than a tenth: there is something to choose. Of the
     # seconds over the day, which include the visits, it is less.
-    assert len(lengths) >= 10
     least = [1.03, 1.05] if "rush-hour" in example["file"] else 1.1
-    assert (lengths.max(axis=0) > least * lengths.min(axis=0)).all()
+    limit = body.get("time_limit", 1.0)
+    for seconds in (limit, 3 * limit, 9 * limit):  # on a busy machine it takes longer
+        answer = httpx.post(url + example["path"], json={**body, "time_limit": seconds}, timeout=60)
+        assert answer.status_code == 200, answer.text
+        lengths = np.array([item["lengths"] for item in answer.json()["front"]])
+        if len(lengths) >= 10 and (lengths.max(axis=0) > least * lengths.min(axis=0)).all():
+            return
+    pytest.fail(f"there is little to choose among {lengths.tolist()}")
 
 
 def test_the_vans_keep_every_window_and_there_is_a_choice() -> None:
@@ -92,15 +97,52 @@ def test_three_robots_share_the_warehouse_in_several_ways() -> None:
     assert front.points[-1, 1] < front.points[0, 1] / 1.3
 
 
-def test_the_script_makes_the_examples(tmp_path: Path, valhalla: RunningValhalla) -> None:
-    command = [sys.executable, "-m", "tests.examples", str(tmp_path), "--router", valhalla.url]
-    subprocess.run(command, check=True)
-    for file in FILES:
-        made = json.loads((tmp_path / file).read_text())
-        kept = json.loads((EXAMPLES / file).read_text())
+@at_night
+def test_the_script_makes_the_examples(
+    tmp_path: Path, valhalla: RunningValhalla, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["examples", str(tmp_path), "--router", valhalla.url])
+    main()
+    assert {path.name for path in tmp_path.iterdir()} == {*FILES}
+    assert_as_kept(tmp_path)
+
+
+def assert_as_kept(folder: Path) -> None:
+    """Compare each example in a folder with that of the service."""
+    for path in folder.iterdir():
+        made = json.loads(path.read_text())
+        kept = json.loads((EXAMPLES / path.name).read_text())
         assert _without_numbers(made) == _without_numbers(kept)
         # Another processor may round the last digit otherwise.
         np.testing.assert_allclose(_numbers(made), _numbers(kept), atol=1.01)
+
+
+def test_the_costs_in_helsinki_are_those_of_the_router_and_of_its_ways(
+    valhalla: RunningValhalla,
+) -> None:
+    """Those between a few stops: the script, which asks for all, takes ten seconds, by night."""
+    few = 8
+    request = json.loads((EXAMPLES / "helsinki-three-costs.json").read_text())
+    time, people, beside = (np.array(each["matrix"])[:few, :few] for each in request["objectives"])
+    places = np.array([stop["location"] for stop in request["stops"][:few]])
+    ids = [stop["id"] for stop in request["stops"][:few]]
+    pairs = list(permutations(range(few), 2))
+
+    async def ask() -> tuple[RoadCosts, Mapping[Leg, Line]]:
+        client = RoadClient(RouterSettings(url=valhalla.url, seconds=120.0))
+        try:
+            return await client.costs(places, ids), await client.streets(places, ids, pairs)
+        finally:
+            await client.close()
+
+    costs, lines = asyncio.run(ask())
+    main_streets = lines_of(json.loads((EXAMPLES / STREETS).read_text()), "main")
+    segments = np.concatenate([np.stack((row[:-1], row[1:]), axis=1) for row in main_streets])
+    np.testing.assert_allclose(costs.seconds, time, atol=1.01)
+    for leg in pairs:
+        line = np.array(lines[leg])
+        assert people_along(line) == pytest.approx(people[leg], abs=1.01)
+        assert metres_beside(line, segments) == pytest.approx(beside[leg], abs=1.01)
 
 
 def test_time_against_distance_of_the_same_stops_leaves_little_to_choose(
@@ -125,9 +167,12 @@ def test_time_against_distance_of_the_same_stops_leaves_little_to_choose(
     assert (points.max(axis=0) < 1.02 * points.min(axis=0)).all()
 
 
-def test_without_a_routing_engine_the_script_says_what_it_leaves(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tests.examples", str(tmp_path)]
-    said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+def test_without_a_routing_engine_the_script_makes_the_others_and_says_what_it_leaves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["examples", str(tmp_path)])
+    main()
+    said = capsys.readouterr().err
     assert "--router" in said
     left = {path.name for path in EXAMPLES.glob("*.json")} - {
         path.name for path in tmp_path.iterdir()
@@ -141,6 +186,7 @@ def test_without_a_routing_engine_the_script_says_what_it_leaves(tmp_path: Path)
     }
     named = f"helsinki-deliveries.json, helsinki-three-costs.json, {STREETS} and {LEGS} are left"
     assert named in said
+    assert_as_kept(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -202,10 +248,14 @@ def test_of_three_costs_each_has_its_own_best_tour() -> None:
     instance = Instance(
         matrices=np.array([each["matrix"] for each in request["objectives"]], float)
     )
-    options = PlanOptions(directions=spread(1, 3), size=1000, time_limit=4.0, seed=1)
-    points = plan(Shuffler(), instance, options).points
-    # The guide gives these: least and greatest of time, people passed and metres in side streets.
-    np.testing.assert_allclose(points.min(axis=0), (1945, 2460, 5274), rtol=0.01)
+    # The guide gives these: the least time, people passed and metres in side streets.
+    least = (1945, 2460, 5274)
+    for seconds in (0.5, 2.0, 8.0):  # on a busy machine it takes longer
+        options = PlanOptions(directions=spread(1, 3), size=1000, time_limit=seconds, seed=1)
+        points = plan(Shuffler(), instance, options).points
+        if np.allclose(points.min(axis=0), least, rtol=0.01):
+            break
+    np.testing.assert_allclose(points.min(axis=0), least, rtol=0.01)
     assert (points.max(axis=0) > 1.1 * points.min(axis=0)).all()
 
 
