@@ -48,9 +48,19 @@ def with_breaks(
     if not found:
         plain = timed(chain)
         return replace(plain, late=plain.late or inf)
+    shift_end = chain.shift_end
     if chain.early:
-        return min(found, key=lambda times: (times.end, times.lateness))
-    return min(found, key=lambda t: (t.lateness, excess(t.end, chain.shift_end), t.duration))
+        return _least(found, lambda times: (times.end, times.lateness))
+    return _least(found, lambda t: (t.lateness, excess(t.end, shift_end), t.duration))
+
+
+def _least(found: Sequence[Schedule], key: Callable[[Schedule], Sequence[float]]) -> Schedule:
+    """Return the times of the least key, whose numbers are equal if they differ by a rounding."""
+    reach = max(each.end for each in found)
+    for number in range(len(key(found[0]))):
+        least = min(key(each)[number] for each in found)
+        found = [each for each in found if not is_over(key(each)[number], least, reach)]
+    return found[0]
 
 
 class _State(NamedTuple):

@@ -6,13 +6,16 @@ from math import inf
 import numpy as np
 import pytest
 
+from service.day.costs import CostsOfDay
 from service.fleet.evaluation import first_broken, points_of, route_violations, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
 from service.fleet.measures.of_times import overtime
 from service.fleet.plans import FleetFront, Route
+from service.fleet.rules import Rules
 from service.fleet.schedule import legs, schedule
 from service.fleet.search.search import RuinSearch
+from service.fleet.vehicles import VehicleType, Visit
 from service.watch import Watch
 from tests.helpers.fleet_days import (
     Driven,
@@ -139,3 +142,15 @@ def test_a_route_without_changes_over_the_day_is_that_of_a_plain_fleet() -> None
                 times, known = schedule(over, route), schedule(fleet, route)
                 np.testing.assert_allclose(times.arrivals, known.arrivals, rtol=1e-9)
                 assert times.lateness == pytest.approx(known.lateness)
+
+
+def test_a_break_is_taken_before_the_departure_though_sums_differ_by_a_rounding() -> None:
+    way, opens = 14.84, 59.01
+    assert (opens - way) + way > opens
+    visit = Visit(windows=((opens, 100.0),), due=10.0)
+    van = VehicleType(start=0, end=None, breaks=((10.0, 20.0, 5.0),))
+    rules = Rules(visits=(Visit(), visit), vehicles=(van,), clock=0)
+    still = CostsOfDay.constant(np.array([[0.0, way], [way, 0.0]]))
+    times = schedule(Fleet.over_the_day(rules, still, still), Route(0, (1,)))
+    assert times.breaks == ()
+    assert times.duration == pytest.approx(way)
