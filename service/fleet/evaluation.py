@@ -238,9 +238,8 @@ def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
             yield f"stop {stop} is not a stop to visit"
         elif times > 1:
             yield f"stop {stop} is visited {times} times"
-    pickups = {each.delivery: each.pickup for each in rules.shipments}
     for stop in unassigned(rules, plan):
-        if rules.visits[pickups.get(stop, stop)].prize is None:
+        if stop in rules.required:
             yield f"stop {stop} is not visited"
     yield from ("a route visits no stop" for route in plan.routes if not route.stops)
 

@@ -17,11 +17,11 @@ from service.fleet.evaluation import (
 )
 from service.fleet.fleet import Array, Fleet
 from service.fleet.plans import Plan, Route
-from service.fleet.rules import Rule
+from service.fleet.rules import Rule, Rules
 
 _RULES: tuple[Rule, ...] = get_args(Rule)  # from those that never change to those that may
 # Rules that are broken wherever the stop is inserted, if they are.
-_SAME_EVERYWHERE = ("skills", "vehicle", "apart", "capacity", "max_stops")
+_SAME_EVERYWHERE: tuple[Rule, ...] = ("skills", "vehicle", "apart", "max_stops")
 
 
 _Inserted = tuple[int, Route]  # the number of a route, and the route with one more stop
@@ -173,9 +173,18 @@ def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[_Inserted], d
             known = reasons.setdefault(route.vehicle, broken)
             if _RULES.index(broken.rule) > _RULES.index(known.rule):
                 reasons[route.vehicle] = broken
-            if broken.rule in _SAME_EVERYWHERE and not fleet.rules.vehicles[route.vehicle].reload:
+            if is_same_everywhere(fleet.rules, route.vehicle, broken.rule):
                 break
     return found, reasons
+
+
+def is_same_everywhere(rules: Rules, vehicle: int, rule: Rule) -> bool:
+    """Return whether a route with one more stop breaks a rule wherever that is, if it does once."""
+    if rules.vehicles[vehicle].reload:
+        return False
+    if rule == "capacity":  # what is taken on board on the way depends on the order
+        return not (rules.shipments or rules.takes)
+    return rule in _SAME_EVERYWHERE
 
 
 def _broken_beside(fleet: Fleet, plan: Plan, number: int, route: Route) -> Broken | None:

@@ -70,6 +70,7 @@ class Rules:
         sampled: Whether the times of the legs on several days are given instead.
         percents: The length in an objective is what so many days of a hundred do not exceed; None
             for that of a day as planned, and without any for all.
+        copies: Of what stop each of the last stops is a copy, of which a plan visits one at most.
 
     Raises:
         Refusal: The rules contradict each other, or are not supported.
@@ -88,6 +89,7 @@ class Rules:
     spread: float | None = None
     sampled: bool = False
     percents: tuple[int | None, ...] = ()
+    copies: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.layers) != len(self.over):
@@ -166,6 +168,18 @@ class Rules:
     def clients(self) -> tuple[int, ...]:
         """The stops that vehicles visit: all but the depots."""
         return tuple(stop for stop in range(self.n) if stop not in self.depots)
+
+    @cached_property
+    def originals(self) -> tuple[int, ...]:
+        """Of what stop each stop is a copy; itself, but for copies."""
+        return (*range(self.n - len(self.copies)), *self.copies)
+
+    @cached_property
+    def required(self) -> frozenset[int]:
+        """The stops to visit without a prize, which those of shipments have at the pick-up."""
+        pickups = {each.delivery: each.pickup for each in self.shipments}
+        free = (s for s in self.clients if self.visits[pickups.get(s, s)].prize is None)
+        return frozenset(free)
 
     @property
     def maximum(self) -> int | None:

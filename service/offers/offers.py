@@ -21,7 +21,7 @@ from service.fleet.evaluation import (
     routes_broken,
 )
 from service.fleet.fleet import Array, Fleet
-from service.fleet.left_out import Reason, with_stop
+from service.fleet.left_out import Reason, is_same_everywhere, with_stop
 from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rules import Rule
 from service.fleet.schedule import schedule, with_waits
@@ -132,7 +132,7 @@ def find_offers(
 def _with_needed(fleet: Fleet, plan: Plan, order: int) -> Plan:
     visited = {*plan.visited()}
     for stop in fleet.rules.clients:
-        if stop not in visited and stop != order and fleet.rules.visits[stop].prize is None:
+        if stop in fleet.rules.required and stop not in visited and stop != order:
             longer = with_stop(fleet, plan, stop)
             if longer is not None:
                 plan = longer
@@ -230,9 +230,7 @@ class _Search:
             return
         self._dead[row] = broken
         places, _ = self._rows[row]
-        if self._fleet.rules.vehicles[places.vehicle].reload:
-            return
-        if broken.rule in ("skills", "vehicle", "capacity", "max_stops"):
+        if is_same_everywhere(self._fleet.rules, places.vehicle, broken.rule):
             for other, (each, _) in enumerate(self._rows):
                 if each.number == places.number and each.vehicle == places.vehicle:
                     self._dead[other] = broken

@@ -49,6 +49,7 @@ def with_slots(fleet: Fleet, order: int, slots: Sequence[Span]) -> SlottedFleet:
     visits = list(fleet.rules.visits)
     visits[order] = replace(visits[order], windows=(ALWAYS,))
     copies = [replace(visits[order], windows=(slot,), prize=None) for slot in slots]
-    rules = replace(fleet.rules, visits=(*visits, *copies))
-    chosen = np.array([*range(fleet.rules.n), *(order for _ in slots)])
+    of_order = (order,) * len(slots)
+    rules = replace(fleet.rules, visits=(*visits, *copies), copies=of_order)
+    chosen = np.array([*range(fleet.rules.n), *of_order])
     return SlottedFleet(fleet.chosen(rules, chosen), order, tuple(slots), fleet.scale)

@@ -103,7 +103,7 @@ class UnmeasuredFleet:
         return [
             stop
             for stop, visit in enumerate(self.rules.visits)
-            if visit.prize is None
+            if stop in self.rules.required
             and visit.vehicles
             and min(visit.vehicles) >= len(self.rules.vehicles)
         ]

@@ -9,7 +9,7 @@ import pytest
 from service.fleet.evaluation import plan_lengths, unassigned, violations
 from service.fleet.fleet import Fleet
 from service.fleet.fronts import FleetOptions
-from service.fleet.left_out import explain
+from service.fleet.left_out import explain, with_stop
 from service.fleet.planner import plan_fleet
 from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
@@ -85,3 +85,12 @@ def test_each_reason_names_the_rule_and_the_numbers(
     (servings,) = explain(fleet, [nobody], np.array([plan_lengths(fleet, nobody)]))
     (reason, *_) = servings[0].reasons
     assert (reason.vehicle, reason.broken.rule, reason.broken.detail) == (0, rule, detail)
+
+
+def test_a_stop_that_gives_more_than_it_gets_fits_after_others_have_got_theirs() -> None:
+    rules = Rules(
+        visits=(Visit(), Visit(demand=(2,)), Visit(demand=(2,), pickup=(5,))),
+        vehicles=(VehicleType(start=0, end=0, capacity=(6,)),),
+    )
+    fleet = Fleet(rules=rules, costs=np.ones((2, 3, 3)))
+    assert with_stop(fleet, Plan((Route(0, (1,)),)), 2) == Plan((Route(0, (1, 2)),))

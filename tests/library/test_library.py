@@ -85,6 +85,31 @@ def test_an_order_is_offered_slots_and_an_offer_is_taken() -> None:
         paretour.offer_slots(paretour.plan(coordinates=CITIES, time_limit=0), order={"id": "new"})
 
 
+def test_an_optional_shipment_whose_vehicle_broke_down_is_left_out() -> None:
+    minutes = [[0, 4, 5, 6], [4, 0, 3, 5], [5, 3, 0, 4], [6, 5, 4, 0]]
+    van, bike = ({"id": name, "start": "depot", "end": "depot"} for name in ("van", "bike"))
+    front = paretour.plan_fleet(
+        stops=[
+            {"id": "depot"},
+            {"id": "from", "prize": 1000, "vehicle": "bike"},
+            {"id": "to", "vehicle": "bike"},
+            {"id": "other", "vehicle": "van"},
+        ],
+        shipments=[{"pickup": "from", "delivery": "to"}],
+        vehicles=[van, bike],
+        objectives=[
+            {"name": "time", "matrix": minutes},
+            {"name": "vehicles", "measure": "vehicles"},
+        ],
+        clock="time",
+        time_limit=5,
+    )
+    number = [route.vehicle for route in front[0].routes].index("bike")
+    gone = {"route": number, "broken_down": True, "position": "depot"}
+    rest = paretour.replan(front, plan=0, now=1, routes=[gone], time_limit=5)
+    assert [*rest[0].unassigned] == ["from", "to"]
+
+
 def test_tours_are_replanned_and_so_is_what_was_replanned() -> None:
     front = paretour.plan(stops=STOPS, objectives=OBJECTIVES, time_limit=0.1)
     rest = paretour.replan(front, done=["stop-0"], remove=["stop-3"], time_limit=0.1)

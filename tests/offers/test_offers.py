@@ -10,13 +10,16 @@ import pytest
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet
 from service.fleet.plans import Plan, Route
-from service.fleet.vehicles import Span
+from service.fleet.rules import Rules
+from service.fleet.vehicles import Shipment, Span, VehicleType, Visit
 from service.offers.offers import MOST_CHOICES, find_offers
 from tests.helpers.fleets import (
     bounded_fleet,
     every_plan,
     mixed_fleet,
     random_fleet,
+    taking_fleet,
+    tidy_fleet,
     waiting_fleet,
 )
 from tests.helpers.sampled import third
@@ -54,16 +57,17 @@ def some_plans(fleet: Fleet, order: int) -> list[Plan]:
     return kept[:: max(1, len(kept) // 3)]
 
 
-MAKERS = (random_fleet, bounded_fleet, mixed_fleet, waiting_fleet)
+MAKERS = (random_fleet, bounded_fleet, mixed_fleet, waiting_fleet, tidy_fleet, taking_fleet)
 
 
-@pytest.mark.parametrize("seed", range(third(60)))
+@pytest.mark.parametrize("seed", range(third(40)))
 @pytest.mark.parametrize("make", MAKERS)
 def test_offers_are_those_of_every_place_in_every_slot(make: object, seed: int) -> None:
     fleet = make(seed)  # type: ignore[operator]
     rules = fleet.rules
     grouped = {stop for pair in rules.groups.ordered for stop in pair}
-    alone = [stop for stop in rules.clients if stop not in rules.shipped | grouped]
+    known = rules.shipped | rules.promises | grouped
+    alone = [stop for stop in rules.clients if stop not in known]
     if rules.clock is None or not alone:
         return
     order = alone[seed % len(alone)]
@@ -98,3 +102,14 @@ def test_offers_are_those_of_every_place_in_every_slot(make: object, seed: int) 
             assert len(offer.choices) == min(len(distinct), MOST_CHOICES)
             for choice in offer.choices:
                 assert np.isclose(choice.rise, distinct, atol=1e-5).all(axis=1).any()
+
+
+def test_an_optional_shipment_that_the_plan_leaves_out_stays_out() -> None:
+    rules = Rules(
+        visits=(Visit(), Visit(prize=5.0), Visit(), Visit()),
+        vehicles=(VehicleType(start=0, end=0),),
+        shipments=(Shipment(1, 2),),
+        clock=0,
+    )
+    fleet = Fleet(rules=rules, costs=np.ones((2, 4, 4)))
+    assert find_offers(fleet, Plan(()), 3, SLOTS).plan == Plan(())

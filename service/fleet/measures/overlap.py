@@ -39,9 +39,10 @@ def nearness(fleet: Fleet) -> Nearness:
     A neighbour at a distance d counts 1 / (1 + (d / m)^2), where m is the mean of these distances,
     divided by the sum of what all count.
     """
-    clients = np.array(fleet.rules.clients)
+    rules = fleet.rules
+    clients = np.array([stop for stop in rules.clients if rules.originals[stop] == stop])
     k = min(_NEIGHBOURS, len(clients) - 1)
-    stops, away = np.zeros((fleet.rules.n, k), np.int32), np.full((fleet.rules.n, k), np.inf)
+    stops, away = np.zeros((rules.n, k), np.int32), np.full((rules.n, k), np.inf)
     for place, stop in enumerate(clients.tolist()) if k else ():
         # Of stops at one place each has others as neighbours: those that follow it.
         others = np.roll(clients, -place)[1:]
@@ -60,6 +61,6 @@ def nearness(fleet: Fleet) -> Nearness:
 def overlap(fleet: Fleet, route: Route) -> float:
     """Return how much the neighbours of the stops of a route count that do not ride with them."""
     stops, weights = nearness(fleet)
-    visited = np.array(route.stops, np.int64)
+    visited = np.array([fleet.rules.originals[stop] for stop in route.stops], np.int64)
     apart = ~np.isin(stops[visited], visited)
     return float(weights[visited].sum(where=apart))
