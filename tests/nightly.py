@@ -15,7 +15,7 @@ from tests.helpers.sampled import WHOLE
 FUZZING = (
     ("tests.fuzz", "--count", "100000"),
     ("tests.fuzz", "files", "20000"),
-    ("tests.fuzz.fleets_judged", "--count", "10000"),
+    ("tests.fuzz.fleets_judged", "--count", "10000", "--each", "1000"),
 )
 
 

@@ -1,7 +1,7 @@
 """Try all plans of a small fleet, to judge refusals and fronts."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import combinations, permutations, product
 
 from tests.fuzz.fleets_judged.judge import Judge, Judged
@@ -21,7 +21,11 @@ def exact_points(judge: Judge) -> list[Point]:
         beside = judge.beside([(each.vehicle, each.stops) for each in plan]) if waits else plan
         if not isinstance(beside, str):
             found.add(judge.lengths(beside))
-    points = sorted(found)
+    return undominated(sorted(found))
+
+
+def undominated(points: list[Point]) -> list[Point]:
+    """Return the points that no other one dominates, in their order."""
     return [p for p in points if not any(_dominates(q, p) for q in points)]
 
 
@@ -32,7 +36,7 @@ def _dominates(a: Point, b: Point) -> bool:
 def _routes(judge: Judge, vehicle: Json) -> Routes:
     """Return the routes of a vehicle by the stops that they visit; of some that are alike, one."""
     found: Routes = defaultdict(list)
-    fair = any(each.get("measure") == "imbalance" for each in judge.objectives)
+    compared = _compared(judge)
     reloads = [(), *((stop,) for stop in vehicle.get("reload", ()))]
     for count in range(1, len(judge.clients) + 1):
         for stops in permutations(judge.clients, count):
@@ -44,18 +48,28 @@ def _routes(judge: Judge, vehicle: Json) -> Routes:
                     if not isinstance(judged, str) or judged == "shortest":
                         found[frozenset(stops)].append(Judged(vehicle, route, [], (), 0.0))
                 elif not isinstance(judged, str):
-                    _add(judged, found[frozenset(stops)], fair)
+                    _add(judged, found[frozenset(stops)], compared)
     return found
 
 
-def _add(judged: Judged, routes: list[Judged], fair: bool) -> None:
-    """Add a route unless another of the same stops is as short; if `fair`, also as long."""
+def _compared(judge: Judge) -> Callable[[Judged], Point]:
+    """Return what decides how good a route is beside others: nothing of another is larger."""
+    fair = any(each.get("measure") == "imbalance" for each in judge.objectives)
+    of_days = any("percentile" in each for each in judge.objectives)
 
-    def key(route: Judged) -> Point:
-        return (*route.lengths, *((-route.compared,) if fair else ()))
+    def point(route: Judged) -> Point:
+        longer = (-route.compared,) if fair else ()
+        goes = route.taken if of_days else None
+        days = () if goes is None else (goes.mean, goes.variance, *goes.days)
+        return (*route.lengths, *longer, *days)
 
-    added = key(judged)
-    if not any(all(x <= y for x, y in zip(key(r), added, strict=True)) for r in routes):
+    return point
+
+
+def _add(judged: Judged, routes: list[Judged], compared: Callable[[Judged], Point]) -> None:
+    """Add a route unless another of the same stops is as good."""
+    added = compared(judged)
+    if not any(all(x <= y for x, y in zip(compared(r), added, strict=True)) for r in routes):
         routes.append(judged)
 
 
@@ -72,7 +86,7 @@ def _plans(
         return
     first, *others = left
     if judge.prize(first) is not None:
-        partner = {**dict(judge.shipments), **judge.pickup_of}.get(first)
+        partner = {**dict(judge.rules.shipments), **judge.rules.pickup_of}.get(first)
         rest = tuple(stop for stop in others if stop != partner)
         yield from _plans(judge, routes, rest, chosen, used)
     for count in range(len(others) + 1):

@@ -5,11 +5,11 @@ leg by leg, forwards. The best departure is a corner of it.
 """
 
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations_with_replacement, pairwise
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from tests.fuzz.fleets_judged.timeline import (
     TOLERANCE,
@@ -154,57 +154,149 @@ def _between(pairs: Any, time: float) -> float:
     return float(pairs[-1][1])
 
 
-class _Way(NamedTuple):
-    """A route: the visits, and the function of when a leg that begins at a time ends, by number."""
+class _Stay(NamedTuple):
+    """A visit or a break: when it may begin, how long it takes, and the leg before it."""
 
-    visits: list[Event]
+    windows: list[tuple[float, float]]
+    length: float
+    due: float
+    leg: int | None  # its number
+    place: int  # the place in the route
+    rests: bool
+
+    def begin(self, time: float) -> float | None:
+        """Return when it begins, given when the vehicle is there; None after its windows."""
+        open_then = (opens for opens, closes in self.windows if not is_later(time, closes))
+        opens = next(open_then, None)
+        return None if opens is None else max(time, opens)
+
+
+class _Way(NamedTuple):
+    """A way to drive a route: its visits and breaks, and when a leg that begins at a time ends."""
+
+    stays: list[_Stay]
     arrival: Callable[[int, float], float]
+    corners: Callable[[int], list[float]]  # of a leg: see Costs.corners
+    begin: float
+    last: float
 
 
 def timelines_of_day(request: Json, clock: Json, vehicle: Json, stops: list[int]) -> list[Timeline]:
-    """Return the best times of a route without breaks, or none where it cannot be in time.
+    """Return the best times of a route, or none where it cannot be in time.
 
-    Where almost equally good departures are told apart by roundings, all of them.
+    Where almost equally good departures are told apart by roundings, or breaks can be taken at
+    several places, all of them.
 
     Args:
-        request: The request; no stop has several windows.
+        request: The request.
         clock: The item of the costs that are time.
         vehicle: The vehicle, with one `shift` at most.
         stops: The visits, and where it loads again.
     """
+    shift_end = span_of({**vehicle, "max_overtime": 0.0})[1]
+    found = []
+    for ways in _ways(request, clock, vehicle, stops):
+        pairs = [(way, first) for way in ways if (first := _driven(way, way.begin)) is not None]
+        pairs = [(way, first) for way, first in pairs if not is_later(first.end, way.last)]
+        pairs = _least(pairs, lambda pair: (pair[1].end, pair[1].lateness))
+        for way, first in pairs:
+            early = request.get("leave") == "early"
+            found += [first] if early else _best(way, first, shift_end, _changes(clock))
+    if request.get("leave") == "early":
+        return _least(found, lambda each: (each.end, each.lateness))
+    return _least(
+        found,
+        lambda each: (
+            each.lateness,
+            max(0.0, each.end - shift_end),
+            each.end - each.departure,
+        ),
+    )
+
+
+Item = TypeVar("Item")
+
+
+def _least(items: list[Item], key: Callable[[Item], tuple[float, ...]]) -> list[Item]:
+    """Return the items of the least key, up to roundings."""
+    for number in range(len(key(items[0])) if items else 0):
+        least = min(key(each)[number] for each in items)
+        items = [each for each in items if key(each)[number] <= least + 20 * _EQUAL * (1 + least)]
+    return items
+
+
+def _ways(request: Json, clock: Json, vehicle: Json, stops: list[int]) -> Iterator[list[_Way]]:
+    """Yield the ways to drive a route after no break, after the first one, and so on."""
     begin, last = span_of(vehicle)
     begin = max(begin, released(request, trips_of(vehicle, stops)[0]))
-    places = places_of(request, clock["matrix"], vehicle, stops, {})
-    if not all(places):  # a window that is over before the day begins
-        return []
-    visits = [each for [each] in places]
     ends = [[] if each is None else [each] for each in map(vehicle.get, ("start", "end"))]
-    path, speed = [*ends[0], *stops, *ends[1]], vehicle.get("speed_factor", 1.0)
-    legs = [*pairwise(path)]
+    legs = [*pairwise([*ends[0], *stops, *ends[1]])]
     costs: Costs = clock.get("day") or Costs({**clock, "over_the_day": [[0.0, 1.0]]})
+    speed = vehicle.get("speed_factor", 1.0)
+    of_legs = (
+        lambda leg, time: costs.arrival(*legs[leg], time, speed),
+        lambda leg: costs.corners(*legs[leg], speed),
+    )
+    places = places_of(request, clock["matrix"], vehicle, stops, {})
+    rests = vehicle.get("breaks", []) if all(places) else []
+    for first in range(len(rests) + 1) if all(places) else ():
+        if first:
+            begin = max(begin, rests[first - 1]["window"][0] + rests[first - 1]["length"])
+        found = []
+        for after in range(first, len(rests) + 1):
+            until = min([last, *(each["window"][1] for each in rests[after:])])
+            spots = combinations_with_replacement(range(2 * len(places)), after - first)
+            found += [
+                _Way(
+                    _stays(places, [*zip(each, rests[first:after], strict=True)]),
+                    *of_legs,
+                    begin,
+                    until,
+                )
+                for each in spots
+            ]
+        yield found
 
-    def arrival(leg: int, time: float) -> float:
-        return costs.arrival(*legs[leg], time, speed)
 
-    way = _Way(visits, arrival)
-    first = _driven(way, begin)
-    if first is None or is_later(first.end, last):
-        return []
-    if request.get("leave") == "early":
-        return [first]
-    finite = [t for each in visits for t in (each.opens, each.closes, each.due) if t < inf]
-    latest = max([begin, first.end, *costs.changes, *finite])
-    corners: Corners = [(begin, begin), (latest, latest)]
-    for number, visit in enumerate(visits):
-        if number:
-            inner = costs.corners(*legs[number - 1], speed)
-            corners = _through(corners, inner, lambda t, leg=number - 1: arrival(leg, t))
-        corners = _until(corners, visit.closes)
-        corners = _through(corners, [visit.opens], lambda t, opens=visit.opens: max(t, opens))
-        corners = _until(corners, max(visit.due, first.begins[number]))
-        corners = [(d, t + visit.length) for d, t in corners]
-    shift_end = span_of({**vehicle, "max_overtime": 0.0})[1]
-    corners = _until(corners, min(last, max(shift_end, first.end)))
+def _stays(places: list[list[Event]], rests: list[tuple[int, Json]]) -> list[_Stay]:
+    """Return the visits and breaks of a route.
+
+    Args:
+        places: The visit at each place, once for each window.
+        rests: The breaks, each after a number: even ones are before a visit, others after it.
+    """
+    found = []
+    for place, events in enumerate(places):
+        windows = [(each.opens, each.closes) for each in events]
+        group = [_rest(rest, place) for spot, rest in rests if spot == 2 * place]
+        group.append(_Stay(windows, events[0].length, events[0].due, None, place, rests=False))
+        group += [_rest(rest, place) for spot, rest in rests if spot == 2 * place + 1]
+        found += [group[0]._replace(leg=place - 1 if place else None), *group[1:]]
+    return found
+
+
+def _rest(rest: Json, place: int) -> _Stay:
+    return _Stay([tuple(rest["window"])], rest["length"], inf, None, place, rests=True)
+
+
+def _best(way: _Way, first: Timeline, shift_end: float, changes: list[float]) -> list[Timeline]:
+    """Return the times after the best departures, given those after the earliest one."""
+    spans = [span for stay in way.stays for span in stay.windows]
+    finite = [time for span in spans for time in span if time < inf]
+    latest = max(
+        [way.begin, first.end, *changes, *finite, *(s.due for s in way.stays if s.due < inf)]
+    )
+    corners: Corners = [(way.begin, way.begin), (latest, latest)]
+    begins = iter(first.begins)
+    for stay in way.stays:
+        if stay.leg is not None:
+            leg = stay.leg
+            corners = _through(corners, way.corners(leg), lambda t, leg=leg: way.arrival(leg, t))
+        corners = _when_open(_until(corners, stay.windows[-1][1]), stay)
+        if not stay.rests:
+            corners = _until(corners, max(stay.due, next(begins)))
+        corners = [(d, t + stay.length) for d, t in corners]
+    corners = _until(corners, min(way.last, max(shift_end, first.end)))
     least = min(end - departure for departure, end in corners)
     slack = _EQUAL * max(1.0, first.end)
     found = [
@@ -214,23 +306,43 @@ def timelines_of_day(request: Json, clock: Json, vehicle: Json, stops: list[int]
     return [each for each in found if each is not None]
 
 
+def _when_open(corners: Corners, stay: _Stay) -> Corners:
+    """Return the corners of when a stay begins, given those of when the vehicle is there.
+
+    After each window but the last, it begins when the next one opens.
+    """
+    found: Corners = []
+    for (opens, closes), after in zip(stay.windows, [*stay.windows[1:], None], strict=True):
+        inside = _until(corners, closes)
+        found += _through(inside, [opens], lambda t, opens=opens: max(t, opens))
+        if after is None or not inside:
+            continue
+        corners = [inside[-1], *(each for each in corners if each not in inside)]
+    return sorted(found)
+
+
+def _changes(clock: Json) -> list[float]:
+    costs: Costs | None = clock.get("day")
+    return costs.changes if costs else []
+
+
 def _driven(way: _Way, departure: float) -> Timeline | None:
     time, lateness, waiting = departure, 0.0, 0.0
-    arrivals, begins, leaves = list[float](), list[float](), list[float]()
-    for number, visit in enumerate(way.visits):
-        if number:
-            time = way.arrival(number - 1, time)
-        if is_later(time, visit.closes):
+    arrivals, begins, rests = dict[int, float](), list[float](), list[float]()
+    leaves = dict[int, float]()
+    for stay in way.stays:
+        if stay.leg is not None:
+            time = way.arrival(stay.leg, time)
+        arrivals.setdefault(stay.place, time)
+        begin = stay.begin(time)
+        if begin is None:
             return None
-        begin = max(time, visit.opens)
-        arrivals.append(time)
-        begins.append(begin)
+        (rests if stay.rests else begins).append(begin)
         waiting += begin - time
-        lateness += begin - visit.due if is_later(begin, visit.due) else 0.0
-        time = begin + visit.length
-        leaves.append(time)
-    times = tuple(arrivals), (), tuple(begins), tuple(leaves)
-    return Timeline(departure, time, lateness, waiting, *times)
+        lateness += begin - stay.due if is_later(begin, stay.due) else 0.0
+        time = leaves[stay.place] = begin + stay.length
+    places = tuple(arrivals.values()), tuple(rests), tuple(begins), tuple(leaves.values())
+    return Timeline(departure, time, lateness, waiting, *places)
 
 
 def _through(corners: Corners, inner: list[float], ends: Callable[[float], float]) -> Corners:

@@ -33,16 +33,6 @@ def add_day(rng: random.Random, request: Json) -> None:
         is_clock = any(each is timed for each in alike)
         if is_clock or rng.random() < 0.6:
             _change(rng, alike, request)
-    keep_to_day(request)
-
-
-def keep_to_day(request: Json) -> None:
-    """Leave out what the judge does not know over the day: breaks, and several windows."""
-    for vehicle in request["vehicles"]:
-        vehicle.pop("breaks", None)
-    for stop in request["stops"]:
-        if windows := stop.pop("windows", None):
-            stop["window"] = windows[0]
 
 
 def _change(rng: random.Random, items: list[Json], request: Json) -> None:

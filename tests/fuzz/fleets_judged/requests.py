@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
-from tests.fuzz.fleets_judged.day import is_over_the_day
-from tests.fuzz.fleets_judged.days import OVER_THE_DAY, add_day, keep_to_day, may_have_day
+from tests.fuzz.fleets_judged.days import OVER_THE_DAY, add_day, may_have_day
+from tests.fuzz.fleets_judged.promises import add_promises
+from tests.fuzz.fleets_judged.spreads import add_spread
 from tests.fuzz.fleets_judged.timeline import Json
+from tests.fuzz.fleets_judged.waits import has_waits
 
 _MEASURES = (
     *("vehicles", "unassigned", "overtime", "lateness", "imbalance", "load_distance"),
@@ -16,7 +18,10 @@ _MEASURES = (
 )
 TAKING = 0.3  # share of fleets with stops that put something on board
 WAITING = 0.5  # share of fleets with groups whose visits wait for others, if there is a clock
+SPREADING = 0.15  # share of fleets whose times spread, if there is a clock
+PROMISED = 0.12  # share of fleets of which a plan was promised
 PROFILED = 0.2  # share of fleets whose vehicles have profiles
+_RESTLESS = ("earliness", "weighted_arrival", "on_time")  # they are refused beside breaks
 _TIMED = ("overtime", "lateness", "earliness", "weighted_arrival")
 
 
@@ -66,6 +71,10 @@ def _add_some(rng: random.Random, request: Json, matrices: Sequence[Any], depots
         _add_profiles(rng, request, matrices)
     if may_have_day(request, len(matrices[0]) - depots) and rng.random() < OVER_THE_DAY:
         add_day(rng, request)
+    if rng.random() < SPREADING:
+        add_spread(rng, request)
+    elif rng.random() < PROMISED:
+        add_promises(rng, request, [*range(depots, len(matrices[0]))])
 
 
 def _add_pickups(rng: random.Random, request: Json) -> None:
@@ -316,9 +325,7 @@ def with_bounds_at_arrivals(rng: random.Random, request: Json, plan: Json) -> Js
         for stop, arrival, other in zip(route["stops"], arrivals, times, strict=True):
             _bound(rng, changed, changed["stops"][int(stop)], rng.choice((arrival, other)))
         vehicle = next(v for v in changed["vehicles"] if v["id"] == route["vehicle"])
-        _bound_vehicle(rng, vehicle, times)
-    if is_over_the_day(changed):
-        keep_to_day(changed)
+        _bound_vehicle(rng, vehicle, times, rests=_may_rest(changed))
     return changed
 
 
@@ -345,14 +352,22 @@ def _bound(rng: random.Random, request: Json, stop: Json, time: float) -> None:
         stop["due"] = time
 
 
-def _bound_vehicle(rng: random.Random, vehicle: Json, times: list[float]) -> None:
+def _may_rest(request: Json) -> bool:
+    """Return whether no objective, and no visit that waits, forbids breaks."""
+    measures = {each.get("measure") for each in request["objectives"]}
+    of_days = any("percentile" in each for each in request["objectives"])
+    tolerant = request.get("promised", {}).get("tolerance") is not None
+    return measures.isdisjoint(_RESTLESS) and not (of_days or tolerant or has_waits(request))
+
+
+def _bound_vehicle(rng: random.Random, vehicle: Json, times: list[float], *, rests: bool) -> None:
     """Let the shift, the longest route or a break end at times of a route."""
     if rng.random() < 0.4 and "shifts" not in vehicle:
         begin = max(0.0, times[0] - rng.choice((0.0, 0.0, 5.0)))
         vehicle["shift"] = [begin, max(begin, times[-1])]
     if rng.random() < 0.2 and times[-1] > times[0]:
         vehicle["longest"] = times[-1] - times[0]
-    if rng.random() < 0.4:
+    if rests and rng.random() < 0.4:
         time = rng.choice(times)
         length = rng.choice((2.0, 7.7, 30.0))
         vehicle["breaks"] = [{"window": [max(0.0, time - 10), time], "length": length}]

@@ -80,20 +80,27 @@ def best_timelines(
     trips = trips_of(vehicle, stops)
     begin = max(begin, released(request, trips[0]))
     rests, early = vehicle.get("breaks", []), request.get("leave") == "early"
-    found = []
+    places = places_of(request, times, vehicle, stops, bounds)
+    if not all(places):  # a window that is over before the day begins
+        return []
+    found, soonest = list[Timeline](), [inf] * len(places)
     for first in range(len(rests) + 1):
         if first:
             opens, length = rests[first - 1]["window"][0], rests[first - 1]["length"]
             begin = max(begin, opens + length)
         for after in range(first, len(rests) + 1):
             until = min([last, *(each["window"][1] for each in rests[after:])])
-            places = places_of(request, times, vehicle, stops, bounds)
             for events in _ways(places, rests[first:after], [], begin):
                 timeline = _timed(events, begin, until, early)
-                if timeline is not None:
-                    found.append(timeline)
+                if timeline is None:
+                    continue
+                found.append(timeline)
+                earliest = _timed(events, begin, until, early=True) if bounds else timeline
+                soonest = [*map(min, soonest, earliest.begins)]
     if not found:
         return []
+    holds = [max(a, each[0].hold) for a, each in zip(soonest, places, strict=True)]
+    found = [each for each in found if not any(map(is_later, each.begins, holds))]
     end = min(each.end for each in found)
     found = [each for each in found if not is_later(each.end, end)]
     lateness = min(each.lateness for each in found)
@@ -121,7 +128,7 @@ def places_of(
         visit = request["stops"][stop]
         due = visit.get("due", inf)
         latest = due[1] if isinstance(due, list) else due
-        rest = (_service(visit, vehicle), latest, legs[place], place)
+        rest = (service_of(visit, vehicle), latest, legs[place], place)
         since, hold = bounds.get(stop, (0.0, inf))
         windows = _windows(request, vehicle, stops, path, place)
         open_then = [each for each in windows if not is_later(since, each[1])]
@@ -129,7 +136,7 @@ def places_of(
     return found
 
 
-def _service(visit: Json, vehicle: Json) -> float:
+def service_of(visit: Json, vehicle: Json) -> float:
     """Return how long a vehicle takes to visit a stop."""
     own = {each["vehicle"]: each["service"] for each in visit.get("services", ())}
     service = own.get(vehicle["id"], visit.get("service", 0.0))
@@ -185,15 +192,6 @@ def _windows(
     visit, slack = request["stops"][stop], request.get("slack", 0.0)
     one = [visit["window"]] if visit.get("window") else []
     return [(a, b - slack) for a, b in visit.get("windows") or one] or [(0.0, inf)]
-
-
-def _ascending(count: int, places: int, least: int = 0) -> Iterator[tuple[int, ...]]:
-    if count == 0:
-        yield ()
-        return
-    for place in range(least, places):
-        for others in _ascending(count - 1, places, place):
-            yield (place, *others)
 
 
 def _timed(events: list[Event], begin: float, last: float, early: bool) -> Timeline | None:
