@@ -69,6 +69,7 @@ def test_no_page_scrolls_sideways(
     browser: Browser, released: str, width: int, names: list[str]
 ) -> None:
     with open_page(browser, f"{released}/guide/", width) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") == width  # of the index
         for name, (reached, narrowest) in page.evaluate(WIDTHS, names).items():
             assert reached == width, name
             assert width == DESK or narrowest >= PROSE, name
