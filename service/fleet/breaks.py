@@ -106,10 +106,7 @@ def _ways(chain: Chain, breaks: Sequence[Break]) -> Iterator[_Way]:
     if not (ended := _ended(chain, breaks, states)):
         return
     end = min(state.time for state in ended)
-    first = [state for state in ended if not is_over(state.time, end)]
-    lateness = min(state.lateness for state in first)
-    least = [state for state in first if not is_over(state.lateness, lateness, end)]
-    best = max(least, key=lambda state: min(state.latest, end - state.work))
+    best = max(_soonest(ended), key=lambda state: min(state.latest, end - state.work))
     yield _Way(best.departure, chain.last, best.placed)
 
 
@@ -125,10 +122,21 @@ def _ways_over_the_day(chain: Chain, breaks: Sequence[Break]) -> Iterator[_Way]:
         states: list[list[_State]] = [[] for _ in range(len(breaks) + 1)]
         states[taken].append(_State(begin, 0.0, 0.0, -inf, begin, ()))
         if ended := _ended(chain, breaks, states):
-            placed = min(ended, key=lambda state: (state.time, state.lateness)).placed
+            placed = _soonest(ended)[0].placed
             after = taken + len(placed)
             last = min(chain.last, breaks[after][1]) if after < len(breaks) else chain.last
             yield _Way(begin, last, placed)
+
+
+def _soonest(ended: Sequence[_State]) -> list[_State]:
+    """Return the states that end as early as possible, and of these those that are the least late.
+
+    Those that differ by a rounding are equal.
+    """
+    end = min(state.time for state in ended)
+    first = [state for state in ended if not is_over(state.time, end)]
+    lateness = min(state.lateness for state in first)
+    return [state for state in first if not is_over(state.lateness, lateness, end)]
 
 
 def _begins(chain: Chain, breaks: Sequence[Break]) -> Iterator[float]:

@@ -154,3 +154,14 @@ def test_a_break_is_taken_before_the_departure_though_sums_differ_by_a_rounding(
     times = schedule(Fleet.over_the_day(rules, still, still), Route(0, (1,)))
     assert times.breaks == ()
     assert times.duration == pytest.approx(way)
+
+
+def test_a_break_delays_no_late_visit_though_the_route_ends_a_rounding_later() -> None:
+    begin, there, service, back = 42.89, 20.3, 0.46, 9.799999999999999
+    assert begin + there + 5 + service + back < begin + there + service + 5 + back
+    visit = Visit(due=39.55, service=service)
+    van = VehicleType(start=0, end=0, shift=(begin, 78.7), breaks=((58.04, 71.93, 5.0),))
+    rules = Rules(visits=(Visit(), visit), vehicles=(van,), clock=0)
+    still = CostsOfDay.constant(np.array([[0.0, there], [back, 0.0]]))
+    times = schedule(Fleet.over_the_day(rules, still, still), Route(0, (1,)))
+    assert times.lateness == pytest.approx(begin + there - 39.55)
