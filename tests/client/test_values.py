@@ -1,7 +1,8 @@
 """Answers become values."""
 
 import pytest
-from paretour import Objective
+from paretour import Actor, Objective
+from paretour.expect import value_of
 from paretour.values import parse_front, parse_tour
 
 from tests.helpers.answers import EMPTY, FRONT, NAMED
@@ -23,6 +24,16 @@ def test_an_empty_front_has_shapes_all_the_same() -> None:
 def test_the_nearest_tour_is_that_of_the_nearest_angle() -> None:
     tour = parse_front(FRONT).nearest(40)
     assert (tour.front, tour.angle, tour.tour.tolist()) == ("f", 30.0, [0, 2, 1])
+
+
+def test_a_network_is_shown_with_all_that_is_known_of_it() -> None:
+    document = {
+        **{"name": "pa-one", "digest": "d", "commit": "c", "inputs": "coordinates"},
+        **{"sizes": [5, 100], "angles": [0, 90], "config": {}, "figures": {}},
+    }
+    shown = repr(value_of(Actor)(document, "answer"))
+    assert shown.startswith("Actor(name='pa-one', digest='d'")
+    assert "sizes=[5, 100]" in shown
 
 
 def test_a_tour_over_a_map_has_its_path() -> None:

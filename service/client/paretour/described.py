@@ -97,7 +97,8 @@ def answer(schema: str, *, eq: bool = False, kw_only: bool = True) -> Callable[[
     """
 
     def decorate(cls: type[T]) -> type[T]:
-        has_own = cls.__repr__ is not object.__repr__
+        plain = (each for each in cls.__mro__[:-1] if each not in SCHEMAS)
+        has_own = any("__repr__" in vars(each) for each in plain)  # or one that it inherits
         made = dataclass(frozen=True, eq=eq, kw_only=kw_only, repr=not has_own)(cls)
         made.__doc__ = "\n".join((f"{made.__doc__}\n\nAttributes:", *_help(made)))
         SCHEMAS[made] = schema
