@@ -36,7 +36,7 @@ from service.requests.fleet_fields import (
     VehicleItem,
 )
 from service.requests.group_fields import ApartItem, BeforeItem, References
-from service.requests.limits import Limits, check_limit, within_limits
+from service.requests.limits import Limits, check_limit, objective_at, within_limits
 from service.requests.profile_fields import (
     Profile,
     check_profiles,
@@ -172,7 +172,7 @@ class FleetRequest(SearchFields):
         """The items that are sources of costs, by their part of the request."""
         objectives = enumerate(self.objectives)
         found: dict[str, TimesItem] = {
-            f"objectives/{m}": item for m, item in objectives if item.of_plan is None
+            objective_at(m): item for m, item in objectives if item.of_plan is None
         }
         return {**found, "clock": self.clock} if isinstance(self.clock, ClockItem) else found
 
@@ -326,14 +326,20 @@ class FleetRequest(SearchFields):
 
         If there is only one, the second are the same.
         """
-        items: dict[str, TimesItem] = {
-            f"objectives/{each}": self.objectives[each] for each in costs
-        }
-        if isinstance(self.clock, ClockItem):
-            items["clock"] = self.clock
-        sources = [item.sources_by(part, stops, profiles) for part, item in items.items()]
+        items = ((part, self._costs[part]) for part in self._parts(costs))
+        sources = [item.sources_by(part, stops, profiles) for part, item in items]
         pairs = zip(*[*sources, *sources[:1]][:LAYERS], strict=True)
         return [source for pair in pairs for source in pair]
+
+    def _parts(self, costs: Sequence[int]) -> list[str]:
+        """Return the parts of the request that have the costs: objectives, and maybe the clock."""
+        own = ["clock"] if isinstance(self.clock, ClockItem) else []
+        return [*map(objective_at, costs), *own]
+
+    def part_of_source(self, number: int) -> str:
+        """Return the part of the request that has a source of the stops, by its number."""
+        parts = self._parts(self._layers()[0])
+        return parts[number % len(parts)]  # each profile has sources of all parts
 
     def _clock(self, costs: Sequence[int], layers: Sequence[int]) -> int | None:
         """Return the number of the costs that are time."""

@@ -103,7 +103,7 @@ def check_structure(body: bytes, limits: Limits) -> None:
     strings = (body.count(b'"') + 1) // 2
     arrays, objects, members = body.count(b"["), body.count(b"{"), body.count(b":")
     most_strings = 1000 + (8 + _TOURS_BY_ID) * limits.cities
-    # A breakpoint is an array, and so are those of a pair.
+    # A breakpoint is an array, and so is the list of those of a pair.
     most_rows = max(limits.cells // 8, 2 * limits.breakpoints)
     most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + most_rows
     most_objects = 1000 + 8 * limits.cities + 2 * limits.size
@@ -235,26 +235,44 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
     return replace(options, directions=options.directions[:0])
 
 
-def check_breakpoints(sources: Sequence[Source], limits: Limits) -> None:
-    """Raise a refusal where costs have too many breakpoints; the same costs count once."""
-    by_pair = {id(source): source for source in sources if isinstance(source, Breakpoints)}
-    count = sum(source.count for source in by_pair.values())
-    if count > limits.breakpoints:
-        most = limits.breakpoints
-        fault = Fault.of("objectives", "too-many-breakpoints", limit=most, came=count)
+def objective_at(number: int) -> str:
+    """Return the part of a request that is an objective."""
+    return f"objectives/{number}"
+
+
+def check_breakpoints(
+    sources: Sequence[Source], limits: Limits, part_of: Callable[[int], str] = objective_at
+) -> None:
+    """Raise a refusal where costs have too many breakpoints; the same costs count once.
+
+    The refusal names the part with the most; for `part_of` see `check_router`.
+    """
+    by_pair = {id(x): (x.count, m) for m, x in enumerate(sources) if isinstance(x, Breakpoints)}
+    count, most = sum(each for each, _ in by_pair.values()), limits.breakpoints
+    if count > most:
+        part = f"{part_of(max(by_pair.values())[1])}/breakpoints"
+        fault = Fault.of(part, "too-many-breakpoints", limit=most, came=count)
         raise Refusal("invalid-request", errors=[fault], limit=most, actual=count)
 
 
-def check_router(sources: Sequence[Source], limits: Limits) -> None:
-    """Raise a refusal where costs by road or traffic are asked for, and no engine has them."""
+def check_router(
+    sources: Sequence[Source], limits: Limits, part_of: Callable[[int], str] = objective_at
+) -> None:
+    """Raise a refusal where costs by road or traffic are asked for, and no engine has them.
+
+    Args:
+        sources: The sources of costs.
+        limits: The limits.
+        part_of: Returns the part of the request that has a source, by the number of the source.
+    """
     for m, source in enumerate(map(base_of, sources)):
         if isinstance(source, Traffic) and not limits.traffic:
-            part = f"objectives/{m}/traffic"
+            part = f"{part_of(m)}/traffic"
             raise Refusal("no-traffic", name=part, pointer=f"/{part}")
         if limits.roads:
             continue
         if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
-            part = f"objectives/{m}/from"
+            part = f"{part_of(m)}/from"
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 

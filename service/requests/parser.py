@@ -151,8 +151,8 @@ def read_fleet(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     request = parse_fleet_request(source.body, limits)
     fleet = request.subject()
     check_fleet("stops", fleet.stops, limits, request.time_limit)
-    check_breakpoints(fleet.stops.sources, limits)
-    check_router(fleet.stops.sources, limits)
+    check_breakpoints(fleet.stops.sources, limits, request.part_of_source)
+    check_router(fleet.stops.sources, limits, request.part_of_source)
     request.check_road_profiles(limits.profiles)
     return Task(
         subject=fleet,

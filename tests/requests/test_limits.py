@@ -160,9 +160,45 @@ def test_breakpoints_of_all_objectives_have_a_limit_of_their_own(path: str) -> N
     source = TaskSource(path, json.dumps(body).encode())
     actors = {actor.info.name: actor.info for actor in ACTORS}
     parse_task(source, replace(LIMITS, breakpoints=11), actors)
-    with pytest.raises(Refusal, match="at most 10 breakpoints in all, got 11") as refused:
+    with pytest.raises(Refusal, match="at most 10 breakpoints, got 11") as refused:
         parse_task(source, replace(LIMITS, breakpoints=10), actors)
     assert (refused.value.limit, refused.value.actual) == (10, 11)
+    assert refused.value.errors[0].pointer == "/objectives/0/breakpoints"  # which has more
+
+
+@pytest.mark.parametrize(
+    ("times", "code", "member"),
+    [
+        ({"from": "road_time"}, "no-router", "from"),
+        (
+            {"from": "road_time", "traffic": {"date": "2026-03-02", "at": [0]}},
+            "no-traffic",
+            "traffic",
+        ),
+        ({"breakpoints": [[None, [[0, 5]]], [[[0, 5]], None]]}, "invalid-request", "breakpoints"),
+    ],
+)
+@pytest.mark.parametrize("in_clock", [False, True])
+def test_refused_times_of_a_fleet_are_named_where_they_stand(
+    times: dict[str, Any], code: str, member: str, in_clock: bool
+) -> None:
+    way = {"name": "way", "coordinates": [[0, 0], [1, 1]]}
+    vans = {"name": "vans", "measure": "vehicles"}
+    own = {"name": "time", **times}
+    body = {
+        "stops": [{"id": name, "location": [24.9, 60.2]} for name in "ab"],
+        "objectives": [way, vans] if in_clock else [way, vans, own],
+        "vehicles": [{"id": "van", "start": "a"}],
+        "clock": own if in_clock else "time",
+    }
+    actors = {actor.info.name: actor.info for actor in ACTORS}
+    with pytest.raises(Refusal) as refused:
+        parse_task(
+            TaskSource("fleet", json.dumps(body).encode()), replace(LIMITS, breakpoints=1), actors
+        )
+    part = "clock" if in_clock else "objectives/2"
+    assert refused.value.code == code
+    assert refused.value.errors[0].pointer == f"/{part}/{member}"
 
 
 def test_as_many_arrays_may_come_as_the_most_breakpoints_need() -> None:
