@@ -1,6 +1,6 @@
 """Declare the answers about fronts, as the OpenAPI document has them.
 
-The client declares what they consist of.
+The objects in them, such as tours and routes, are declared by the client, `paretour`.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,6 @@ from service.requests.stop_fields import NamedStop
 from service.requests.task import KindName
 
 AS_NAMED = "as the request names them"
-FRONT = "the front's id"
 
 
 @answer("FleetObjectiveName", kw_only=False)
@@ -131,7 +130,7 @@ class ActorsAnswer:
 class QuestionAnswer(Option):
     """A question: where the picks have led, and the options; at the end a tour or a plan."""
 
-    front: str = member(FRONT)
+    front: str = member("the front's id")
     left: int = member("how many questions are left, this one included; 0 at the end")
     options: tuple[Option, ...] = member("by ascending first length; none at the end")
     objectives: tuple[FleetObjective | Objective, ...] | None = member(AS_NAMED)

@@ -1,4 +1,4 @@
-"""Make the schemas of answers, for the OpenAPI document, of the declarations of their objects."""
+"""Make the schemas of answers, for the OpenAPI document, from their declarations."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields

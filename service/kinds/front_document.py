@@ -3,8 +3,7 @@
 To add a member to the answer, declare it in `service/api/answers.py`, add a field to
 `FrontDocument`, and fill it in where documents are written: `empty_document` in `table`,
 `tour_document`, `fleet` and `robots`. Stores, engines and routes pass on all members without
-knowing them. A field that earlier releases did not store needs a
-default.
+knowing them. A field that earlier releases did not store needs a default.
 """
 
 from array import array

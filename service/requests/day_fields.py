@@ -43,7 +43,7 @@ _YEARS = (1970, 2999)  # that Valhalla reads
 _MOST_TIMES = 2**23  # of travel, in all slices of one objective
 _MOST_SLICES = 100  # every quarter of an hour, and a few more
 _LEAST_FACTOR, _MOST_FACTOR = 0.01, 100.0
-Factor = Annotated[float, Field(ge=0, allow_inf_nan=False), IS_TIME]  # or a second of the day
+Factor = Annotated[float, Field(ge=0, allow_inf_nan=False), IS_TIME]  # its pair has one
 Factors = Annotated[list[Pair[Factor]], Field(max_length=_MOST_SLICES, fail_fast=True)]
 
 

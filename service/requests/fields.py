@@ -119,14 +119,14 @@ class Branch:
     """The annotation of a union: the errors of a value are those of one of its types alone.
 
     Args:
-        of: Returns the number of that type, or whether it is the second of two. A value is JSON,
-            or what was made of it: a form may be written again.
+        of: Returns the number of that type in the union, from 0; of two types, whether it is the
+            second. It is given JSON or, where a form is written as JSON again, a value of a type.
     """
 
     of: Callable[[Any], int]
 
     def __get_pydantic_core_schema__(self, union: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Return the schema of the union; its brackets are left out of the places of errors."""
+        """Return a union whose tags have brackets: `validation` leaves them out of places."""
         types = {f"[{k}]": handler.generate_schema(each) for k, each in enumerate(get_args(union))}
         return tagged_union_schema(types, lambda value: f"[{int(self.of(value))}]")
 

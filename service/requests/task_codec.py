@@ -35,7 +35,7 @@ _ANNOTATIONS = tuple(_annotations_in(Task))
 _TYPES: Mapping[str, type[Any]] = {
     each.__name__: each for each in _ANNOTATIONS if isinstance(each, type) and is_dataclass(each)
 }
-# The dataclasses of which members are tuples of any length: a task may hold thousands of these.
+# The dataclasses that stand in tuples of any length: a task may hold thousands of their values.
 # Their own members are numbers, texts, and tuples of numbers.
 _FLAT_TYPES: Mapping[str, type[Any]] = {
     of.__name__: of
