@@ -49,10 +49,11 @@ _ATTEMPTS = 3  # at a first plan: of many stops some find every place passed by 
 _FEW_STOPS = 12  # up to this number of stops, the search ends once it finds nothing more
 _IDLE_STEPS = 72  # steps without a new plan, after which it ends
 _FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
-# With fewer plans, and fewer stops looked at (all in each iteration), a search goes on after its
+# With fewer plans, and fewer stops looked at (all in each round), a search goes on after its
 # deadline: a process that is held up else finds no plan.
 _LEAST_PLANS, _LEAST_WORK = 10, 2000
-_GRACE = 0.03  # seconds after the deadline, at the latest, when it ends all the same
+_GRACE = 0.03  # seconds after the deadline, at the latest, when it ends all the same with a plan
+_LONG_GRACE = 1.0  # the same without one
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 _CHECKING_OF_DAY = 6e-5  # the same, over the day
 _EXPLAINING = 1e-5  # seconds for each stop that is left out, per stop of the fleet
@@ -75,7 +76,6 @@ class RuinSearch:
         self._watch = watch
         self._reference_point = units.points(reference_point_of(fleet, options))
         self._checked = 0.0
-        self._worked = 0  # stops looked at
         self._pause = 0.0  # the longest recent seconds between two checks of the time
         self._cancelled = False
         self._problem = problem_of(units.fleet)
@@ -98,7 +98,8 @@ class RuinSearch:
             lambda: self._lacked,
             RUINS,
         )
-        self._rounds = 0
+        self._ruins = 0
+        self._most_ruins = options.iterations * RUINS
         self._lacked = 0  # stops, at the least in this step
         self._began = 0.0
         self._sorted = 0, np.empty(0, np.int32)
@@ -231,7 +232,7 @@ class RuinSearch:
     def _search(self, step: Step) -> bool:
         """Search in a direction, and return whether to end."""
         problem = self._problem
-        if self._rounds and not len(self) and self._fleet.rules.has_bounds:
+        if self._ruins and not len(self) and self._fleet.rules.has_bounds:
             problem, step = loosened(problem), self._directions.loose(step)
         state, row = State(problem, self._working, step.direction), self._archives.row
         if step.start is None:
@@ -245,21 +246,20 @@ class RuinSearch:
         limit_routes(state)
         set_prices(state)
         self._lacked = len(problem.clients)
-        heat, done, most, ends = step.heat, 0, step.rounds, self._ends_of(step)
+        heat, done, most, ends = step.heat, 0, step.rounds * RUINS, self._ends_of(step)
         while done < most:
-            if self._rounds >= self._options.iterations or self._ended():
+            if self._ruins >= self._most_ruins or self._ended():
                 return True
             most = self._in_time(done, most, ends)
-            cooling = (step.cooled / max(heat, step.cooled)) ** (1 / ((most - done) * RUINS))
-            still = max(1, int(_STILL * most))
+            cooling = (step.cooled / max(heat, step.cooled)) ** (1 / (most - done))
+            still = RUINS * max(1, int(_STILL * most / RUINS))
             until = most - still if done < most - still else most
             heat = heat if until < most else 0.0
-            rounds = min(until - done, self._options.iterations - self._rounds, self._at_once())
-            ruins = rounds * RUINS
+            ruins = min(until - done, self._most_ruins - self._ruins, self._at_once())
             heat, made = anneal(state, self._archives, ruins, heat, cooling, step.ends_whole)
-            self._rounds += math.ceil(made / RUINS)
+            self._ruins += made
             self._lacked = min(self._lacked, int(self._working.counts[MISSING]))
-            done = done + rounds if made == ruins else most
+            done = done + ruins if made == ruins else most
         return False
 
     def _ends_of(self, step: Step) -> tuple[float, float]:
@@ -268,12 +268,12 @@ class RuinSearch:
         Where the number of iterations ends the search first, only they count.
         """
         now, left = self._watch.spent, self._left()
-        if not left or left >= self._options.iterations - self._rounds:
+        if not left or left * RUINS >= self._most_ruins - self._ruins:
             return now, math.inf
         return now, now + self._watch.left * min(1.0, step.rounds / left)
 
     def _in_time(self, done: int, most: int, ends: tuple[float, float]) -> int:
-        """Return how many rounds a step has in its time, once its pace is known."""
+        """Return how many ruins a step has in its time, once its pace is known."""
         began, until = ends
         now = self._watch.spent
         if until == math.inf or now - began < _UNSURE * (until - began):
@@ -281,29 +281,32 @@ class RuinSearch:
         return done + max(1, int(done * (until - now) / (now - began)))
 
     def _at_once(self) -> int:
-        """Return for how many rounds there is time before the time is checked."""
+        """Return for how many ruins there is time before the time is checked.
+
+        One may take ten milliseconds: over the day, with many breakpoints.
+        """
         spent = self._watch.spent - self._began
-        return max(1, int(_CALL * self._rounds / spent)) if spent > 0 else 1
+        return max(1, int(_CALL * self._ruins / spent)) if spent > 0 else 1
 
     def _left(self) -> float:
         """Return the number of rounds left, estimated from the time of earlier ones."""
-        most = self._options.iterations - self._rounds
-        if self._watch.seconds == math.inf or not self._rounds:
-            return most
-        spent = self._watch.spent - self._began
-        return min(most, max(0.0, self._watch.left) * self._rounds / max(spent, 1e-6))
+        most: float = self._most_ruins - self._ruins
+        if self._watch.seconds < math.inf and self._ruins:
+            spent = self._watch.spent - self._began
+            most = min(most, max(0.0, self._watch.left) * self._ruins / max(spent, 1e-6))
+        return most / RUINS
 
     def _ended(self) -> bool:
         """Return whether to stop, after a report if one is due."""
         watch, now = self._watch, self._watch.spent
         self._pause = max(now - self._checked, _FORGOTTEN * self._pause)
         self._checked = now
-        self._worked += self._fleet.rules.n
         if watch.stopped():
             self._cancelled = True
             return True
-        begun = len(self) >= _LEAST_PLANS or self._worked >= _LEAST_WORK
-        begun |= len(self) > 0 and watch.over(-_GRACE)
+        worked = self._fleet.rules.n * self._ruins / RUINS >= _LEAST_WORK
+        begun = len(self) >= _LEAST_PLANS or worked
+        begun |= watch.over(-_GRACE if len(self) else -_LONG_GRACE)
         watch.report_if_due(self._found, partial(self.front, terminated=None))
         return begun and watch.over(self._reserve())
 
