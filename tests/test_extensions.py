@@ -96,7 +96,7 @@ def test_the_package_of_the_guide_plans_in_a_service(packages: Path) -> None:
         [answer] = run_page(PAGE, packages, url)
         front = json.loads(answer)
         assert front["actor"]["name"] == "my-nearest"
-        alone = httpx.post(f"{url}/front", json={**REQUEST, "time_limit": 0}, timeout=60).json()
+        alone = httpx.post(f"{url}/front", json={**REQUEST, "time_limit": 0}, timeout=300).json()
         assert front["hypervolume"] >= alone["hypervolume"] > 0
         [listed] = [
             each
@@ -210,8 +210,8 @@ def test_the_service_says_whose_fault_it_is(packages: Path, quick_actors: dict[s
     settings = {"PARETOUR_WORKERS": "1", "PARETOUR_CONSTRUCTORS": "own_fault", **quick_actors}
     with serving_settings(settings) as url:
         request = {**REQUEST, "actor": "own_fault", "time_limit": 0}
-        refused = httpx.post(f"{url}/front", json=request, timeout=60)
-        again = httpx.post(f"{url}/front", json={**request, "actor": "pa-one"}, timeout=60)
+        refused = httpx.post(f"{url}/front", json=request, timeout=300)
+        again = httpx.post(f"{url}/front", json={**request, "actor": "pa-one"}, timeout=300)
     assert refused.status_code == 500
     assert refused.json()["code"] == "extension-failed"
     assert again.status_code == 200

@@ -69,7 +69,7 @@ def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
         # A long body is parsed in a process of its own.
         content = answer.request.content + b" " * 2**18
         headers = {"Content-Type": "application/json"}
-        answer = httpx.post(f"{url}/front", content=content, headers=headers, timeout=60)
+        answer = httpx.post(f"{url}/front", content=content, headers=headers, timeout=300)
         assert answer.status_code == 200
 
 

@@ -26,7 +26,7 @@ WRONG = b'{"matrices":[[[' + 4_000_000 * b"0," + b"0]],[[0]]]}"
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 
@@ -138,7 +138,7 @@ def service(quick_actors: dict[str, str]) -> Iterator[ServeProcess]:
 
 
 def post(url: str, body: bytes) -> httpx.Response:
-    return httpx.post(f"{url}/front", content=body, headers=JSON, timeout=60)
+    return httpx.post(f"{url}/front", content=body, headers=JSON, timeout=300)
 
 
 def matrices(n: int) -> dict[str, Any]:
@@ -157,7 +157,7 @@ def readers(service: ServeProcess) -> list[int]:
 def until_done(answer: Future[httpx.Response], url: str) -> int:
     """How often the service said that it lives before the answer came."""
     times = 0
-    with httpx.Client(base_url=url, timeout=60) as client:
+    with httpx.Client(base_url=url, timeout=300) as client:
         while not answer.done():
             times += client.get("/health/live").status_code == 200
             time.sleep(0.002)

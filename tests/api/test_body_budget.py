@@ -119,7 +119,7 @@ def test_small_bodies_pass_while_long_ones_stall(url: str) -> None:
     with ExitStack() as connections:
         for _ in range(8):
             connections.enter_context(stalled(url, 80_000))
-        answer = httpx.post(f"{url}/front", content=REQUEST, headers=JSON, timeout=30)
+        answer = httpx.post(f"{url}/front", content=REQUEST, headers=JSON, timeout=300)
         assert answer.status_code == 200, answer.text
 
 
@@ -130,7 +130,10 @@ def test_the_body_of_a_job_counts_until_the_job_has_ended(
     actor = Shuffler(gate=tmp_path / "gate")
     edge = Edge(bodies_bytes=150_000)
     long = 90_000 * b" " + REQUEST
-    with serving(app_of(actor, edge=edge)) as url, httpx.Client(base_url=url, timeout=30) as client:
+    with (
+        serving(app_of(actor, edge=edge)) as url,
+        httpx.Client(base_url=url, timeout=300) as client,
+    ):
         later = {**JSON, "Prefer": "respond-async", **headers}
         accepted = client.post("/front", content=long, headers=later)
         assert accepted.status_code == 202

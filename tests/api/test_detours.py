@@ -48,7 +48,7 @@ def client() -> Iterator[httpx.Client]:
     limits = replace(LIMITS, cells=2000, cities=200, size=100, seconds=10.0)
     with (
         serving(app_of(limits=limits)) as address,
-        httpx.Client(base_url=address, timeout=60) as client,
+        httpx.Client(base_url=address, timeout=300) as client,
     ):
         yield client
 

@@ -40,7 +40,7 @@ def patient() -> Iterator[str]:
 
 
 def sent(address: str, *files: tuple[str, bytes]) -> httpx.Response:
-    return httpx.post(f"{address}/files", files=[("file", each) for each in files], timeout=60)
+    return httpx.post(f"{address}/files", files=[("file", each) for each in files], timeout=300)
 
 
 def test_a_table_becomes_a_fleet_that_the_service_plans(address: str) -> None:
@@ -50,7 +50,7 @@ def test_a_table_becomes_a_fleet_that_the_service_plans(address: str) -> None:
     column = {"file": "ORDERS.CSV", "name": "Breitengrad", "taken_for": "latitude"}
     assert column in answer["columns"]
     assert {"encoding", "separator", "vehicle", "columns"} <= {n["code"] for n in answer["notes"]}
-    planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=60)
+    planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=300)
     assert planned.status_code == 200, planned.text
 
 
@@ -104,7 +104,7 @@ def test_a_table_with_windows_is_planned_without_a_routing_engine(address: str) 
     time = answer["request"]["objectives"][1]
     assert time == {"name": "time", "from": "great_circle", "speed": 30, "over": "max"}
     assert any("straight lines at 30 km/h" in note["text"] for note in answer["notes"])
-    planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=60)
+    planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=300)
     assert planned.status_code == 200, planned.text
     [plan] = planned.json()["front"]
     assert plan["routes"][0]["stops"] == ["depot", "a", "depot"]
@@ -126,7 +126,7 @@ PLANNED = [
 def test_files_with_bounds_are_planned_within_them(patient: str, names: str) -> None:
     files = [(name, (EXAMPLES / name).read_bytes()) for name in names.split()]
     asked = sent(patient, *files).json()["request"]
-    planned = httpx.post(f"{patient}/fleet", json=asked | {"time_limit": 5}, timeout=60)
+    planned = httpx.post(f"{patient}/fleet", json=asked | {"time_limit": 5}, timeout=300)
     assert planned.status_code == 200, planned.text
     stops = {stop["id"]: stop for stop in asked["stops"]}
     skills = {vehicle["id"]: vehicle.get("skills", []) for vehicle in asked["vehicles"]}
@@ -262,7 +262,7 @@ def test_a_map_says_which_cells_are_unknown_and_takes_pictures_of_costs(address:
     assert answer["unknown_cells"] == [[0, 0, 0, 1], [0, 0, 0, 1]]
     layer = [[0, 1, 0.8, 0], [0, 0, 0, 0]]
     assert request["cost_layers"] == [{"name": "dust", "layer": layer}]
-    planned = httpx.post(f"{address}/coverage", json={**request, "spacing": 0.5}, timeout=60)
+    planned = httpx.post(f"{address}/coverage", json={**request, "spacing": 0.5}, timeout=300)
     assert planned.json()["objectives"][1]["name"] == "dust"
     known = sent(address, ("known.pgm", b"P2 2 1 255  254 0\n")).json()
     assert "unknown_cells" not in known

@@ -22,7 +22,7 @@ IDS = ["depot", *(f"order-{i}" for i in range(1, N))]
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

@@ -44,7 +44,7 @@ Point = tuple[float, ...]
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
     app = app_of(limits=replace(LIMITS, seconds=30.0))
-    with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
+    with serving(app) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

@@ -112,7 +112,7 @@ def test_fronts_are_counted_by_phase_and_size_class(quick_actors: dict[str, str]
         for n, seconds in [(12, 1.0), (12, 0.0), (60, 0.0)]:
             cities = np.random.default_rng(n).random((n, 4)).tolist()
             request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}
-            answer = httpx.post(f"{url}/front", json=request, timeout=60)
+            answer = httpx.post(f"{url}/front", json=request, timeout=300)
             assert answer.status_code == 200
         counted = samples(url)
     assert counted["paretour_workers",] == 1

@@ -39,7 +39,7 @@ def url() -> Iterator[str]:
 
 @pytest.mark.parametrize(("path", "request_"), [("/front", FRONT), ("/fleet", FLEET)])
 def test_an_answer_has_notes_from_the_first_on(url: str, path: str, request_: Any) -> None:
-    with httpx.Client(base_url=url, timeout=60) as client:
+    with httpx.Client(base_url=url, timeout=300) as client:
         answer = client.post(path, json=request_).json()
         assert answer["notes"] == NOTES
         assert client.get(f"/front/{answer['id']}").json()["notes"] == NOTES
@@ -55,7 +55,7 @@ def test_an_answer_has_notes_from_the_first_on(url: str, path: str, request_: An
 
 
 def test_a_rest_of_the_way_has_notes_that_point_nowhere(url: str) -> None:
-    with httpx.Client(base_url=url, timeout=60) as client:
+    with httpx.Client(base_url=url, timeout=300) as client:
         front = client.post("/front", json=FRONT).json()["id"]
         rest = client.post(f"/front/{front}/replan", json={"done": ["s0"], "time_limit": 0.1})
         assert rest.json()["notes"] == [{"code": "place", "text": TEXT}]

@@ -24,14 +24,14 @@ def client() -> Iterator[httpx.Client]:
     store = SqliteStore(IN_MEMORY, entries=100, max_age=600)
     asyncio.run(store.put(stored_fleet(fleet_request())))
     app = app_of(store=store, limits=LIMITS)
-    with serving(app, warm=False) as address, httpx.Client(base_url=address, timeout=120) as client:
+    with serving(app, warm=False) as address, httpx.Client(base_url=address, timeout=300) as client:
         asyncio.run(store.put(job("queued", caller="anonymous")))
         yield client
 
 
 def test_slots_are_offered_and_nothing_is_changed(client: httpx.Client) -> None:
     before = client.get("/front/the-front").json(), client.get("/front").json()
-    with Client(str(client.base_url), timeout=120) as caller:
+    with Client(str(client.base_url), timeout=300) as caller:
         found = caller.offers("the-front", **ASKED)
     assert found.front == "the-front"
     assert [each.slot for each in found.offers] == [

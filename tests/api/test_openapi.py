@@ -74,12 +74,12 @@ def test_every_request_shown_is_answered_as_shown(address: str, operations: dict
     fronts = {}
     for kind, path in (("front", "/front/{id}/replan"), ("fleet", "/front/{id}/offers")):
         [*_, last] = requests_of(operations[f"POST /{kind}"])
-        fronts[path] = httpx.post(f"{address}/{kind}", json=last, timeout=60).json()["id"]
+        fronts[path] = httpx.post(f"{address}/{kind}", json=last, timeout=300).json()["id"]
     for name, operation in operations.items():
         method, path = name.split()
         for example in requests_of(operation):
             url = address + path.replace("{id}", fronts.get(path, ""))
-            answer = httpx.request(method, url, json=example, timeout=60)
+            answer = httpx.request(method, url, json=example, timeout=300)
             assert answer.status_code == 200, answer.text
             shown = operation["responses"]["200"]["content"]["application/json"]["example"]
             assert set(shown) <= set(answer.json())
@@ -138,7 +138,7 @@ def test_schemathesis_finds_nothing(without_fronts: str, tmp_path: Path) -> None
     # Its phase "coverage", of 3,000 requests more, takes three minutes.
     phases = f"--phases=examples,fuzzing,stateful{',coverage' * IS_WHOLE}"
     most = f"--max-examples={tenth(20)}"
-    options = ["--no-color", "--generation-deterministic", "--request-timeout=60", most, phases]
+    options = ["--no-color", "--generation-deterministic", "--request-timeout=300", most, phases]
     options.append("--exclude-path=/files")  # which takes forms alone
     hooks = {"SCHEMATHESIS_HOOKS": "tests.helpers.schemathesis_hooks", "PYTHONPATH": str(ROOT)}
     found = subprocess.run(

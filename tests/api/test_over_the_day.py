@@ -17,7 +17,7 @@ RISK = [[0, 5, 1, 2], [5, 0, 2, 9], [1, 2, 0, 3], [2, 9, 3, 0]]
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

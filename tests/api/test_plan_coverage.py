@@ -36,7 +36,7 @@ LATER = {"Prefer": "respond-async"}
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=60) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 
@@ -248,7 +248,7 @@ def test_before_the_ways_over_a_map_are_compiled_there_is_no_coverage(tmp_path: 
     warm = tmp_path / "warm"
     app = app_of(workers=workers_of(runner_of(warm=warm)), edge=Edge(request_seconds=1))
     with serving(app, warm=False) as url:
-        with httpx.Client(base_url=url, timeout=60) as client:
+        with httpx.Client(base_url=url, timeout=300) as client:
             answer = first_found(client, changed(time_limit=0), "/coverage")
         problem(answer, 503, "warming-up")
         warm.touch()
@@ -300,7 +300,7 @@ def patient() -> Iterator[httpx.Client]:
     """A client of a service that allows what takes long."""
     limits = replace(LIMITS, body_bytes=2**24, cities=1000, cells=2**20, seconds=600.0)
     limits = replace(limits, survey_seconds=1.0)
-    with serving(app_of(limits=limits)) as url, httpx.Client(base_url=url, timeout=60) as client:
+    with serving(app_of(limits=limits)) as url, httpx.Client(base_url=url, timeout=300) as client:
         yield client
 
 

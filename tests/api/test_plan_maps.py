@@ -55,7 +55,7 @@ OF_PICTURE = {**PLAN, **READING, "cell_size": SIDE, "origin": ORIGIN}
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=60) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

@@ -37,7 +37,7 @@ REQUESTS = {
 
 
 def asked(url: str, path: str, body: dict[str, Any]) -> dict[str, Any]:
-    answer = httpx.post(url + path, json=body, timeout=60)
+    answer = httpx.post(url + path, json=body, timeout=300)
     assert answer.status_code == 200, answer.text
     document: dict[str, Any] = answer.json()
     return document

@@ -21,7 +21,7 @@ REQUEST = {"grid": GRID, "cell_size": 0.5, "places": PLACES, "robots": ROBOTS, "
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=60) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

@@ -34,7 +34,7 @@ NAMES = [{"name": "way", "unit": "m"}, {"name": "risk", "unit": "%"}]
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

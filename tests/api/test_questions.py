@@ -55,7 +55,7 @@ def client() -> Iterator[httpx.Client]:
     for each in (*fronts, empty):
         asyncio.run(store.put(each))
     app = app_of(store=store)
-    with serving(app, warm=False) as address, httpx.Client(base_url=address, timeout=60) as client:
+    with serving(app, warm=False) as address, httpx.Client(base_url=address, timeout=300) as client:
         asyncio.run(store.put(job("queued", caller="anonymous")))
         yield client
 

@@ -40,7 +40,7 @@ def store() -> SqliteStore:
 def client(store: SqliteStore) -> Iterator[httpx.Client]:
     with (
         serving(app_of(store=store)) as address,
-        httpx.Client(base_url=address, timeout=30) as client,
+        httpx.Client(base_url=address, timeout=300) as client,
     ):
         yield client
 

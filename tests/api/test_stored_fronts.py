@@ -19,7 +19,7 @@ FRONT = {"coordinates": CITIES, "time_limit": 0}
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 
@@ -139,7 +139,7 @@ def test_a_front_is_there_for_its_caller_alone() -> None:
 
 
 def planned_by(url: str, **headers: str) -> str:
-    answer = httpx.post(f"{url}/front", json=FRONT, headers=headers, timeout=30)
+    answer = httpx.post(f"{url}/front", json=FRONT, headers=headers, timeout=300)
     planned: str = answer.json()["id"]
     return planned
 

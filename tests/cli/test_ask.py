@@ -20,7 +20,7 @@ from tests.helpers.several_plans import with_several_plans
 def front(url: str) -> dict[str, Any]:
     """A front of plans that the service has."""
     return with_several_plans(
-        lambda: dict(httpx.post(f"{url}/fleet", json=fleet_request(), timeout=60).json())
+        lambda: dict(httpx.post(f"{url}/fleet", json=fleet_request(), timeout=300).json())
     )
 
 

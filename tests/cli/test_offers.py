@@ -31,7 +31,7 @@ def test_slots_are_printed_with_their_price_and_why_others_are_not_possible(tmp_
         assert "van" in row
         assert "18:00 to 19:00: not possible. van: " in printed.stdout
         as_json = paretour("offers", "the-front", file, "--url", url, "--json")
-        answer = httpx.post(f"{url}/front/the-front/offers", json=ASKED, timeout=60).json()
+        answer = httpx.post(f"{url}/front/the-front/offers", json=ASKED, timeout=300).json()
         assert json.loads(as_json.stdout)["offers"] == answer["offers"]
         refused = paretour("offers", "none", file, "--url", url)
     assert refused.returncode == 2

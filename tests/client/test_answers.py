@@ -102,6 +102,8 @@ SCHEMA_OF = {"front": "FrontAnswer", "coverage": "CoverageAnswer", "fleet": "Fle
 SCHEMA_OF |= {"robots": "RobotsAnswer"}
 FRONTS = set(SCHEMA_OF.values())
 TOURS = {"TourItem", "CoverageItem", "TourAnswer"}
+pytestmark = pytest.mark.usefixtures("compiled")
+
 # Of fronts that failed, of what a busy machine has no time for, and of several shifts.
 RARE = {
     *((name, "problem") for name in FRONTS),
@@ -169,7 +171,7 @@ def _asked(url: str, fronts: Answers) -> Iterator[Any]:
 
 
 def _post(url: str, path: str, body: dict[str, Any]) -> Any:
-    answer = httpx.post(f"{url}{path}", json={"time_limit": 0, **body}, timeout=60)
+    answer = httpx.post(f"{url}{path}", json={"time_limit": 0, **body}, timeout=300)
     assert answer.status_code == 200, answer.text
     return answer.json()
 
@@ -277,6 +279,7 @@ def test_drawn_tours_and_routes_have_their_members(url: str, fronts: Answers) ->
         drawn = httpx.get(f"{url}/front/{fronts[name]['id']}", headers=accept).json()["features"]
         items = fronts[name]["front"]
         routes = [each for item in items for each in item.get("routes", [item])]
+        assert len(drawn) >= len(routes) > 0  # stops come after routes
         for feature, route in zip(drawn, routes, strict=False):
             shown = feature["properties"].keys() - DRAWN - {"balance", "losses"}
             assert shown == route.keys() - {"tour", "balance", "losses"}

@@ -177,7 +177,7 @@ def test_the_rest_of_a_front_is_replanned_at_once_and_as_a_job(url: str, connect
 def test_hundreds_of_calls_gathered_wait_for_their_turns_and_all_are_answered(url: str) -> None:
     async def plan_all() -> list[int]:
         # Patience for no more than one refusal: waiting for a turn uses none of it.
-        async with AsyncClient(url, patience=1, timeout=60) as client:
+        async with AsyncClient(url, patience=1, timeout=300) as client:
             calls = [
                 client.front(coordinates=CITIES[: 3 + n % 9], time_limit=0, preferences=1)
                 for n in range(300)

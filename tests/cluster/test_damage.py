@@ -44,7 +44,7 @@ def client(server: Redis) -> Iterator[httpx.Client]:
     with (
         celery_worker(server.url, runner_of(Shuffler()), 30, 1),
         serving(engine_app(store, engine, Shuffler())) as url,
-        httpx.Client(base_url=url, timeout=60) as client,
+        httpx.Client(base_url=url, timeout=300) as client,
     ):
         yield client
 

@@ -132,7 +132,7 @@ def is_ready() -> bool:
 def points(path: str) -> int:
     """Plan an example, and return the number of points that were found."""
     request = {**json.loads((EXAMPLES / PLANS[path]).read_text()), "time_limit": 1}
-    answer = httpx.post(f"{URL}{path}", json=request, timeout=60).raise_for_status()
+    answer = httpx.post(f"{URL}{path}", json=request, timeout=300).raise_for_status()
     found: int = answer.json()["points"]
     return found
 

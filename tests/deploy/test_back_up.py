@@ -35,7 +35,7 @@ def run(script: str, *arguments: object) -> None:
 
 
 def planned(service: ServeProcess) -> dict[str, Any]:
-    answer = httpx.post(f"{service.url}/front", json=REQUEST, timeout=60)
+    answer = httpx.post(f"{service.url}/front", json=REQUEST, timeout=300)
     assert answer.status_code == 200, answer.text
     front: dict[str, Any] = answer.json()
     return front

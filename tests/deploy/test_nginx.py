@@ -47,10 +47,10 @@ def refusal_of(answer: httpx.Response, status: int, code: str) -> dict[str, Any]
 
 
 def test_a_front_is_planned_through_it(url: str) -> None:
-    answer = httpx.post(f"{url}/front", json=CITIES, timeout=60)
+    answer = httpx.post(f"{url}/front", json=CITIES, timeout=300)
     assert answer.status_code == 200
     assert answer.json()["front"]
-    problem(httpx.post(f"{url}/front", json={}, timeout=60), 422, "invalid-request")
+    problem(httpx.post(f"{url}/front", json={}, timeout=300), 422, "invalid-request")
 
 
 def test_a_client_cannot_call_itself_by_another_address(tmp_path: Path) -> None:
@@ -66,9 +66,9 @@ def test_a_client_cannot_call_itself_by_another_address(tmp_path: Path) -> None:
 def test_it_takes_bodies_as_long_as_the_service_and_refuses_longer_ones(url: str) -> None:
     most = Settings().max_body_bytes
     headers = {"Content-Type": "application/json"}
-    longer = httpx.post(f"{url}/front", content=b" " * (most + 1), headers=headers, timeout=60)
+    longer = httpx.post(f"{url}/front", content=b" " * (most + 1), headers=headers, timeout=300)
     assert refusal_of(longer, 413, "body-too-long")["limit"] == most
-    passed_on = httpx.post(f"{url}/front", content=b" " * most, headers=headers, timeout=60)
+    passed_on = httpx.post(f"{url}/front", content=b" " * most, headers=headers, timeout=300)
     assert problem(passed_on, 413, "body-too-long")["limit"] != most
 
 
@@ -116,7 +116,7 @@ def test_events_are_passed_on_as_they_come(tmp_path: Path) -> None:
     with (
         serving_asgi(stream) as service,
         nginx_before(service, tmp_path) as url,
-        httpx.stream("GET", f"{url}/front/x/events", timeout=60) as events,
+        httpx.stream("GET", f"{url}/front/x/events", timeout=300) as events,
     ):
         parts = events.iter_raw()
         assert next(parts) == b": hello\n\n"
@@ -139,7 +139,7 @@ def test_where_the_service_is_away_or_the_rate_is_exceeded_it_says_so_itself(
 ) -> None:
     with (
         nginx_before(f"http://127.0.0.1:{free_port()}", tmp_path) as url,
-        httpx.Client(base_url=url, timeout=60) as client,
+        httpx.Client(base_url=url, timeout=300) as client,
     ):
         answers = [client.get("/actors")]
         while answers[-1].status_code == 503 and len(answers) < 5000:
@@ -165,7 +165,7 @@ def test_under_a_sub_path_everything_is_found_there(tmp_path: Path) -> None:
     with (
         serving(app_of()) as service,
         nginx_before(service, tmp_path, changed) as site,
-        httpx.Client(base_url=site, follow_redirects=True, timeout=60) as client,
+        httpx.Client(base_url=site, follow_redirects=True, timeout=300) as client,
     ):
         for path in ("", "docs", "guide", "guide/errors"):
             page = client.get(f"/tours/{path}")

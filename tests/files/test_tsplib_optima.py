@@ -31,6 +31,6 @@ def test_the_plan_for_a_file_has_the_length_of_its_optimum(
     file = (f"{name}.tsp", (FOLDER / f"{name}.tsp").read_bytes())
     read = httpx.post(f"{released}/files", files=[("file", file)] * 2).json()
     request = {**read["request"], "time_limit": 30}  # far more than it takes to converge
-    answer = httpx.post(f"{released}/front", json=request, timeout=120).json()
+    answer = httpx.post(f"{released}/front", json=request, timeout=300).json()
     assert [item["lengths"] for item in answer["front"]] == [[optimum, optimum]]
     assert answer["terminated"] == "converged"

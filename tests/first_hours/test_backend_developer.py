@@ -41,12 +41,12 @@ def check_repeats(request: dict[str, Any], service: str) -> None:
     says("follow-a-long-job", "such an answer has the header `Idempotent-Replayed: true`.")
     key = {"Idempotency-Key": "the-orders-of-monday"}
     first, again = (
-        httpx.post(f"{service}/front", json=request, headers=key, timeout=60) for _ in range(2)
+        httpx.post(f"{service}/front", json=request, headers=key, timeout=300) for _ in range(2)
     )
     assert first.json() == again.json()
     assert again.headers["Idempotent-Replayed"] == "true"
     says("follow-a-long-job", "With another body it is answered 422.")
-    other = httpx.post(f"{service}/front", json={**request, "size": 2}, headers=key, timeout=60)
+    other = httpx.post(f"{service}/front", json={**request, "size": 2}, headers=key, timeout=300)
     assert other.status_code == 422
 
 
@@ -73,7 +73,7 @@ def test_a_front_is_planned_followed_repeated_and_replanned(released: str, tmp_p
 
     says("replan", "Over HTTP this is a `POST` to `/front/{id}/replan`")
     way = {"tour": tour, "done": tour[:2], "remove": [tour[3]]}
-    rest = httpx.post(f"{released}/front/{front['id']}/replan", json=way, timeout=60).json()
+    rest = httpx.post(f"{released}/front/{front['id']}/replan", json=way, timeout=300).json()
     assert (rest["status"], rest["id"] != front["id"]) == ("done", True)
     assert 0 <= rest["front"][0]["kept"] <= 1
     says("replan", "The earlier front does not change.")

@@ -28,7 +28,7 @@ def run_script(name: str, *arguments: object) -> None:
 
 
 def planned(service: ServeProcess, key: dict[str, str]) -> dict[str, Any]:
-    answer = httpx.post(f"{service.url}/front", json=REQUEST, headers=key, timeout=60)
+    answer = httpx.post(f"{service.url}/front", json=REQUEST, headers=key, timeout=300)
     front: dict[str, Any] = answer.raise_for_status().json()
     return front
 

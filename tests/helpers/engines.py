@@ -75,7 +75,7 @@ class Embedded:
         path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
         store = SqliteStore(path, entries=1000, max_age=SECONDS)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
-        with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
+        with serving(app) as url, httpx.Client(base_url=url, timeout=300) as client:
             planning = partial(_first_pid, workers)
             yield Served(client, planning, partial(_searching, workers))
 
@@ -113,7 +113,7 @@ class Clustered:
             url, entries=1000, max_age=SECONDS, queue=queue, share=share, seconds=SECONDS
         )
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
-        with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
+        with serving(app) as address, httpx.Client(base_url=address, timeout=300) as client:
             yield Served(client, state.planning, state.searching, url)
         connection.close()
 

@@ -130,7 +130,7 @@ def test_the_engine_is_asked_by_the_job_and_not_before_the_answer(
     gate = Event()
     with misbehaving(engine, waiting(gate)):
         headers = {"Prefer": "respond-async"}
-        accepted = httpx.post(f"{url}/front", json=_request(seed=4), headers=headers, timeout=30)
+        accepted = httpx.post(f"{url}/front", json=_request(seed=4), headers=headers, timeout=300)
         assert accepted.status_code == 202
         gate.set()
         found = _finished(url, accepted.json()["id"])
@@ -146,7 +146,7 @@ def test_jobs_that_wait_for_the_engine_take_no_worker(url: str, engine: FakeOsrm
             for seed in (5, 6, 7)
         ]
         other = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
-        assert httpx.post(f"{url}/front", json=other, timeout=30).status_code == 200
+        assert httpx.post(f"{url}/front", json=other, timeout=300).status_code == 200
         gate.set()
         assert all(_finished(url, id_)["status"] == "done" for id_ in jobs)
 
@@ -208,7 +208,7 @@ def _fails(url: str, engine: FakeOsrm, misbehave: Misbehaviour, status: int, cod
     # Other stops each time, since costs are remembered.
     request = _request(seed=1000 + len(engine.asked))
     with misbehaving(engine, misbehave):
-        problem(httpx.post(f"{url}/front", json=request, timeout=30), status, code)
+        problem(httpx.post(f"{url}/front", json=request, timeout=300), status, code)
         headers = {"Prefer": "respond-async"}
         accepted = httpx.post(f"{url}/front", json=request, headers=headers).json()
         found = _finished(url, accepted["id"])

@@ -245,7 +245,7 @@ def given_up(
     caplog.set_level(logging.INFO)
     with (
         serving(app_of(edge=Edge(metrics=metrics, webhooks=webhooks))) as url,
-        httpx.Client(base_url=url, timeout=60) as client,
+        httpx.Client(base_url=url, timeout=300) as client,
     ):
         later(client, **{"Webhook-Url": f"{origin}/token-of-ours"})
         until_given_up(url)
@@ -285,7 +285,7 @@ def test_a_webhook_goes_by_tls_to_the_host_of_the_certificate(
         webhooks = webhooks_to(*(origin + each for each in LOOPBACK))
         with (
             serving(app_of(edge=Edge(webhooks=webhooks))) as url,
-            httpx.Client(base_url=url, timeout=60) as client,
+            httpx.Client(base_url=url, timeout=300) as client,
         ):
             later(client, **{"Webhook-Url": f"{origin}/x"})
             assert receiver.wait()[0]["type"] == "front.completed"

@@ -25,7 +25,7 @@ REQUEST: dict[str, Any] = {"stops": STOPS, "objectives": OBJECTIVES, "time_limit
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

@@ -52,7 +52,7 @@ def _client(engine: FakeOsrm, seconds: float) -> Iterator[httpx.Client]:
     app = app_of(
         edge=Edge(streets=RoadClient(settings)), limits=replace(LIMITS, roads=True, seconds=5.0)
     )
-    with serving(app) as address, httpx.Client(base_url=address, timeout=30) as client:
+    with serving(app) as address, httpx.Client(base_url=address, timeout=300) as client:
         yield client
 
 

@@ -37,7 +37,7 @@ def url() -> Iterator[str]:
 def test_what_an_answer_leads_to_begins_with_the_path_that_the_proxy_took_away(
     url: str, headers: dict[str, str], root_path: str
 ) -> None:
-    with httpx.Client(base_url=url, headers=headers, timeout=60) as client:
+    with httpx.Client(base_url=url, headers=headers, timeout=300) as client:
         location = ""
         for _ in range(2):
             accepted = client.post("/front", json=BODY, headers=ASYNC)
@@ -89,7 +89,7 @@ def test_a_problem_that_an_earlier_release_stored_stays_as_it_was() -> None:
 def test_a_job_that_failed_says_why_at_the_path_of_who_asks() -> None:
     with (
         serving(app_of(Broken())) as address,
-        httpx.Client(base_url=address, timeout=60) as client,
+        httpx.Client(base_url=address, timeout=300) as client,
     ):
         planned = client.post("/front", json=BODY, headers={**TOURS, "Idempotency-Key": "a"})
         problem(planned, 500, "internal-error", "/tours")
