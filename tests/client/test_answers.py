@@ -47,6 +47,7 @@ MAP: dict[str, Any] = {
     "places": [[0, 0], [2, 1], [2, 0]],
     "paths": True,
 }
+NIGHT = {"robot_speed": 0.5, "departure": 0, "over_the_day": [[[0, 2.0]]]}
 VAN = {"id": "van", "count": 2, "start": "s0", "end": "s0", "capacity": [3], "profile": "van"}
 FLEET: dict[str, Any] = {
     "stops": [
@@ -94,7 +95,7 @@ ASKED: dict[str, tuple[str, dict[str, Any]]] = {
     "day": ("/front", {"stops": STOPS, "objectives": DAY, "departure": 35990}),
     "spread": ("/front", {"stops": STOPS, "objectives": SPREAD}),
     "coverage": ("/coverage", {**MAP, "second_matrix": [row[:3] for row in LEGS[:3]]}),
-    "robots": ("/coverage", {**MAP, "robots": [{"id": "a"}, {"id": "b", "start": 2}]}),
+    "robots": ("/coverage", {**MAP, **NIGHT, "robots": [{"id": "a"}, {"id": "b", "start": 2}]}),
     "fleet": ("/fleet", FLEET),
     "driven": ("/fleet", DRIVEN),
 }
