@@ -61,5 +61,5 @@ def _with_optional_stops(fleet: Fleet) -> Fleet:
         else replace(visit, prize=float(visit.prize is None))
         for stop, visit in enumerate(rules.visits)
     )
-    relaxed = replace(rules, visits=visits, over=("sum", "unassigned"), layers=(0, 1))
+    relaxed = replace(rules, visits=visits, over=("sum", "unassigned"), layers=(0, 1), percents=())
     return fleet.under(relaxed)

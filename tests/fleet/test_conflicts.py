@@ -57,3 +57,12 @@ def test_of_some_stops_those_are_named_that_fit_nowhere() -> None:
     fleet = on_a_line(visits, vehicles=2)
     stops = named(fleet, 0.1)
     assert plan_fleet(without(fleet, stops), FleetOptions(time_limit=0.5)).plans
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_objectives_of_nine_days_in_ten_are_not_in_the_way(place: int) -> None:
+    fleet = on_a_line([Visit(), Visit(), SOON, Visit(), SOON], vehicles=1)
+    percents = tuple(90 if index == place else None for index in range(3))
+    over = ("sum", "max", "sum")
+    rules = replace(fleet.rules, over=over, layers=(0, 0, 0), spread=0.1, percents=percents)
+    assert named(Fleet(rules=rules, costs=fleet.costs), inf) in ([3], [5])
