@@ -14,18 +14,12 @@ from service.files.work import UNITS, TooMuchWork, Work
 from service.requests.multipart import split_files
 from tests.files.hostile import HOSTILE
 from tests.files.xlsx import TABLE, book
+from tests.helpers.pace import seconds_of_loop
 from tests.helpers.serving import LIMITS
 
 # Times as long as a loop takes on this machine: 2.5 s where that is .1 s. They took from 2 to 90 s.
 MOST_LOOPS = 25
 LARGE: dict[str, Any] = {"cities": 10_000, "cells": 2**20, "size": 1000, "body_bytes": 2**24}
-
-
-def seconds_of_loop() -> float:
-    """Return what a loop of a tenth of a second takes on this machine, and now."""
-    begin = time.thread_time()
-    sum(number & 3 for number in range(3_000_000))
-    return time.thread_time() - begin
 
 
 @pytest.mark.parametrize("name", HOSTILE)

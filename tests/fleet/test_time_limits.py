@@ -14,6 +14,9 @@ from service.fleet.plans import FleetFront, Plan
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType, Visit
 from service.watch import Watch
+from tests.helpers.pace import seconds_of_loop
+
+MOST_LOOPS = 4  # times as long as a loop takes on this machine: 0.4 s where that is 0.1 s
 
 
 def fleet_of(n: int, over: tuple[str, str], **visit: float) -> Fleet:
@@ -33,14 +36,14 @@ def test_hundreds_of_stops_are_planned_within_a_tenth_of_a_second(
     watch = Watch[FleetFront](clock=time.process_time)
     fleet = fleet_of(400, over, **({"prize": 20.0} if "unassigned" in over else {}))
     plan_fleet(fleet, FleetOptions(time_limit=0.1), watch=watch)
-    seconds = []
+    loop, seconds = seconds_of_loop(), []
     for _ in range(3):  # beside other programs a processor is slower, and not each time
         began = time.process_time()
         front = plan_fleet(fleet, FleetOptions(time_limit=0.1), watch=watch)
         explain(fleet, front.plans, front.points)
         seconds.append(time.process_time() - began)
         assert all(violations(fleet, plan) == [] for plan in front.plans)
-    assert min(seconds) < 0.4
+    assert min(seconds) < MOST_LOOPS * max(loop, seconds_of_loop())
 
 
 def test_without_time_stops_have_neither_a_price_nor_reasons() -> None:
