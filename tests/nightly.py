@@ -1,8 +1,8 @@
 """`python -m tests.nightly`: run all tests on all their cases, and then the fuzzing by itself.
 
-The suite tries a tenth of the random bodies, kills and crowds, a third of the seeds and a few of
-many cases that are alike, and makes no clients by generators (tests/helpers/sampled.py). Arguments
-are those of pytest, such as `-n 2` or a folder. Exit status 1: something has failed.
+The suite tries a tenth of the random bodies, kills and crowds, a third or a sixth of the seeds and
+a few of many cases that are alike, and makes no clients by generators (tests/helpers/sampled.py).
+Arguments are those of pytest, such as `-n 2` or a folder. Exit status 1: something has failed.
 """
 
 import os

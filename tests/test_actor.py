@@ -3,6 +3,7 @@
 import hashlib
 import json
 import time
+from functools import cache
 from pathlib import Path
 from threading import Timer
 
@@ -149,11 +150,16 @@ DEGENERATE = {
 }
 
 
+@cache
+def released_actor(name: str) -> OnnxActor:
+    return OnnxActor(RELEASED.with_name(f"{name}.onnx"), threads=1)
+
+
 @pytest.mark.parametrize("name", ["pa-one", "pa-one-matrix", "pa-ad", "pa-at", "pa-ean"])
 @pytest.mark.parametrize("cities", DEGENERATE.values(), ids=DEGENERATE)
 @pytest.mark.parametrize("kind", ["coordinates", "matrices"])
 def test_zero_costs_are_planned_like_any_others(name: str, cities: np.ndarray, kind: str) -> None:
-    actor = OnnxActor(RELEASED.with_name(f"{name}.onnx"), threads=1)
+    actor = released_actor(name)
     instance = Instance(coordinates=cities)
     if kind == "matrices":
         instance = Instance(matrices=instance.scaled_matrices)

@@ -20,7 +20,7 @@ from service.preferences import fan, spread
 from service.search.warm_up import warm_up
 from service.settings import Settings
 from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth, third
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -97,7 +97,7 @@ def test_no_front_is_better_than_brute_force(actor: OnnxActor, n: int) -> None:
 
 
 def test_open_routes_equal_brute_force_on_200_instances(actor: OnnxActor) -> None:
-    for seed in range(third(200)):
+    for seed in range(sixth(200)):
         n, kind, ends = 3 + seed % 7, KINDS[seed % 3], ENDS[seed % 4]
         instance = opened(small_integers(kind, n, seed), ends, seed)
         options = PlanOptions(directions=spread(5), size=1000, time_limit=1.0)

@@ -20,7 +20,7 @@ from service.fleet.rules import Rules
 from service.fleet.schedule import schedule
 from service.fleet.vehicles import Shipment, VehicleType, Visit
 from tests.helpers.fleets import best_times, bounded_fleet, every_plan, random_fleet
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth
 
 FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))
 LINE = np.abs(np.subtract.outer([0.0, 1, 2, 3, 4], [0.0, 1, 2, 3, 4]))
@@ -81,7 +81,7 @@ def test_a_vehicle_leaves_as_late_as_its_end_allows() -> None:
     assert times.duration == 6
 
 
-@pytest.mark.parametrize("seed", range(third(150)))
+@pytest.mark.parametrize("seed", range(sixth(150)))
 def test_times_agree_with_trying_every_departure(seed: int) -> None:
     fleet = random_fleet(seed)
     if fleet.rules.clock is None:
@@ -95,7 +95,7 @@ def test_times_agree_with_trying_every_departure(seed: int) -> None:
             assert (times.end, times.lateness, times.arrivals[0]) == expected
 
 
-@pytest.mark.parametrize("seed", range(third(140)))
+@pytest.mark.parametrize("seed", range(sixth(140)))
 def test_times_with_all_bounds_agree_with_trying_every_departure_and_window(seed: int) -> None:
     fleet = bounded_fleet(seed)
     plans = list(islice(every_plan(fleet.rules), 3000))
@@ -130,7 +130,7 @@ def carried(fleet: Fleet, route: Route) -> float:
     return total
 
 
-@pytest.mark.parametrize("seed", range(third(60)))
+@pytest.mark.parametrize("seed", range(sixth(60)))
 def test_the_load_distance_is_that_of_the_orders_on_board(seed: int) -> None:
     fleet = bounded_fleet(seed)
     plans = list(islice(every_plan(fleet.rules), 3000))

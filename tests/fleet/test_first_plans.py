@@ -18,7 +18,7 @@ from service.fleet.vehicles import Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.helpers.fleet_days import day_fleet
 from tests.helpers.fleets import Point, every_plan, hull_corners, random_fleet
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth
 
 
 def cut(fleet: Fleet, *sequences: Indices) -> list[Plan]:
@@ -45,7 +45,7 @@ def without_shipments(seed: int) -> Fleet:
     return Fleet(rules=dataclasses.replace(fleet.rules, shipments=()), costs=fleet.costs)
 
 
-@pytest.mark.parametrize("seed", range(third(80)))
+@pytest.mark.parametrize("seed", range(sixth(80)))
 def test_cuts_have_the_front_of_all_plans_that_follow_the_sequence(seed: int) -> None:
     fleet = without_shipments(seed)
     sequence = np.random.default_rng(seed).permutation(fleet.rules.clients)
@@ -120,7 +120,7 @@ def test_what_cannot_be_cut_is_refused() -> None:
 
 def test_whatever_breaks_a_rule_over_the_day_breaks_it_at_the_greatest_times() -> None:
     planned = 0
-    for seed in range(third(60)):
+    for seed in range(sixth(60)):
         fleet = day_fleet(seed)
         *_, slowest = without_changes(fleet)
         try:

@@ -15,7 +15,7 @@ from service.fleet.plans import Plan, Route
 from service.fleet.rules import Rules
 from service.fleet.vehicles import VehicleType, Visit
 from tests.helpers.fleets import bounded_fleet, exact_front
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth
 
 
 def insertions(fleet: Fleet, plan: Plan, stop: int) -> Iterator[Plan]:
@@ -33,7 +33,7 @@ def insertions(fleet: Fleet, plan: Plan, stop: int) -> Iterator[Plan]:
             yield Plan((*plan.routes, Route(vehicle, (*first, stop))))
 
 
-@pytest.mark.parametrize("seed", range(third(60)))
+@pytest.mark.parametrize("seed", range(sixth(60)))
 def test_a_stop_left_out_has_a_price_if_a_plan_can_serve_it_and_reasons_if_none(seed: int) -> None:
     fleet = bounded_fleet(seed)
     if not exact_front(fleet):

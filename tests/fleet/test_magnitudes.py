@@ -19,12 +19,13 @@ from service.fleet.vehicles import ALWAYS, Shipment, VehicleType, Visit
 from service.pareto import nondominated
 from tests.fleet.test_outliers import AnyOrder
 from tests.helpers.fleets import share_of_front
-from tests.helpers.sampled import few, third
+from tests.helpers.sampled import few
 
 BRIEF = FleetOptions(time_limit=inf, iterations=400)
 MODERATE = 1e5
 HUGE = [1e8, 1e12]
 OVERS: list[tuple[Over, Over]] = [("sum", "sum"), ("sum", "max")]
+OF_HUGE = list(zip(OVERS, HUGE, strict=True))
 
 
 def van(**members: object) -> VehicleType:
@@ -40,7 +41,7 @@ def prized_fleet(over: tuple[Over, Over], huge: float, fixed: float) -> Fleet:
     return Fleet(rules=Rules(visits=visits, vehicles=vehicles, over=over), costs=costs)
 
 
-@pytest.mark.parametrize(("over", "huge"), list(zip(OVERS, HUGE, strict=True)))
+@pytest.mark.parametrize(("over", "huge"), few(1, OF_HUGE))
 def test_a_huge_prize_means_as_good_a_front_as_a_moderate_one(
     over: tuple[Over, Over], huge: float
 ) -> None:
@@ -48,7 +49,7 @@ def test_a_huge_prize_means_as_good_a_front_as_a_moderate_one(
     assert share_of_front(twin, found) == pytest.approx(1.0, abs=0.03)
 
 
-@pytest.mark.parametrize(("over", "huge"), list(zip(OVERS, HUGE, strict=True)))
+@pytest.mark.parametrize(("over", "huge"), few(1, OF_HUGE[::-1]))
 def test_a_vehicle_of_huge_fixed_cost_is_used_where_it_is_needed_alone(
     over: tuple[Over, Over], huge: float
 ) -> None:
@@ -107,7 +108,7 @@ def clusters(seed: int, bridge: float, over: tuple[Over, Over]) -> Fleet:
     return Fleet(rules=rules, costs=costs)
 
 
-@pytest.mark.parametrize(("seed", "bridge"), few(2, [(0, 1e9), (1, 1e6), (0, 1e4)]))
+@pytest.mark.parametrize(("seed", "bridge"), few(1, [(0, 1e9), (1, 1e6), (0, 1e4)]))
 def test_clusters_far_apart_are_planned_at_true_lengths(seed: int, bridge: float) -> None:
     fleet = clusters(seed, bridge, ("sum", "sum"))
     front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=1_500))
@@ -166,10 +167,10 @@ def misses(fleet: Fleet, iterations: int) -> bool:
     return not np.allclose(points.min(axis=0), best, rtol=1e-12)
 
 
-@pytest.mark.parametrize("first", few(1, range(0, 40, 20)))
-def test_the_search_finds_both_ends_of_fronts_whose_numbers_are_far_apart(first: int) -> None:
-    missed = [s for s in range(first, first + 20) if misses(spread_fleet(s), 300)]
-    assert len(missed) <= 4, missed
+def test_the_search_finds_both_ends_of_fronts_whose_numbers_are_far_apart() -> None:
+    seeds = few(10, range(40))
+    missed = [s for s in seeds if misses(spread_fleet(s), 300)]
+    assert len(missed) <= len(seeds) // 5, missed
 
 
 @pytest.mark.parametrize(("over", "kind"), list(zip(OVERS, ("null", "huge"), strict=True)))
@@ -190,7 +191,7 @@ def test_five_hundred_stops_with_a_tenth_of_all_legs_closed_are_planned(
     assert (front.points < 1e6).all()
 
 
-@pytest.mark.parametrize("seed", range(third(12)))
+@pytest.mark.parametrize("seed", few(3, range(12)))
 def test_what_was_answered_is_accepted_as_the_longest_route_and_the_shift(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n, clock = 10, (None, 0, 1)[seed % 3]

@@ -25,7 +25,7 @@ from service.instance import Instance
 from service.pareto import nondominated
 from service.watch import Watch
 from tests.helpers.fleets import exact_front, random_fleet
-from tests.helpers.sampled import few, tenth, third
+from tests.helpers.sampled import few, sixth, tenth
 
 VAN = VehicleType(start=0, end=0, count=2, capacity=(9,))
 ITERATIONS = 300
@@ -44,7 +44,7 @@ def with_costs(seed: int, n: int, over: tuple[str, str]) -> Fleet:
 
 
 @pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max"), ("max", "sum")])
-@pytest.mark.parametrize("seed", range(third(8)))
+@pytest.mark.parametrize("seed", range(sixth(8)))
 def test_a_few_stops_of_any_costs_give_the_front_of_all_plans(
     seed: int, over: tuple[str, str]
 ) -> None:
@@ -82,7 +82,7 @@ def front_with_one_leg(cost: float) -> FleetFront:
     return plan_fleet(Fleet(rules=rules, costs=costs), options)
 
 
-@pytest.mark.parametrize("cost", [1e6, 2147483647.0, 1e12, 1e200])
+@pytest.mark.parametrize("cost", few(2, [2147483647.0, 1e200, 1e6, 1e12]))
 def test_one_leg_coded_as_a_big_number_makes_no_plan_longer(cost: float) -> None:
     known, found = front_with_one_leg(inf), front_with_one_leg(cost)
     assert (found.points.min(axis=0) <= 1.03 * known.points.min(axis=0)).all()
@@ -105,7 +105,7 @@ def test_a_stop_without_a_way_is_named() -> None:
         plan_fleet(Fleet(rules=rules, costs=costs), FleetOptions(time_limit=1))
 
 
-@pytest.mark.parametrize("seed", few(2, range(12)))
+@pytest.mark.parametrize("seed", few(1, range(12)))
 def test_a_tight_capacity_hides_neither_end_of_two_sums(seed: int) -> None:
     rng = np.random.default_rng(seed)
     costs = rng.integers(1, 100, (2, 8, 8)).astype(float)
@@ -138,7 +138,7 @@ def test_no_plan_takes_a_forbidden_leg_without_time_either() -> None:
     assert not any(violations(fleet, plan) for plan in front.plans)
 
 
-@pytest.mark.parametrize("seed", range(third(40)))
+@pytest.mark.parametrize("seed", range(sixth(40)))
 def test_what_was_answered_is_accepted_as_windows(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n = 9

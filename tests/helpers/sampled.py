@@ -25,6 +25,11 @@ def third(count: int) -> int:
     return count if IS_WHOLE else max(1, count // 3)
 
 
+def sixth(count: int) -> int:
+    """Return a sixth of a number of seeds that take long, or by night all of them."""
+    return count if IS_WHOLE else max(1, count // 6)
+
+
 def few(count: int, cases: Collection[Case]) -> list[Case]:
     """Return the first of some cases, or by night all of them."""
     return list(cases if IS_WHOLE else islice(cases, count))

@@ -22,7 +22,7 @@ from tests.helpers.fleets import (
     tidy_fleet,
     waiting_fleet,
 )
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth
 
 SLOTS: tuple[Span, ...] = ((0.0, 10.0), (8.0, 8.0), (15.0, 30.0), (40.0, 45.0), (60.0, 100.0))
 
@@ -60,7 +60,7 @@ def some_plans(fleet: Fleet, order: int) -> list[Plan]:
 MAKERS = (random_fleet, bounded_fleet, mixed_fleet, waiting_fleet, tidy_fleet, taking_fleet)
 
 
-@pytest.mark.parametrize("seed", range(third(40)))
+@pytest.mark.parametrize("seed", range(sixth(40)))
 @pytest.mark.parametrize("make", MAKERS)
 def test_offers_are_those_of_every_place_in_every_slot(make: object, seed: int) -> None:
     fleet = make(seed)  # type: ignore[operator]

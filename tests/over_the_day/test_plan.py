@@ -18,7 +18,7 @@ from service.replanning.earlier_tours import EarlierTours
 from service.replanning.replan import replan
 from tests.helpers.actors import Shuffler
 from tests.helpers.days import arrival, lengths_of, random_costs, random_day, tours_of
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth
 
 ROUNDING = 1e-9
 
@@ -49,7 +49,7 @@ def distinct(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array(kept)
 
 
-@pytest.mark.parametrize("seed", range(third(40)))
+@pytest.mark.parametrize("seed", range(sixth(40)))
 def test_the_front_of_a_few_stops_is_that_of_all_tours(seed: int) -> None:
     rng = np.random.default_rng(seed)
     day = random_day(rng, int(rng.integers(1, 7)), objectives=int(rng.integers(2, 4)))
@@ -60,7 +60,7 @@ def test_the_front_of_a_few_stops_is_that_of_all_tours(seed: int) -> None:
     assert front.terminated == "converged"
 
 
-@pytest.mark.parametrize("seed", range(third(20)))
+@pytest.mark.parametrize("seed", range(sixth(20)))
 def test_of_a_range_each_tour_has_the_departure_after_which_it_takes_least(seed: int) -> None:
     rng = np.random.default_rng(seed)
     day = random_day(rng, int(rng.integers(2, 6)), width=50.0)
@@ -74,7 +74,7 @@ def test_of_a_range_each_tour_has_the_departure_after_which_it_takes_least(seed:
         assert point[day.clock] <= min(seconds) + ROUNDING
 
 
-@pytest.mark.parametrize("seed", range(third(10)))
+@pytest.mark.parametrize("seed", range(sixth(10)))
 def test_of_many_stops_all_is_as_if_driven_step_by_step(seed: int) -> None:
     rng = np.random.default_rng(seed)
     day = random_day(rng, 12, objectives=2 + seed % 3, width=30.0 * (seed % 2))
@@ -93,7 +93,7 @@ def test_of_many_stops_all_is_as_if_driven_step_by_step(seed: int) -> None:
     assert len(distinct(front.points)) == len(front.points)
 
 
-@pytest.mark.parametrize("seed", range(third(20)))
+@pytest.mark.parametrize("seed", range(sixth(20)))
 def test_who_leaves_later_never_arrives_earlier(seed: int) -> None:
     rng = np.random.default_rng(seed)
     day = random_day(rng, 6)

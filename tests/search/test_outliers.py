@@ -15,7 +15,7 @@ from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import improve
 from service.watch import Watch
 from tests.helpers.instances import ENDS, every_tour, no_tours, opened
-from tests.helpers.sampled import third
+from tests.helpers.sampled import few, sixth
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -49,7 +49,7 @@ def exact_front(instance: Instance) -> Array:
     return points[nondominated(points)]
 
 
-@pytest.mark.parametrize("block", range(10))
+@pytest.mark.parametrize("block", few(4, range(10)))
 def test_up_to_seven_cities_of_any_costs_give_the_front_of_all_tours(block: int) -> None:
     for seed in range(100 * block, 100 * (block + 1)):
         instance = drawn(seed, 1 + seed % 7)
@@ -62,7 +62,7 @@ def test_up_to_seven_cities_of_any_costs_give_the_front_of_all_tours(block: int)
             is_level(found.points, known)
 
 
-@pytest.mark.parametrize("seed", range(third(8)))
+@pytest.mark.parametrize("seed", range(sixth(8)))
 def test_eight_and_nine_cities_of_any_costs_give_the_front_of_all_tours(seed: int) -> None:
     instance = replace(drawn(4 * seed + 3, 8 + seed % 2), closed=True, start=None, end=None)
     found = improve(instance, no_tours(instance.n))
@@ -95,7 +95,7 @@ def shortest(costs: Array, instance: Instance) -> float:
     return float(reached[-1].min() if instance.end is None else reached[-1, instance.end])
 
 
-@pytest.mark.parametrize("seed", range(third(24)))
+@pytest.mark.parametrize("seed", range(sixth(24)))
 def test_ten_and_eleven_cities_of_any_costs_give_the_shortest_tours(seed: int) -> None:
     instance = drawn(seed + 5_000, 10 + seed % 2)
     found = improve(instance, no_tours(instance.n))
@@ -129,7 +129,7 @@ def usual_front() -> Array:
     return improve(with_big_leg(10, np.inf), no_tours(10)).points
 
 
-@pytest.mark.parametrize("seed", range(third(6)))
+@pytest.mark.parametrize("seed", range(sixth(6)))
 def test_forty_cities_with_big_or_forbidden_legs_are_planned_as_well_as_with_small_ones(
     seed: int,
 ) -> None:
@@ -197,7 +197,7 @@ def test_the_network_plans_the_others_as_if_the_far_city_was_nearer(kind: str) -
     assert lengths[1] < 1.1 * lengths[0]
 
 
-@pytest.mark.parametrize("seed", range(third(8)))
+@pytest.mark.parametrize("seed", range(sixth(8)))
 def test_a_bound_is_above_what_is_found_of_costs_of_any_size(seed: int) -> None:
     instance = drawn(seed + 9_000, 13)
     found = improve(instance, no_tours(13), watch=Watch(0.3))
@@ -239,7 +239,7 @@ def test_enumeration_stops_in_time_and_keeps_what_it_found(
 def test_legs_that_cost_ten_thousand_times_as_much_hide_few_tours_without_them() -> None:
     """Under one objective: then tours with such a leg are on the front, far from all others."""
     missed = 0
-    for seed in range(third(8)):
+    for seed in range(sixth(8)):
         rng = np.random.default_rng(seed)
         costs = rng.integers(10, 1000, (2, 13, 13)).astype(float)
         big = rng.random((13, 13)) < 0.15
