@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fastapi import APIRouter
+from paretour.plans import FleetFront, RobotFront
+from paretour.values import Front
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.answers import CoverageAnswer, FleetAnswer, FrontAnswer, RobotsAnswer
+from service.api.answers import CoverageAnswer
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import BodyAllowance, BodyBudget
@@ -76,12 +78,12 @@ class PlanRoutes:
         }
         with_roads = {200: FRONT_CONTENT, **problem_responses(502)}
         of_earlier = {**with_roads, **problem_responses(404, 409, 410)}
-        of_map, rest = CoverageAnswer | RobotsAnswer, FrontAnswer | CoverageAnswer | FleetAnswer
+        of_map, rest = CoverageAnswer | RobotFront, Front | CoverageAnswer | FleetFront
         for path, endpoint, answer, body, more in (
-            ("/front", self.plan_front, FrontAnswer, FRONT_BODY, with_roads),
+            ("/front", self.plan_front, Front, FRONT_BODY, with_roads),
             ("/coverage", self.plan_coverage, of_map, COVERAGE_BODY, {}),
             ("/front/{id}/replan", self.replan_front, rest, REPLAN_BODY, of_earlier),
-            ("/fleet", self.plan_fleet, FleetAnswer, FLEET_BODY, with_roads),
+            ("/fleet", self.plan_fleet, FleetFront, FLEET_BODY, with_roads),
         ):
             router.post(
                 path,

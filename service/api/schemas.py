@@ -10,32 +10,46 @@ from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.described import SCHEMAS, Shape, sentence_on
-from paretour.fronts import Objective
+from paretour.described import SCHEMAS, Shape, name_of, sentence_on
+from paretour.fronts import FleetObjective, StoredFront
 from paretour.listing import ListedFront
-from paretour.offers import Offers
-from paretour.plans import FleetPlan, Reason
+from paretour.plans import FleetFront, FleetPlan, Reason
+from paretour.ros.paths import Pairs
+from paretour.values import ActorName, CoverageItem, Front, TourItem
 from pydantic import BaseModel, create_model
 from pydantic import Field as Described
 from pydantic.json_schema import SkipJsonSchema
 
-from service.api.answers import FleetObjective
-from service.fleet.measures.table import MEASURES
-from service.fleet.rules import Rule
+from service.api.answers import CoverageAnswer
+from service.api.problem import Problem
+from service.fleet.measures.table import MEASURES, Measure
+from service.fleet.rules import Over, Rule
+from service.front import Termination
 from service.jobs.record import Status
 from service.objectives import MOST_OBJECTIVES, OBJECTIVES
+from service.requests.stop_fields import NamedStop
 from service.requests.task import KindName
 
 _UNIONS = (Union, UnionType)
-_WHOLE = "document"  # a field of the client's that holds the answer itself
+_OF_MAPS = ("places", "uncovered")  # which only answers of fronts over maps have
 _NUMBERS = {NDArray[np.float64]: float, NDArray[np.int64]: int}
 # The client takes whatever later services may send.
 _NARROWER: Mapping[tuple[type, str], Any] = {
+    (StoredFront, "status"): Status,
+    (StoredFront, "problem"): Problem | None,
+    (StoredFront, "kind"): KindName,
+    (StoredFront, "actor"): ActorName | None,
+    (StoredFront, "terminated"): Termination | None,
+    (StoredFront, "request_stops"): tuple[NamedStop, ...] | None,
+    (FleetFront, "request_stops"): tuple[NamedStop, ...],
+    (Front, "items"): tuple[TourItem, ...],
+    (CoverageAnswer, "items"): tuple[CoverageItem, ...],
+    (CoverageAnswer, "places"): Pairs,
+    (FleetObjective, "over"): Over,
+    (FleetObjective, "measure"): Measure | None,
     (ListedFront, "status"): Status,
     (ListedFront, "kind"): KindName,
-    (ListedFront, "objectives"): tuple[FleetObjective | Objective, ...] | None,
     (Reason, "rule"): Rule,
-    (Offers, "objectives"): tuple[FleetObjective, ...],
 }
 _MORE: Mapping[tuple[type, str], str] = {(FleetPlan, "measures"): f": {', '.join(MEASURES)}"}
 
@@ -79,17 +93,19 @@ def _list(of: Any, least: int, most: int) -> Any:
 def _model(cls: Any) -> type[BaseModel]:
     """Return the model of an object."""
     hints = get_type_hints(cls, include_extras=True)
+    without = ("", *(_OF_MAPS if cls is Front else ()))
     members: dict[str, Any] = {
-        each.name: _member(cls, each, hints[each.name])
+        name: _member(cls, each, hints[each.name])
         for each in fields(cls)
-        if each.name != _WHOLE
+        if (name := name_of(each)) not in without
     }
     return create_model(SCHEMAS[cls], __doc__=sentence_on(cls), **members)
 
 
 def _member(cls: type, field: Field[Any], of: Any) -> tuple[Any, Any]:
     """Return the type of a member, and how it is described."""
-    of = _NARROWER.get((cls, field.name), of)
+    for each in reversed(cls.__mro__):
+        of = _NARROWER.get((each, field.name), of)
     sentence = field.metadata.get("sentence", "") + _MORE.get((cls, field.name), "")
     has_default = field.default is not MISSING or field.default_factory is not MISSING
     if field.metadata.get("always") or not (has_default or NoneType in get_args(of)):

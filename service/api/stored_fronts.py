@@ -4,11 +4,12 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
-from paretour.values import Tour
+from paretour.plans import FleetFront, RobotFront
+from paretour.values import Front, Tour
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from service.api.answers import FleetAnswer, FrontAnswer, FrontsAnswer, RobotsAnswer
+from service.api.answers import FrontsAnswer
 from service.api.auth import caller_of, owner_of
 from service.api.front_events import PARAMETERS, Seen, events_after
 from service.api.geojson.answers import CONTENT, FRONT_CONTENT, FrontAnswers
@@ -63,12 +64,12 @@ class StoredFrontRoutes:
         )(self.list_fronts)
         router.get(
             "/front/{id}",
-            response_model=documented(FrontAnswer | FleetAnswer | RobotsAnswer),
+            response_model=documented(Front | FleetFront | RobotFront),
             responses={200: FRONT_CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.get_front)
         router.delete(
             "/front/{id}",
-            response_model=documented(FrontAnswer | FleetAnswer | RobotsAnswer),
+            response_model=documented(Front | FleetFront | RobotFront),
             responses={204: {"description": "Forgotten"}, **missing},
         )(self.forget_front)
         router.get(

@@ -1,9 +1,9 @@
 """A front as JSON: the one form in which it is sent between processes, stored and answered.
 
-To add a member to the answer, declare it in `service/api/answers.py`, add a field to
-`FrontDocument`, and fill it in where documents are written: `empty_document` in `table`,
-`tour_document`, `fleet` and `robots`. Stores, engines and routes pass on all members without
-knowing them. A field that earlier releases did not store needs a default.
+To add a member to the answer, declare it in the client, on `StoredFront` or on a front of one kind,
+add a field to `FrontDocument`, and fill it in where documents are written: `empty_document` in
+`table`, `tour_document`, `fleet` and `robots`. Stores, engines and routes pass on all members
+without knowing them. A field that earlier releases did not store needs a default.
 """
 
 from array import array
@@ -31,8 +31,8 @@ PATH_PART = 2**14  # cells of a path that are written at once
 class FrontDocument:
     """A front of m tours as JSON.
 
-    All fields but the last four are members of the answer, in this order; `service/api/answers.py`
-    says what each is. A member whose default is None is left out while it is None.
+    All fields but the last four are members of the answer, in this order; the client's fronts say
+    what each is. A member whose default is None is left out while it is None.
 
     Attributes:
         tours: The JSON of all tours, separated by commas, without brackets.

@@ -8,9 +8,8 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from paretour import Client
+from paretour import Client, RobotFront
 
-from service.api.answers import RobotsAnswer
 from service.api.schemas import documented
 from tests.api.test_cost_layers import costs_of
 from tests.api.test_plan_coverage import GRID, PLACES
@@ -167,7 +166,7 @@ def test_several_robots_drive_through_the_same_day(
 ) -> None:
     request = {**REQUEST, "robots": ROBOTS, "over": ["max", "sum"], **more}
     answer = plan(client, request)
-    documented(RobotsAnswer).model_validate(answer)
+    documented(RobotFront).model_validate(answer)
     assert [each["unit"] for each in answer["objectives"]] == ["s", None]
     for each in answer["front"]:
         lengths = []

@@ -7,8 +7,8 @@ from typing import Any
 
 import httpx
 import pytest
+from paretour import RobotFront
 
-from service.api.answers import RobotsAnswer
 from service.api.schemas import documented
 from tests.api.test_plan_coverage import GRID, PLACES, png
 from tests.helpers.robot_plans import check_answer
@@ -43,7 +43,7 @@ def test_robots_share_the_places_of_a_map(answer: dict[str, Any]) -> None:
     ]
     assert (answer["cities"], answer["places"]) == (5, PLACES)
     assert {"survey", "improvement", "paths", "total"} <= answer["timings_ms"].keys()
-    documented(RobotsAnswer).model_validate(answer)
+    documented(RobotFront).model_validate(answer)
 
 
 def test_paths_come_only_where_they_are_asked_for(client: httpx.Client) -> None:

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
-from paretour.fronts import Objective, RequestNote
+from paretour.fronts import FleetObjective, Objective, RequestNote
 from paretour.kinds import FrontOfAnyKind
 from paretour.library import (
     InstanceFailed,
@@ -64,6 +64,7 @@ __all__ = [
     "Client",
     "CoverageRequest",
     "FleetFront",
+    "FleetObjective",
     "FleetPlan",
     "FleetRequest",
     "FleetRoute",

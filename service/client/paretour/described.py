@@ -67,7 +67,9 @@ def shape_of(of: Any) -> tuple[Any, Shape] | None:
     return None
 
 
-def member(sentence: str = "", *, default: Any = MISSING, always: bool = False) -> Any:
+def member(
+    sentence: str = "", *, default: Any = MISSING, always: bool = False, named: str | None = None
+) -> Any:
     """Declare a member.
 
     It is optional where it has a default, or may be None.
@@ -77,15 +79,34 @@ def member(sentence: str = "", *, default: Any = MISSING, always: bool = False) 
         default: Its value where it is missing.
         always: Whether the service always sends it all the same, if only as null. The default is
             for earlier services.
+        named: Its name in answers, if that is another than the attribute's; "" if it has none.
     """
-    metadata = {"sentence": sentence, "always": always}
+    metadata = {"sentence": sentence, "always": always, "named": named}
     if default == {}:
         return field(default_factory=dict, metadata=metadata)
     return field(default=default, metadata=metadata)
 
 
+def of_each(name: str, item: Any = None) -> Any:
+    """Declare an attribute that has a member of each item of a front.
+
+    Args:
+        name: The name of the member.
+        item: The class of the items, which says what the member is.
+    """
+    declared = () if item is None else fields(item)
+    said = [f"of each, {it.metadata['sentence']}" for it in declared if it.name == name]
+    return field(default=None, metadata={"sentence": "".join(said), "named": "", "of_each": name})
+
+
+def name_of(declared: Field[Any]) -> str:
+    """Return the name of a member in answers; "" if it is in none."""
+    named: str | None = declared.metadata.get("named")
+    return declared.name if named is None else named
+
+
 @dataclass_transform(
-    kw_only_default=True, frozen_default=True, eq_default=False, field_specifiers=(member,)
+    kw_only_default=True, frozen_default=True, eq_default=False, field_specifiers=(member, of_each)
 )
 def answer(schema: str, *, eq: bool = False, kw_only: bool = True) -> Callable[[type[T]], type[T]]:
     """Return a decorator of a class whose values are objects of an answer: frozen dataclasses.

@@ -11,15 +11,15 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, fields
 from datetime import datetime
-from functools import cache
+from functools import cache, partial
 from itertools import chain
 from reprlib import Repr
-from types import NoneType
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.described import Shape, shape_of
+from paretour.described import Shape, name_of, shape_of
 
 T = TypeVar("T")
 Read = Callable[[Any, str], T]  # from a value and its name in sentences to the value as its type
@@ -214,7 +214,7 @@ def optional_column(
     """
     if not items or items[0].document.get(name) is None:
         return None
-    [(of, shaped)] = [(of, shaped) for field, of, shaped in _fields(cls) if field.name == name]
+    [(of, shaped)] = [(of, shaped) for field, _, of, shaped in _fields(cls) if field.name == name]
     if float in (of, *get_args(of)):
         return column(items, name)
     if shaped and shaped[0] in _ARRAYS and len(shaped[1].sizes) == 1:
@@ -291,25 +291,33 @@ def value_of(cls: type[T], **own: Read[Any]) -> Read[T]:
         cls: The dataclass.
         **own: Readers of fields that need others than these.
     """
+    return lambda value, where: read_rest(cls, members(value, where), {}, **own)
 
-    def read(value: Any, where: str) -> T:
-        found, known = members(value, where), dict[str, Any]()
-        for field, of, shaped in _fields(cls):
-            if _has_default(field) and found.document.get(field.name) is None:
-                continue
-            by = own.get(field.name) or (_shaped(*shaped, known) if shaped else _reader(of))
-            may_be_none = NoneType in get_args(of)
-            known[field.name] = (found.maybe if may_be_none else found.read)(field.name, by)
-        return cls(**known)
 
-    return read
+def read_rest(cls: type[T], found: Members, known: dict[str, Any], **own: Read[Any]) -> T:
+    """Return an object as a value of a dataclass, as `value_of` does, some of which is known.
+
+    Args:
+        cls: The dataclass.
+        found: The members of the object.
+        known: The attributes that have been read.
+        **own: As of `value_of`.
+    """
+    for field, name, of, shaped in _fields(cls):
+        absent = _has_default(field) and found.document.get(name) is None
+        if absent or field.name in known:
+            continue
+        by = own.get(field.name) or (_shaped(*shaped, known) if shaped else _reader(of))
+        known[field.name] = (found.maybe if NoneType in get_args(of) else found.read)(name, by)
+    return cls(**known)
 
 
 @cache
-def _fields(cls: Any) -> list[tuple[Field[Any], Any, tuple[Any, Shape] | None]]:
-    """Return the fields of a dataclass, each with its type, and what that has a shape of."""
+def _fields(cls: Any) -> list[tuple[Field[Any], str, Any, tuple[Any, Shape] | None]]:
+    """Return the members of a dataclass: each field, its name in answers, its type and shape."""
     types = get_type_hints(cls, include_extras=True)
-    return [(field, types[field.name], shape_of(types[field.name])) for field in fields(cls)]
+    named = [(field, name_of(field), types[field.name]) for field in fields(cls)]
+    return [(field, name, of, shape_of(of)) for field, name, of in named if name]
 
 
 def _has_default(field: Field[Any]) -> bool:
@@ -322,9 +330,19 @@ def _reader(of: Any) -> Read[Any]:
     if of in _OF_TYPES:
         return _OF_TYPES[of]
     [part, *more] = [part for part in get_args(of) if part is not NoneType] or [of]
+    if more and get_origin(of) in (Union, UnionType):
+        return partial(_either, (_reader(part), _reader(more[0])))
     if get_origin(of) is tuple:
         return each(_reader(part), None if more == [Ellipsis] else 1 + len(more))
     return value_of(of) if part is of else _reader(part)
+
+
+def _either(readers: tuple[Read[Any], Read[Any]], value: Any, where: str) -> Any:
+    """Read what the first of two readers does not as the second one does."""
+    try:
+        return readers[0](value, where)
+    except UnexpectedAnswer:
+        return readers[1](value, where)
 
 
 def _shaped(of: Any, shape: Shape, known: Mapping[str, Any]) -> Read[Any]:

@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 
 from paretour import display
 from paretour.choice import losses
-from paretour.described import Array, answer, member
+from paretour.described import Array, Lengths, answer, member, of_each
 from paretour.questions import OPTIONS, QUESTIONS, Question, ask
 from paretour.text_sets import label, text_set, unnamed
 
@@ -28,6 +28,14 @@ class Objective:
         return label(self.name, self.unit)
 
 
+@answer("FleetObjectiveName", eq=True, kw_only=False)
+class FleetObjective(Objective):
+    """An objective of a fleet's front."""
+
+    over: str = member("whether the routes of a plan are added, or the longest counts")
+    measure: str | None = member("of plans, if it is not of costs", default=None)
+
+
 @answer("RequestNote", eq=True, kw_only=False)
 class RequestNote:
     """A note on a request that was planned: something in it is likely to be a mistake."""
@@ -43,34 +51,48 @@ class RequestNote:
 class StoredFront(Generic[Item]):
     """A front of any kind, in order of the first length of its k tours or plans.
 
-    `len(front)` is k, `front[i]` its i-th tour or plan, and `for` goes through all of them.
-
-    Attributes:
-        id: The id under which the service stores the front; empty if no service planned it.
-        status: The status of its job: queued, running, done, cancelled or failed.
-        lengths: The lengths of each tour or plan, shape (k, m).
-        points: The number of nondominated ones found; the front is a subset of these.
-        hypervolume: The share of the box at the reference point that these k dominate.
-        reference_point: The reference point of the hypervolume, shape (m,); None while it is not
-            known.
-        terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or a word of a
-            later service; None while it runs. `converged` proves that nothing is better only up to
-            eleven cities.
-        document: The whole answer, with every member.
-        objectives: The objectives, if the request named them.
-        notes: What is likely to be a mistake in the request.
+    `len(front)` is k, `front[i]` its i-th tour or plan, and `for` goes through all of them. The
+    `lengths` of all are an array, shape (k, m). The `status` is queued, running, done, cancelled or
+    failed. The `id` is empty if no service planned the front.
     """
 
     id: str
     status: str
-    lengths: Array
-    points: int
-    hypervolume: float
-    reference_point: Array | None
-    terminated: str | None
-    document: Mapping[str, Any]
-    objectives: tuple[Objective, ...] | None = None
-    notes: tuple[RequestNote, ...] = ()
+    problem: Mapping[str, Any] | None = member("why it failed")
+    kind: str | None = member("front, coverage, fleet or robots: what was planned")
+    cities: int
+    items: Sequence[Item] = member(named="front")
+    points: int = member("nondominated points found; front holds at most `size`")
+    hypervolume: float = member("of the front returned, 0 to 1")
+    hypervolume_bound: float | None = member(
+        "an upper bound for every front of this instance, if `bound` is true", always=True
+    )
+    reference_point: Lengths | None = member(
+        "null, like the scale, until the costs are measured", always=True
+    )
+    scale: Lengths | None = member(always=True)
+    actor: str | None = member("null where no network built tours, or none yet", always=True)
+    timings_ms: Mapping[str, float] = member(
+        "milliseconds of each phase of planning; once it has ended, first those in the queue, and"
+        " last all since the request"
+    )
+    terminated: str | None = member(
+        "how the search ended, null while it goes on. `converged`: up to eleven cities"
+        " all tours were compared, and the front is exact; beyond, the search has long found"
+        " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
+        " was no search, and it says that all tours asked for were built",
+        always=True,
+    )
+    closed: bool | None = member("false where tours are open routes, left out where closed")
+    objectives: tuple[Objective, ...] | None = member("as the request names them")
+    request_stops: tuple[Mapping[str, Any], ...] | None = member(
+        "as the request has them", named="stops"
+    )
+    notes: tuple[RequestNote, ...] = member(
+        "what is likely to be a mistake in the request, if anything is", default=()
+    )
+    lengths: Array = of_each("lengths")
+    document: Mapping[str, Any] = member("the whole answer", named="")
 
     @property
     def losses(self) -> Array:
@@ -105,7 +127,7 @@ class StoredFront(Generic[Item]):
             number = range(len(self))[whole(index)]
         except IndexError:
             raise IndexError(f"there are {self._counted()}, got {index}") from None
-        return self._item(number)
+        return self.items[number]
 
     def ask(
         self, picks: Sequence[int] = (), *, questions: int = QUESTIONS, options: int = OPTIONS
@@ -133,10 +155,6 @@ class StoredFront(Generic[Item]):
     def to_moocore(self) -> str:
         """Return the lengths as a set of points in the text that moocore.read_datasets reads."""
         return text_set(self.labels, self.lengths)
-
-    @abstractmethod
-    def _item(self, number: int) -> Item:
-        """Return a tour or plan by its number, which is one of the front's."""
 
     @abstractmethod
     def _counted(self) -> str:

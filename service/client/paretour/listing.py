@@ -5,7 +5,7 @@ from datetime import datetime
 import httpx
 from paretour.described import answer, member
 from paretour.expect import unexpected, value_of
-from paretour.fronts import Objective
+from paretour.fronts import FleetObjective, Objective
 
 PAGE = 100  # the most fronts that the service lists at once
 
@@ -26,7 +26,7 @@ class ListedFront:
     cities: int = member("its cities, stops or places")
     points: int = member("how many nondominated points were found")
     hypervolume: float = member("of the tours or plans that it holds")
-    objectives: tuple[Objective, ...] | None = member("as the request names them")
+    objectives: tuple[FleetObjective | Objective, ...] | None = member("as the request names them")
 
 
 parse_listed = value_of(ListedFront)

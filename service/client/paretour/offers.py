@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 from paretour.described import Lengths, Shape, answer, member
-from paretour.expect import Members, value_of
-from paretour.fronts import Objective
+from paretour.expect import Members, read_rest
+from paretour.fronts import FleetObjective, Objective
 from paretour.plans import Reason
 
 
@@ -60,13 +60,13 @@ class Offers:
 
     front: str = member("the front's id")
     plan: int = member("the number of the plan that is driven")
-    objectives: tuple[Objective, ...]
+    objectives: tuple[FleetObjective, ...]
     clock: Objective = member("the name and unit of all times")
     lengths: Lengths = member("of the plan from now on, without the order")
     unassigned: tuple[str, ...] = member("the ids of stops that the plan leaves out")
     offers: tuple[Offer, ...]
     timings_ms: Mapping[str, float] = member(default={}, always=True)
-    document: Mapping[str, Any] = member("the whole answer")
+    document: Mapping[str, Any] = member("the whole answer", named="")
 
     @property
     def possible(self) -> tuple[Offer, ...]:
@@ -80,5 +80,4 @@ def parse_offers(answer: Members) -> Offers:
     Raises:
         UnexpectedAnswer: A member is missing or wrong.
     """
-    rest = {**answer.document, "document": answer.document}
-    return value_of(Offers)(rest, answer.where)
+    return read_rest(Offers, answer, {"document": answer.document})

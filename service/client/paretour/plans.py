@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from paretour.choice import Choice, choose
 from paretour.described import OF_MORE, OF_TWO, Array, Indexes, Lengths, Shape, answer, member
 from paretour.display import counted, numbers
-from paretour.expect import each, floats, indexes, members, value_of
-from paretour.fronts import Objective, StoredFront
-from paretour.ros.paths import Path
-from paretour.values import PAIR, Uncovered, objectives_of, stored_members
+from paretour.expect import Members, Read, each, floats, indexes, members, rows, value_of
+from paretour.fronts import FleetObjective, Objective, StoredFront
+from paretour.ros.paths import PAIR, Pairs, Path
+from paretour.values import PLACES, UNCOVERED, AnyFront, Uncovered, objective_count, read_front
 
 OfStops = Annotated[Array, Shape("stops")]
 
@@ -135,13 +135,14 @@ Plan = TypeVar("Plan", FleetPlan, RobotPlan)
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class _FrontOfPlans(StoredFront[Plan]):
-    """A front of plans.
+    """A front of plans."""
 
-    Attributes:
-        plans: The plans.
-    """
+    items: tuple[Plan, ...] = member(named="front")
 
-    plans: tuple[Plan, ...]
+    @property
+    def plans(self) -> tuple[Plan, ...]:
+        """The plans."""
+        return self.items
 
     def choose(self, **choice: Unpack[Choice]) -> Plan:
         """Return one plan: at a balance, by weights, within budgets, or the knee.
@@ -158,25 +159,22 @@ class _FrontOfPlans(StoredFront[Plan]):
         """The plans, shape (k,), by the name that pymoo has for solutions."""
         return np.array(self.plans, dtype=object)
 
-    def _item(self, number: int) -> Plan:
-        return self.plans[number]
-
     def _counted(self) -> str:
         return counted(len(self), "plan")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@answer("FleetAnswer")
 class FleetFront(_FrontOfPlans[FleetPlan]):
-    """A front of plans for a fleet, with the objectives as the request named them.
+    """A front of plans for a fleet, by ascending first length."""
 
-    Attributes:
-        clock: The name and unit of all times, if the fleet has a clock.
-        driven: If it was replanned, the lengths of the rest of the plan that is driven, without new
-            stops, if that keeps every rule.
-    """
-
-    clock: Objective | None = None
-    driven: Array | None = None
+    items: tuple[FleetPlan, ...] = member(named="front")
+    objectives: tuple[FleetObjective, ...] = member(default=(), always=True)
+    request_stops: tuple[Mapping[str, Any], ...] = member(default=(), always=True, named="stops")
+    clock: Objective | None = member("the name and unit of all times, if there is a clock")
+    driven: Lengths | None = member(
+        "of a replanned fleet: the lengths of the rest of the plan that is driven, without new"
+        " stops, if it keeps every rule"
+    )
 
     def _columns(self) -> dict[str, Sequence[Any]]:
         found: dict[str, Sequence[Any]] = {}
@@ -195,17 +193,14 @@ class FleetFront(_FrontOfPlans[FleetPlan]):
         }
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@answer("RobotsAnswer")
 class RobotFront(_FrontOfPlans[RobotPlan]):
-    """A front of plans for several robots on a map.
+    """A front of plans for several robots on a map, by ascending first length."""
 
-    Attributes:
-        places: The row and column of each place, shape (n, 2).
-        uncovered: The free cells of the map that no path leads to.
-    """
-
-    places: NDArray[np.int64]
-    uncovered: Uncovered | None = None
+    items: tuple[RobotPlan, ...] = member(named="front")
+    objectives: tuple[FleetObjective, ...] = member(default=(), always=True)
+    places: Pairs = member(PLACES)
+    uncovered: Uncovered | None = member(UNCOVERED)
 
     def _columns(self) -> dict[str, Sequence[Any]]:
         return {
@@ -223,14 +218,7 @@ def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
     Raises:
         UnexpectedAnswer: A member is missing or wrong; so does `parse_robots`.
     """
-    answer = members(document, "answer")
-    return FleetFront(
-        **stored_members(answer, answer.read("front", each(members))),
-        plans=answer.read("front", each(value_of(FleetPlan))),
-        objectives=objectives_of(answer) or (),
-        clock=answer.maybe("clock", value_of(Objective)),
-        driven=answer.maybe("driven", floats(None)),
-    )
+    return _read(FleetFront, members(document, "answer"))
 
 
 def parse_robots(document: Mapping[str, Any]) -> RobotFront:
@@ -238,10 +226,11 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
     answer = members(document, "answer")
     places = indexes(None, PAIR)(answer.document.get("places") or [], "answer/places")
     route = value_of(RobotRoute, tour=indexes(None, below=len(places)))
-    return RobotFront(
-        **stored_members(answer, answer.read("front", each(members))),
-        plans=answer.read("front", each(value_of(RobotPlan, routes=each(route)))),
-        objectives=objectives_of(answer) or (),
-        places=places,
-        uncovered=answer.maybe("uncovered", value_of(Uncovered)),
-    )
+    plans = each(value_of(RobotPlan, routes=each(route)))
+    return _read(RobotFront, answer, places=lambda *_: places, items=plans)
+
+
+def _read(cls: type[AnyFront], answer: Members, **own: Read[Any]) -> AnyFront:
+    items = answer.read("front", each(members))
+    lengths = rows(items, "lengths", floats, objective_count(answer, items))
+    return read_front(cls, answer, {"lengths": lengths}, **own)

@@ -1,45 +1,51 @@
 """Answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from math import nan
-from typing import Annotated, Any, Unpack
+from typing import Annotated, Any, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.choice import Choice, choose
-from paretour.described import OF_MORE, OF_TWO, Array, Indexes, Lengths, Shape, answer, member
+from paretour.choice import Choice, choose, losses
+from paretour.described import (
+    OF_MORE,
+    OF_TWO,
+    Array,
+    Indexes,
+    Lengths,
+    Shape,
+    answer,
+    member,
+    of_each,
+)
 from paretour.display import counted, numbers
 from paretour.expect import (
     Members,
+    Read,
     column,
     count,
     each,
     floats,
     indexes,
     members,
-    number,
     optional_column,
     read_only,
+    read_rest,
     rows,
     text,
     value_of,
 )
-from paretour.fronts import Objective, RequestNote, StoredFront
-from paretour.ros.paths import PAIR, Path
+from paretour.fronts import StoredFront
+from paretour.ros.paths import PAIR, Pairs, Path
 
 FINAL_STATUSES = ("done", "cancelled", "failed")
 MOST = 4  # objectives
-# The attributes of a front that have a member of each of its tours.
-_COLUMNS = {
-    "tours": "tour",
-    "angles": "angle",
-    "balances": "balance",
-    "paths": "path",
-    "departures": "departure",
-    **{name: name for name in ("stops", "kept", "arrivals", "times", "means", "p90")},
-}
+# Sentences on members of fronts over maps.
+PLACES = "row and column of each"
+UNCOVERED = "the free cells that no path leads to, once the map is surveyed"
+AnyFront = TypeVar("AnyFront", bound=StoredFront[Any])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,48 +156,27 @@ class Tour(CoverageItem):
         return f"<Tour of {len(self.tour)} cities: lengths {numbers(self.lengths)}>"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@answer("FrontAnswer")
 class Front(StoredFront[Tour]):
-    """The tours of a front, in order of their first length.
+    """A front of tours, by ascending first length.
 
-    Attributes:
-        tours: The cities of each tour in order, shape (k, n).
-        angles: The direction of the lengths of each tour, in degrees, shape (k,); NaN of more than
-            two objectives.
-        balances: 0 at the least first length of the tours, 1 at the least second, shape (k,); NaN
-            of more than two objectives.
-        hypervolume_bound: The most that any front can have, if a bound was asked for.
-        scale: The length that is 1 in scaled objectives, shape (m,); None while it is not known.
-        actor: The name of the network; None where it built no tours.
-        places: Over a map, the row and column of each city, shape (n, 2).
-        paths: Over a map, the path of each tour, if the request asked for paths.
-        stops: The ids of the stops of each tour in order, if the request had ids.
-        kept: The share of the driven tour's remaining legs that each tour keeps, shape (k,), if it
-            was replanned.
-        arrivals: All lengths of each tour up to each of its cities, if the request asked for them.
-        uncovered: Over a map, the free cells that no path leads to.
-        departures: Over the day, when each tour begins, in seconds of the day, shape (k,).
-        times: Over the day, when each reaches each city, and when it ends, shape (k, n + 1).
-        means: Where costs spread, the mean lengths of each tour, shape (k, m).
-        p90: Where costs spread, the lengths that nine days of ten do not exceed, shape (k, m).
+    Attributes with something of each tour are arrays, whose first dimension is k, or tuples.
     """
 
-    tours: NDArray[np.int64]
-    angles: Array
-    balances: Array
-    hypervolume_bound: float | None
-    scale: Array | None
-    actor: str | None
-    places: NDArray[np.int64] | None
-    paths: tuple[Path, ...] | None
-    stops: tuple[tuple[str, ...], ...] | None = None
-    kept: Array | None = None
-    arrivals: tuple[Array, ...] | None = None
-    uncovered: Uncovered | None = None
-    departures: Array | None = None
-    times: Array | None = None
-    means: Array | None = None
-    p90: Array | None = None
+    items: Sequence[Tour] = member(named="front")
+    places: Pairs | None = member(PLACES)
+    uncovered: Uncovered | None = member(UNCOVERED)
+    tours: NDArray[np.int64] = of_each("tour", Tour)
+    angles: Array = of_each("angle", Tour)
+    balances: Array = of_each("balance", Tour)
+    paths: tuple[Path, ...] | None = of_each("path", Tour)
+    stops: tuple[tuple[str, ...], ...] | None = of_each("stops", Tour)
+    kept: Array | None = of_each("kept", Tour)
+    arrivals: tuple[Array, ...] | None = of_each("arrivals", Tour)
+    departures: Array | None = of_each("departure", Tour)
+    times: Array | None = of_each("times", Tour)
+    means: Array | None = of_each("means", Tour)
+    p90: Array | None = of_each("p90", Tour)
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -210,14 +195,6 @@ class Front(StoredFront[Tour]):
         """
         names = self.names if self.objectives else ()
         return self[choose(self.lengths, self.angles, names, {"angle": angle, **choice})]
-
-    def _item(self, number: int) -> Tour:
-        known = {of: getattr(self, name) for name, of in _COLUMNS.items()}
-        if self.lengths.shape[1] > PAIR:
-            known["losses"] = self.losses
-        row = {of: None if column is None else column[number] for of, column in known.items()}
-        plain = {of: float(value) for of, value in row.items() if isinstance(value, np.float64)}
-        return Tour(front=self.id, lengths=self.lengths[number], **{**row, **plain})
 
     def _counted(self) -> str:
         return f"{counted(len(self), 'tour')} of {self.tours.shape[1]} cities"
@@ -238,6 +215,22 @@ class Front(StoredFront[Tour]):
         return {**found, "tour": list(self.stops or map(tuple, self.tours.tolist()))}
 
 
+class _Tours(Sequence[Tour]):
+    """The tours of a front, each made when it is asked for of what the front has of all."""
+
+    def __init__(self, front: str, columns: Mapping[str, Any]) -> None:
+        self._front, self._columns = front, columns
+
+    def __len__(self) -> int:
+        return len(self._columns["lengths"])
+
+    def __getitem__(self, number: Any) -> Any:
+        columns = self._columns.items()
+        row = {of: None if each is None else each[number] for of, each in columns}
+        plain = {of: float(value) for of, value in row.items() if isinstance(value, np.float64)}
+        return Tour(front=self._front, **{**row, **plain})
+
+
 def parse_front(document: Mapping[str, Any]) -> Front:
     """Return the front in a JSON answer.
 
@@ -245,28 +238,24 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         UnexpectedAnswer: A member is missing or wrong; so do the functions below.
     """
     answer = members(document, "answer")
-    cities = answer.read("cities", count)
-    items = answer.read("front", each(members))
-    actor = answer.maybe("actor", members)
-    answer.maybe("stops", each(members, cities))  # its tours have their ids
-    m = _objective_count(answer, items)
-    return Front(
-        **stored_members(answer, items),
-        tours=rows(items, "tour", partial(indexes, below=cities), cities),
-        angles=column(items, "angle") if m == PAIR else _no_numbers(items),
-        balances=column(items, "balance") if m == PAIR else _no_numbers(items),
-        hypervolume_bound=answer.maybe("hypervolume_bound", number),
-        scale=answer.maybe("scale", floats(m)),
-        actor=None if actor is None else actor.read("name", text),
-        places=answer.maybe("places", indexes(cities, PAIR)),
-        objectives=objectives_of(answer),
-        uncovered=answer.maybe("uncovered", value_of(Uncovered)),
-        **{
-            name: optional_column(items, Tour, of, {"tour": range(cities), "lengths": range(m)})
-            for name, of in _COLUMNS.items()
-            if name not in ("tours", "angles", "balances")
-        },
-    )
+    cities, items = answer.read("cities", count), answer.read("front", each(members))
+    m = objective_count(answer, items)
+    all_fields = ((field.name, field.metadata.get("of_each")) for field in fields(Front))
+    of = {name: each for name, each in all_fields if each}
+    none = read_only(np.full(len(items), nan))
+    columns: dict[str, Any] = {
+        "tours": rows(items, "tour", partial(indexes, below=cities), cities),
+        "lengths": rows(items, "lengths", floats, m),
+        "angles": column(items, "angle") if m == PAIR else none,
+        "balances": column(items, "balance") if m == PAIR else none,
+    }
+    sizes = {"tour": range(cities), "lengths": range(m)}
+    rest = {name: each for name, each in of.items() if name not in columns}
+    columns |= {name: optional_column(items, Tour, each, sizes) for name, each in rest.items()}
+    of_tours = {of[name]: values for name, values in columns.items()}
+    of_tours["losses"] = losses(columns["lengths"]) if m > PAIR else None
+    known = {**columns, "items": _Tours(answer.read("id", text), of_tours)}
+    return read_front(Front, answer, known, places=indexes(cities, PAIR))
 
 
 def parse_tour(document: Mapping[str, Any]) -> Tour:
@@ -274,34 +263,18 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
     return value_of(Tour)(document, "answer")
 
 
-def _objective_count(answer: Members, items: Sequence[Members]) -> int:
+def objective_count(answer: Members, items: Sequence[Members]) -> int:
     """Return the number of objectives: of lengths of the first item, or else of the scale."""
     lengths = items[0].document.get("lengths") if items else answer.document.get("scale")
     few = isinstance(lengths, list) and PAIR <= len(lengths) <= MOST
     return len(lengths) if few else PAIR
 
 
-def _no_numbers(items: Sequence[Members]) -> Array:
-    """Return NaN for each item."""
-    return read_only(np.full(len(items), nan))
-
-
-def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
-    """Return the attributes that fronts of all kinds have, from an answer and its items."""
-    m = _objective_count(answer, items)
-    return {
-        "id": answer.read("id", text),
-        "status": answer.read("status", text),
-        "lengths": rows(items, "lengths", floats, m),
-        "points": answer.read("points", count),
-        "hypervolume": answer.read("hypervolume", number),
-        "reference_point": answer.maybe("reference_point", floats(m)),
-        "terminated": answer.maybe("terminated", text),
-        "document": answer.document,
-        "notes": answer.maybe("notes", each(value_of(RequestNote))) or (),
-    }
-
-
-def objectives_of(answer: Members) -> tuple[Objective, ...] | None:
-    """Return the objectives of an answer, where the request named them."""
-    return answer.maybe("objectives", each(value_of(Objective)))
+def read_front(
+    cls: type[AnyFront], answer: Members, known: Mapping[str, Any], **own: Read[Any]
+) -> AnyFront:
+    """Return a front of any kind of an answer; `known` is read, and `own` are as of `value_of`."""
+    own["actor"] = lambda value, where: members(value, where).read("name", text)
+    for name in ("reference_point", "scale", "driven"):
+        own[name] = floats(known["lengths"].shape[1])
+    return read_rest(cls, answer, {**known, "document": answer.document}, **own)
