@@ -5,13 +5,13 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import WrongChoice
+from paretour.described import document_of
 from paretour.questions import (
     LEAST_OPTIONS,
     MOST_OPTIONS,
     MOST_QUESTIONS,
     OPTIONS,
     QUESTIONS,
-    Option,
     Question,
     ask,
 )
@@ -71,18 +71,5 @@ class QuestionsQuery(BaseModel):
 def members_of(question: Question) -> dict[str, Any]:
     """Return the members of the answer that asks a question, ready for JSON."""
     chosen = {} if question.chosen is None else {"number": question.chosen}
-    options = [_members_of_option(option) for option in question.options]
-    return {
-        "left": question.left,
-        **_members_of_option(question.current),
-        "options": options,
-        **chosen,
-    }
-
-
-def _members_of_option(option: Option) -> dict[str, Any]:
-    return {
-        "point": option.point.tolist(),
-        "best": option.best.tolist(),
-        "within_reach": option.within_reach,
-    }
+    current, options = document_of(question.current), document_of(question.options)
+    return {"left": question.left, **current, "options": options, **chosen}
