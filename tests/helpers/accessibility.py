@@ -11,6 +11,9 @@ from tests.helpers.sampled import IS_WHOLE
 Scheme = Literal["light", "dark"]
 
 ALSO = ("target-size",)  # rules that axe leaves out unless they are asked for
+# What depends on width and colours. The other rules, which take as long again, are of the elements
+# that there are: of several looks at the same state only the first has them, but by night.
+OF_LOOKS = ["color-contrast", "link-in-text-block", "scrollable-region-focusable", "target-size"]
 # What stands behind others of its kind in tables, lists and lanes, which is looked at by night.
 BEHIND = (
     "#stops tr:nth-child(n+5)",
@@ -37,13 +40,19 @@ def load_axe(page: Page) -> None:
     page.evaluate(AXE_SCRIPT)
 
 
-def violations(page: Page, *parts: str) -> list[Any]:
+def violations(page: Page, *parts: str, seen_before: bool = False) -> list[Any]:
     """Return the rules that a page with axe, or parts of it, violate as they are shown now.
 
-    Of rows that are alike, only the first are looked at, but for the whole suite by night.
+    Of rows that are alike, only the first are looked at, but for the whole suite by night. Where
+    the same was seen at another width or in other colours, the rules that depend on these are left.
     """
     context = {"include": [[part] for part in parts or ("html",)], "exclude": ALIKE}
-    options = {"rules": {rule: {"enabled": True} for rule in ALSO}, "resultTypes": ["violations"]}
+    # No rule needs the text of style sheets, which axe would fetch once more.
+    options: dict[str, Any] = {"resultTypes": ["violations"], "preload": False}
+    if seen_before and not IS_WHOLE:
+        options["runOnly"] = {"type": "rule", "values": OF_LOOKS}
+    else:
+        options["rules"] = {rule: {"enabled": True} for rule in ALSO}
     found: list[Any] = page.evaluate(
         "given => axe.run(...given).then(({ violations }) => violations)", [context, options]
     )
@@ -65,9 +74,9 @@ def found_on_desk_and_phone(page: Page, *parts: str) -> list[str]:
     assert size is not None
     found = []
     looks: tuple[tuple[int, Scheme], ...] = ((size["width"], "light"), (PHONE, "dark"))
-    for width, scheme in looks:
+    for at, (width, scheme) in enumerate(looks):
         look(page, width, scheme)
-        found += [each["id"] for each in violations(page, *parts)]
+        found += [each["id"] for each in violations(page, *parts, seen_before=at > 0)]
     page.emulate_media(color_scheme="light")
     page.set_viewport_size(size)
     return found

@@ -48,6 +48,13 @@ def link(planned: Page) -> str:
     return copied(planned, "link")
 
 
+@pytest.fixture(scope="package")
+def other(browser: Browser, released: str) -> Iterator[Page]:
+    """A window in which others have opened links, for tests that open one of theirs there."""
+    with open_unplanned(browser, released) as page:
+        yield page
+
+
 @pytest.fixture(scope="module")
 def window(browser: Browser, released: str) -> Iterator[Page]:
     """A page for all tests of a module, each of which opens its own stops."""

@@ -3,7 +3,7 @@
 import time
 from pathlib import Path
 
-from playwright.sync_api import Browser, Route, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from service.api.app import Edge
 from service.api.auth import Access
@@ -32,15 +32,19 @@ def late(route: Route) -> None:
     route.continue_()
 
 
-def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
+def test_the_page_asks_for_a_key_and_says_that_the_service_warms_up(
     browser: Browser, tmp_path: Path
 ) -> None:
+    """It uses the key for files as well, and goes on by itself."""
     warm = tmp_path / "warm"
     workers = workers_of(runner_of(limits=LIMITS, warm=warm))
-    app = app_of(workers=workers, limits=LIMITS)
+    key, digest = new_key()
+    access = Access([KeyHash(caller="dispatch", digest=digest)])
+    app = app_of(workers=workers, limits=LIMITS, edge=Edge(access=access))
     with serving(app, warm=False) as address, open_page(browser, "about:blank") as page:
         page.route("**/events", late)
         page.goto(address)
+        enter_a_key(page, key)
         status = page.locator("#status")
         expect(status).to_contain_text("The search is being compiled")
         page.wait_for_timeout(SECOND)
@@ -48,32 +52,27 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
         expect(page.get_by_role("button", name="Stop", exact=True)).to_be_enabled()
         warm.touch()
         wait_until_planned(page)
-        expect(page.get_by_label("A choice of")).to_be_visible()
-
-
-def test_the_page_asks_for_a_key_and_uses_it_for_files_as_well(browser: Browser) -> None:
-    key, digest = new_key()
-    access = Access([KeyHash(caller="dispatch", digest=digest)])
-    app = app_of(limits=LIMITS, edge=Edge(access=access))
-    with serving(app) as address, open_page(browser, address) as page:
-        field = page.get_by_label("API key")
-        expect(page.locator("#key-fault")).to_contain_text("key")
-        expect(field).to_be_focused()
-        with page.expect_response("**/files") as answered:
-            open_files(page, STOPS)
-        assert answered.value.status == 401
-        expect(page.locator("#key-fault")).to_contain_text("key")
-        field.fill("nobody's")
-        field.press("Enter")
-        expect(page.locator("#key-fault")).to_contain_text("key")
-        expect(page.locator("#status")).to_be_empty()
-        field.fill(key)
-        field.press("Enter")
-        wait_until_planned(page)
         expect(page.locator("#key-fault")).to_be_empty()
         expect(page.get_by_label("A choice of")).to_be_visible()
         open_files(page, STOPS)
         expect(page.locator("#count")).to_have_text("2 stops")
+
+
+def enter_a_key(page: Page, key: str) -> None:
+    """Enter none, a wrong one, and the one that the service knows."""
+    field = page.get_by_label("API key")
+    expect(page.locator("#key-fault")).to_contain_text("key")
+    expect(field).to_be_focused()
+    with page.expect_response("**/files") as answered:
+        open_files(page, STOPS)
+    assert answered.value.status == 401
+    expect(page.locator("#key-fault")).to_contain_text("key")
+    field.fill("nobody's")
+    field.press("Enter")
+    expect(page.locator("#key-fault")).to_contain_text("key")
+    expect(page.locator("#status")).to_be_empty()
+    field.fill(key)
+    field.press("Enter")
 
 
 def test_the_page_says_that_the_service_is_away_when_it_opens(

@@ -5,14 +5,14 @@ from xml.etree import ElementTree
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.helpers.browsing import (
     SVG,
     copied,
     metres,
     needs_chromium,
-    open_page,
+    open_link,
     saved,
     shown_front,
     wait_for_next_frame,
@@ -74,9 +74,7 @@ def test_keys_move_a_budget_from_tour_to_tour(planned: Page) -> None:
         expect(line).to_have_attribute("aria-valuetext", "no limit")
 
 
-def test_a_limit_is_there_after_undo_after_a_reload_and_in_a_link(
-    page: Page, browser: Browser
-) -> None:
+def test_a_limit_is_there_after_undo_after_a_reload_and_in_a_link(page: Page, other: Page) -> None:
     def limit(shown: Page) -> Locator:
         return shown.get_by_role("slider", name="At most this much distance")
 
@@ -95,7 +93,6 @@ def test_a_limit_is_there_after_undo_after_a_reload_and_in_a_link(
     wait_until_planned(page)
     expect(limit(page)).to_have_attribute("aria-valuetext", most)
     expect(page.locator("#choice")).to_have_text(chosen)
-    with open_page(browser, copied(page, "link")) as other:
-        wait_until_planned(other)
-        expect(limit(other)).to_have_attribute("aria-valuetext", most)
-        expect(other.locator("#choice")).to_have_text(chosen)
+    open_link(other, copied(page, "link"))
+    expect(limit(other)).to_have_attribute("aria-valuetext", most)
+    expect(other.locator("#choice")).to_have_text(chosen)

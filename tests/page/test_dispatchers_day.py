@@ -11,6 +11,7 @@ from tests.helpers.accessibility import found_on_desk_and_phone
 from tests.helpers.browsing import (
     copied,
     needs_chromium,
+    open_link,
     open_page,
     paste,
     wait_until_planned,
@@ -102,8 +103,7 @@ def test_a_dispatchers_day_takes_25_clicks_and_fields(
         other.reload()
         wait_until_planned(other)
         expect(other.locator("#fleet-legend")).to_have_text(shown)
-    with open_page(browser, copied(page, "a link with them")) as other:
-        wait_until_planned(other)
+        open_link(other, copied(page, "a link with them"))
         expect(other.locator("#fleet-stops")).to_contain_text("B1 (Bakery)")
 
 

@@ -9,14 +9,14 @@ from xml.etree import ElementTree
 
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.browsing import (
     SVG,
     copied,
+    follow,
     needs_chromium,
     open_files,
-    open_page,
     saved,
     shown_front,
     wait_for_next_frame,
@@ -84,7 +84,7 @@ def test_files_of_the_whole_front_say_which_tour_is_selected(page: Page) -> None
 
 @pytest.mark.parametrize("expired", [False, True], ids=["stored", "expired"])
 def test_a_link_opens_the_selected_tour_even_if_its_front_has_expired(
-    planned: Page, browser: Browser, expired: bool
+    planned: Page, other: Page, expired: bool
 ) -> None:
     slider = planned.get_by_role("slider", name="Balance")
     slider.press("End")
@@ -94,13 +94,14 @@ def test_a_link_opens_the_selected_tour_even_if_its_front_has_expired(
     link = copied(planned, "link")
     if expired:
         link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", link)
-    with open_page(browser, link) as other:
-        if expired:
-            expect(other.locator("#choice")).to_contain_text("no longer keeps this result")
-        else:
-            wait_until_planned(other)
-        expect(other.locator("#count")).to_have_text("61 stops")
-        if not expired:
-            expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
-                "aria-valuetext", said
-            )
+    follow(other, link)
+    if expired:
+        expect(other.locator("#status")).to_have_text("This is the tour of the link.")
+        expect(other.locator("#choice")).to_contain_text("no longer keeps this result")
+    else:
+        wait_until_planned(other)
+    expect(other.locator("#count")).to_have_text("61 stops")
+    if not expired:
+        expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
+            "aria-valuetext", said
+        )

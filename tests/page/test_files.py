@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from service.cli.inputs import read_request
 from service.files.reader import read_files
@@ -19,7 +19,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
+    open_link,
     saved,
     shown_front,
     stops_as_text,
@@ -223,7 +223,7 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
 
 
 def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
-    opened: Page, browser: Browser, tsplib_files: list[Path]
+    opened: Page, other: Page, tsplib_files: list[Path]
 ) -> None:
     opened.get_by_label("Open files").set_input_files(tsplib_files)
     expect(opened.get_by_label("Distances rounded")).to_be_checked()
@@ -231,14 +231,13 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     wait_until_planned(opened)
     files = [NamedFile(file.name, file.read_bytes()) for file in tsplib_files]
     assert curl_body(opened)["matrices"] == read_files(files, Bounds()).request["matrices"]
-    with open_page(browser, copied(opened, "link")) as other:
-        wait_until_planned(other)
-        expect(other.get_by_label("Distances rounded")).to_be_checked()
-        expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
-        stops_as_text(other)
-        other.get_by_label("Distances rounded").uncheck()
-        expect(other.get_by_label("Nothing planned yet")).to_be_visible()
-        assert len(curl_body(other)["coordinates"]) == 12
+    open_link(other, copied(opened, "link"))
+    expect(other.get_by_label("Distances rounded")).to_be_checked()
+    expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
+    stops_as_text(other)
+    other.get_by_label("Distances rounded").uncheck()
+    expect(other.get_by_label("Nothing planned yet")).to_be_visible()
+    assert len(curl_body(other)["coordinates"]) == 12
 
 
 def test_a_list_of_angles_in_a_file_is_asked_for(opened: Page) -> None:

@@ -56,7 +56,7 @@ def test_a_copy_button_says_for_a_moment_that_it_copied_however_often_it_is_pres
     assert set(noted_texts(button)) == {"Copied", label}
 
 
-def test_a_link_to_a_front_of_an_example_names_the_example(window: Page, browser: Browser) -> None:
+def test_a_link_to_a_front_of_an_example_names_the_example(window: Page, other: Page) -> None:
     window.get_by_label("Example").select_option("Helsinki deliveries")
     wait_until_planned(window)
     slider = window.get_by_role("slider", name="Balance")
@@ -65,32 +65,30 @@ def test_a_link_to_a_front_of_an_example_names_the_example(window: Page, browser
     selected = slider.get_attribute("aria-valuetext") or ""
     link = copied(window, "link")
     assert link.endswith("&example=helsinki-deliveries.json")
-    with open_page(browser, link) as other:
-        wait_until_planned(other)
-        expect(other.locator("#count")).to_have_text("60 stops")
-        expect(other.get_by_label("Example")).to_have_value("helsinki-deliveries.json")
-        expect(other.locator("#plane-1 canvas.streets")).to_be_visible()
-        expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
-            "aria-valuetext", selected
-        )
+    open_link(other, link)
+    expect(other.locator("#count")).to_have_text("60 stops")
+    expect(other.get_by_label("Example")).to_have_value("helsinki-deliveries.json")
+    expect(other.locator("#plane-1 canvas.streets")).to_be_visible()
+    expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
+        "aria-valuetext", selected
+    )
     window.get_by_label("Seconds of planning").fill("0")
     copied(window, "link")
     expect(window).to_have_url(re.compile("&asked="))
 
 
-def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:
+def test_a_link_to_the_networks_front_calls_it_that(page: Page, other: Page) -> None:
     page.get_by_label("Seconds of planning").fill("0")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
-    with open_page(browser, copied(page, "link")) as other:
-        wait_until_planned(other)
-        for shown in (page, other):
-            expect(shown.locator("#legend .alone")).to_be_visible()
-            expect(shown.locator("#legend .improved")).to_be_hidden()
+    open_link(other, copied(page, "link"))
+    for shown in (page, other):
+        expect(shown.locator("#legend .alone")).to_be_visible()
+        expect(shown.locator("#legend .improved")).to_be_hidden()
 
 
 def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
-    window: Page, browser: Browser
+    window: Page, other: Page
 ) -> None:
     matrices = np.random.default_rng(0).random((2, 60, 60)).tolist()
     open_files(window, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
@@ -99,11 +97,10 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     link = copied(window, "link")
     expect(window.get_by_text("This link opens the result without its maps")).to_be_visible()
     assert len(link) < 1000
-    with open_page(browser, link) as other:
-        wait_until_planned(other)
-        expect(other.get_by_text("The link only names a result")).to_be_visible()
-        expect(other.locator("#plane-1")).to_be_hidden()
-        expect(other.get_by_label("A choice of")).to_be_visible()
+    open_link(other, link)
+    expect(other.get_by_text("The link only names a result")).to_be_visible()
+    expect(other.locator("#plane-1")).to_be_hidden()
+    expect(other.get_by_label("A choice of")).to_be_visible()
 
 
 SHORT = 2000  # characters of a link to a tour of 60 stops, at most
@@ -169,7 +166,7 @@ def open_and_plan(page: Page, request: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("name", few(2, ["fleet", "three", "two"]))
 def test_a_link_keeps_the_tour_that_was_chosen(
-    window: Page, browser: Browser, released: str, name: str
+    window: Page, other: Page, released: str, name: str
 ) -> None:
     open_and_plan(window, REQUESTS[name])
     before = on_screen(window)
@@ -178,35 +175,32 @@ def test_a_link_keeps_the_tour_that_was_chosen(
     assert chosen != before
     link = copied(window, "link")
     assert len(link) < SHORT
-    with open_page(browser, link) as other:
-        wait_until_planned(other)
-        assert on_screen(other) == chosen
-        front = re.findall("front=([0-9a-f]+)", link)[0]
-        assert httpx.delete(f"{released}/front/{front}").is_success
-        noun = "plan" if name == "fleet" else "tour"
-        follow(other, link)
-        expect(other.locator("#choice")).to_contain_text(KEPT.format(noun))
-        expect(other.locator("#status")).to_have_text(f"This is the {noun} of the link.")
-        expect(other.locator("#count")).to_have_text("60 stops")
-        assert on_screen(other) == chosen
-        others = other.locator("#legend .alone")
-        expect(others).to_have_count(1)
-        assert others.is_visible() == (name != "three")
-        expect(other.get_by_role("button", name="Save GeoJSON")).to_be_disabled()
-        assert copied(other, "link") == link
-        other.get_by_role("button", name="Plan again").click()
-        wait_until_planned(other)
-        expect(other.get_by_role("button", name="Plan again")).to_be_hidden()
-        expect(other.locator("#choice")).not_to_contain_text("no longer keeps")
+    open_link(other, link)
+    assert on_screen(other) == chosen
+    front = re.findall("front=([0-9a-f]+)", link)[0]
+    assert httpx.delete(f"{released}/front/{front}").is_success
+    noun = "plan" if name == "fleet" else "tour"
+    follow(other, link)
+    expect(other.locator("#choice")).to_contain_text(KEPT.format(noun))
+    expect(other.locator("#status")).to_have_text(f"This is the {noun} of the link.")
+    expect(other.locator("#count")).to_have_text("60 stops")
+    assert on_screen(other) == chosen
+    others = other.locator("#legend .alone")
+    expect(others).to_have_count(1)
+    assert others.is_visible() == (name != "three")
+    expect(other.get_by_role("button", name="Save GeoJSON")).to_be_disabled()
+    assert copied(other, "link") == link
+    other.get_by_role("button", name="Plan again").click()
+    wait_until_planned(other)
+    expect(other.get_by_role("button", name="Plan again")).to_be_hidden()
+    expect(other.locator("#choice")).not_to_contain_text("no longer keeps")
 
 
 @pytest.mark.parametrize(
     "example",
     [pytest.param("warehouse-cleaning.json", marks=at_night), "warehouse-robots.json"],
 )
-def test_a_link_keeps_what_was_chosen_on_a_map(
-    window: Page, browser: Browser, example: str
-) -> None:
+def test_a_link_keeps_what_was_chosen_on_a_map(window: Page, other: Page, example: str) -> None:
     plan_by_network_alone(window, "coverage")
     window.get_by_label("Example").select_option(example)
     expect(window.locator("#brought")).to_contain_text("grid")
@@ -215,10 +209,11 @@ def test_a_link_keeps_what_was_chosen_on_a_map(
     select_another(window)
     chosen = on_screen(window)
     link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", copied(window, "link"))
-    with open_page(browser, link) as other:
-        expect(other.locator("#choice")).to_contain_text("The service no longer keeps this result.")
-        assert on_screen(other) == chosen
-        expect(other.locator("#grid")).to_be_visible()
+    follow(other, link)
+    expect(other.locator("#status")).to_have_text("This is the plan of the link.")
+    expect(other.locator("#choice")).to_contain_text("The service no longer keeps this result.")
+    assert on_screen(other) == chosen
+    expect(other.locator("#grid")).to_be_visible()
 
 
 ITEM = {"lengths": [1, 2], "balance": 0, "tour": [2, 0, 1]}

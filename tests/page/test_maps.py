@@ -73,29 +73,30 @@ def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) 
 
 
 def test_without_tiles_an_example_has_its_own_streets_and_the_places_of_its_story(
-    browser: Browser, released: str
+    window: Page,
 ) -> None:
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        streets = page.locator("#plane-1 canvas.streets")
-        expect(streets).to_be_visible()
-        expect(page.locator("#lines")).to_have_text("along the streets")
-        assert page.locator("#plane-1 canvas.selected").evaluate(DRAWN_AT_EDGE) is False
-        light = streets.evaluate(COLOURS)
-        assert len(light) >= 2  # main streets stand out from paths
-        expect(page.locator("#credit")).to_contain_text("© OpenStreetMap contributors (ODbL)")
-        for name in ("railway station", "Erottaja", "Senate Square", "Kamppi"):
-            expect(page.locator("#plane-1").get_by_text(name, exact=True)).to_be_visible()
-        page.emulate_media(color_scheme="dark")
-        wait_for_next_frame(page)
-        assert not set(light) & set(streets.evaluate(COLOURS))
-        page.get_by_label("Example").select_option("City deliveries")
-        expect(page.locator("#plane-1").get_by_text("icy hill", exact=True)).to_be_visible()
-        expect(page.locator("#plane-1").get_by_text("Kamppi", exact=True)).to_have_count(0)
-        expect(streets).to_be_hidden()
-        expect(page.locator("#credit")).to_be_empty()
-        page.get_by_role("button", name="Clear").click()
-        expect(page.locator(".place-name")).to_have_count(0)
+    page = window
+    page.get_by_label("Example").select_option("Helsinki deliveries")
+    wait_until_planned(page)
+    streets = page.locator("#plane-1 canvas.streets")
+    expect(streets).to_be_visible()
+    expect(page.locator("#lines")).to_have_text("along the streets")
+    assert page.locator("#plane-1 canvas.selected").evaluate(DRAWN_AT_EDGE) is False
+    light = streets.evaluate(COLOURS)
+    assert len(light) >= 2  # main streets stand out from paths
+    expect(page.locator("#credit")).to_contain_text("© OpenStreetMap contributors (ODbL)")
+    for name in ("railway station", "Erottaja", "Senate Square", "Kamppi"):
+        expect(page.locator("#plane-1").get_by_text(name, exact=True)).to_be_visible()
+    page.emulate_media(color_scheme="dark")
+    wait_for_next_frame(page)
+    assert not set(light) & set(streets.evaluate(COLOURS))
+    page.get_by_label("Example").select_option("City deliveries")
+    expect(page.locator("#plane-1").get_by_text("icy hill", exact=True)).to_be_visible()
+    expect(page.locator("#plane-1").get_by_text("Kamppi", exact=True)).to_have_count(0)
+    expect(streets).to_be_hidden()
+    expect(page.locator("#credit")).to_be_empty()
+    page.get_by_role("button", name="Clear").click()
+    expect(page.locator(".place-name")).to_have_count(0)
 
 
 def test_tours_of_the_example_follow_its_streets_and_those_of_a_routing_engine(

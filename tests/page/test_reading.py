@@ -9,12 +9,14 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.helpers.browsing import (
+    FREE,
     Held,
     curl_body,
     needs_chromium,
     new_tab,
     open_files,
     open_page,
+    show_unplanned,
     wait_until_planned,
     wait_until_read,
 )
@@ -171,8 +173,8 @@ def test_nothing_is_planned_before_the_page_is_loaded_nor_does_a_bad_file_take_t
 
 def test_a_fault_of_the_page_itself_is_none_of_the_file(browser: Browser, released: str) -> None:
     page = new_tab(browser)
-    page.goto(released)
-    wait_until_planned(page)
+    page.goto(released + FREE)
+    show_unplanned(page, released)
     answer: dict[str, Any] = {"kind": "front", "request": None, "notes": [], "name": "a.csv"}
     page.route("**/files", lambda route: route.fulfill(json=answer))
     with page.expect_event("pageerror") as told:

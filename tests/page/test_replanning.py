@@ -1,6 +1,6 @@
 """Replanning on the page: what changes on the way, and the tours before and after."""
 
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.helpers.accessibility import unfold
 from tests.helpers.browsing import (
@@ -8,7 +8,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
+    open_link,
     wait_until_planned,
 )
 
@@ -16,7 +16,7 @@ pytestmark = needs_chromium
 
 
 def test_the_rest_of_a_tour_is_planned_from_the_vehicle_with_other_stops(
-    page: Page, browser: Browser
+    page: Page, other: Page
 ) -> None:
     page.locator("#order > summary").click()
     *before, back = order(page)
@@ -38,7 +38,7 @@ def test_the_rest_of_a_tour_is_planned_from_the_vehicle_with_other_stops(
     assert after[0] == "vehicle"
     assert after[-1] == before[0]
     assert sorted([*after[1:-1], *before[1:3], before[10]]) == sorted([*before[1:], "school"])
-    assert order_of_link(browser, copied(page, "link")) == after
+    assert order_of_link(other, copied(page, "link")) == after
     page.get_by_label("Stops to drop").fill(before[10])
     page.get_by_role("button", name="Replan").click()
     expect(page.locator("#replan-fault")).to_contain_text("no stop")
@@ -59,12 +59,11 @@ def test_only_stops_of_which_costs_are_measured_can_be_added_on_the_way(page: Pa
     expect(page.get_by_role("button", name="Click where the vehicle is")).to_be_hidden()
 
 
-def order_of_link(browser: Browser, link: str) -> list[str]:
-    with open_page(browser, link) as other:
-        wait_until_planned(other)
-        unfold(other)
-        expect(other.locator("#choice")).to_contain_text("less risk")
-        return order(other)
+def order_of_link(other: Page, link: str) -> list[str]:
+    open_link(other, link)
+    unfold(other)
+    expect(other.locator("#choice")).to_contain_text("less risk")
+    return order(other)
 
 
 def order(page: Page) -> list[str]:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
@@ -22,7 +22,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     number_in,
     open_files,
-    open_page,
+    open_link,
     plan_by_network_alone,
     saved,
     select_last,
@@ -103,7 +103,7 @@ def test_three_robots_have_a_path_and_a_row_each(window: Page) -> None:
     window.unroute_all()
 
 
-def test_a_request_for_robots_is_opened_and_taken_along(window: Page, browser: Browser) -> None:
+def test_a_request_for_robots_is_opened_and_taken_along(window: Page, other: Page) -> None:
     open_files(window, {"robots.json": json.dumps(CORRIDOR)})
     expect(window.locator("#brought")).to_contain_text("2 robots on a grid 7 cells wide and 1 high")
     window.get_by_role("button", name="Plan", exact=True).click()
@@ -133,10 +133,9 @@ def test_a_request_for_robots_is_opened_and_taken_along(window: Page, browser: B
         exec(copied(window, "as Python"), {})
     routes = [(route["robot"], route["tour"]) for route in plan["routes"]]
     assert output.getvalue().endswith(f"{routes}\n")
-    with open_page(browser, copied(window, "link")) as other:
-        wait_until_planned(other)
-        expect(other.locator("#brought")).to_contain_text("2 robots")
-        assert rows_of(other.locator("#fleet-legend")) == rows_of(window.locator("#fleet-legend"))
+    open_link(other, copied(window, "link"))
+    expect(other.locator("#brought")).to_contain_text("2 robots")
+    assert rows_of(other.locator("#fleet-legend")) == rows_of(window.locator("#fleet-legend"))
     # What robots cannot have is refused where it is seen.
     open_files(window, {"wrong.json": json.dumps({**CORRIDOR, "start": 1})})
     window.get_by_role("button", name="Plan", exact=True).click()

@@ -17,7 +17,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     number_in,
     open_files,
-    open_page,
+    open_link,
     open_unplanned,
     saved,
     wait_for_next_frame,
@@ -264,19 +264,18 @@ def test_two_tours_are_compared(page: Page) -> None:
     page.get_by_role("button", name="Stop comparing").click()
 
 
-def test_a_link_carries_the_limits_and_the_tour(page: Page, browser: Browser) -> None:
+def test_a_link_carries_the_limits_and_the_tour(page: Page, other: Page) -> None:
     for _ in range(3):
         limit(page, "Way").press("ArrowLeft")
     page.get_by_role("button", name="Fewest people passed within the limits").click()
     most, tour = limit(page, "Way").input_value(), shown(page)
     said = page.locator("#caps-said").inner_text()
-    with open_page(browser, copied(page, "link")) as other:
-        wait_until_planned(other)
-        expect(other.locator("#caps-said")).to_have_text(said)
-        assert limit(other, "Way").input_value() == most
-        assert shown(other) == tour
-        limit(other, "Climb").press("Home")  # which that tour is beyond
-        assert shown(other) != tour
+    open_link(other, copied(page, "link"))
+    expect(other.locator("#caps-said")).to_have_text(said)
+    assert limit(other, "Way").input_value() == most
+    assert shown(other) == tour
+    limit(other, "Climb").press("Home")  # which that tour is beyond
+    assert shown(other) != tour
 
 
 def test_what_is_taken_along_has_all_three(page: Page) -> None:

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, Request, expect
+from playwright.sync_api import Locator, Page, Request, expect
 
 from tests.helpers.browsing import (
     DESK,
@@ -12,7 +12,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
+    open_link,
     saved,
     shown_front,
     wait_for_next_frame,
@@ -345,9 +345,7 @@ def test_a_click_is_not_lost_where_what_was_typed_makes_the_page_shorter(
         expect(window.get_by_label("Name of vehicle 2")).to_be_focused()
 
 
-def test_a_plan_that_a_typo_follows_can_be_replanned_and_linked(
-    window: Page, browser: Browser
-) -> None:
+def test_a_plan_that_a_typo_follows_can_be_replanned_and_linked(window: Page, other: Page) -> None:
     open_files(window, {"stops.csv": PLANES})
     plan(window)
     wait_until_planned(window)
@@ -355,10 +353,9 @@ def test_a_plan_that_a_typo_follows_can_be_replanned_and_linked(
     plan(window)
     expect(window.locator("#stops-fault")).not_to_be_empty()
     expect(window.locator("#replanning")).to_be_visible()
-    with open_page(browser, copied(window, "link")) as other:
-        wait_until_planned(other)
-        expect(other.get_by_label("x₁ of 1", exact=True)).to_have_value("0")
-        assert json.loads(saved(other, "JSON")) == shown_front(window)
+    open_link(other, copied(window, "link"))
+    expect(other.get_by_label("x₁ of 1", exact=True)).to_have_value("0")
+    assert json.loads(saved(other, "JSON")) == shown_front(window)
     # The first of the three is still on the map: the stop that is moved is the second.
     window.locator("#plane-1").press("Enter")
     window.keyboard.press("Enter")
