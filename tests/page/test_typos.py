@@ -158,7 +158,7 @@ TYPOS = {
 }
 
 
-@pytest.mark.parametrize("content", few(4, TYPOS), ids=range(len(few(4, TYPOS))))
+@pytest.mark.parametrize("content", few(3, TYPOS), ids=range(len(few(3, TYPOS))))
 def test_a_typo_keeps_the_last_plan_and_is_said_at_its_field(window: Page, content: str) -> None:
     open_text(window, content)
     chosen = planned_choice(window)
@@ -215,7 +215,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("content", few(4, REFUSED), ids=range(len(few(4, REFUSED))))
+@pytest.mark.parametrize("content", few(3, REFUSED), ids=range(len(few(3, REFUSED))))
 def test_a_value_that_is_refused_keeps_the_last_plan(window: Page, content: str) -> None:
     open_text(window, content)
     chosen = planned_choice(window)
