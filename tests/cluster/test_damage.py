@@ -14,7 +14,7 @@ import redis as redis_client
 from service.cluster.celery_app import QUEUE
 from service.cluster.redis_engine import connect
 from tests.helpers.actors import Shuffler
-from tests.helpers.engines import celery_worker
+from tests.helpers.celery_workers import celery_worker
 from tests.helpers.jobs import LATER, ended
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.sampled import IS_WHOLE

@@ -9,8 +9,8 @@ import numpy as np
 from service.jobs.task_runner import load_runner
 from service.server import Ending, build
 from service.settings import Settings
+from tests.helpers.celery_workers import celery_worker
 from tests.helpers.cluster_state import ClusterState
-from tests.helpers.engines import celery_worker
 from tests.helpers.fake_router import BEYOND, fake_osrm, road_costs
 from tests.helpers.processes import UNLIMITED
 from tests.helpers.redis_server import Redis

@@ -1,6 +1,5 @@
 """Either engine behind a live server, so that a test of one is a test of the other."""
 
-import multiprocessing
 import os
 import signal
 import time
@@ -8,7 +7,6 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import httpx
@@ -16,15 +14,11 @@ import pytest
 import redis
 
 from service.api.app import Edge
-from service.cluster.celery_app import make_celery
 from service.cluster.redis_engine import connect
-from service.cluster.worker import CeleryWorker, RecordWorker
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.kind import NamedActor
-from service.roads.client import RoadClient
-from service.roads.router import RouterSettings
+from tests.helpers.celery_workers import celery_worker
 from tests.helpers.cluster_state import ClusterState
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, runner_of, serving, workers_of
@@ -134,47 +128,6 @@ def _first_pid(workers: WorkerPool, _: str) -> int | None:
 
 def _searching(workers: WorkerPool) -> Mapping[Hashable, int]:
     return {each: pid for each, pid in workers.running.items() if pid and each.progress}
-
-
-@contextmanager
-def celery_worker(
-    url: str,
-    make_runner: Callable[[], TaskRunner],
-    seconds: float,
-    workers: int,
-    roads: RouterSettings | None = None,
-) -> Iterator[BaseProcess]:
-    """A worker of the cluster with a number of processes."""
-    context = multiprocessing.get_context("forkserver")
-    worker = context.Process(target=_work, args=(url, make_runner, seconds, workers, roads))
-    worker.start()
-    try:
-        yield worker
-    finally:
-        worker.kill()
-        worker.join()
-
-
-def _work(
-    url: str,
-    make_runner: Callable[[], TaskRunner],
-    seconds: float,
-    workers: int,
-    roads: RouterSettings | None,
-) -> None:
-    worker = CeleryWorker(
-        celery=make_celery(url, seconds),
-        records=RecordWorker(
-            make_runner,
-            url,
-            workers=workers,
-            seconds=seconds,
-            roads=roads and RoadClient(roads),
-        ),
-        drain_seconds=5,
-    )
-    worker.start()
-    worker.run()
 
 
 @contextmanager
