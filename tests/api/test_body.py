@@ -15,19 +15,13 @@ import numpy as np
 import pytest
 
 from tests.helpers.processes import ServeProcess, serve_process
-from tests.helpers.serving import LIMITS, app_of, problem, serving
+from tests.helpers.serving import LIMITS, problem
 
 JSON = {"Content-Type": "application/json"}
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 
 # Reading it takes some tenths of a second.
 WRONG = b'{"matrices":[[[' + 4_000_000 * b"0," + b"0]],[[0]]]}"
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 @pytest.mark.parametrize("kind", [None, "text/plain", "application/x-www-form-urlencoded", ""])

@@ -1,6 +1,5 @@
 """POST /coverage with several cost layers over HTTP: each is an objective with a name."""
 
-from collections.abc import Iterator
 from itertools import permutations
 from typing import Any
 
@@ -11,7 +10,7 @@ import pytest
 from paretour import Client
 
 from tests.api.test_plan_coverage import GRID
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 
 PLACES = [[0, 0], [4, 0], [4, 5], [0, 5], [3, 2], [1, 2]]
 NAMES = ["noise", "people", "wear"]
@@ -33,12 +32,6 @@ def task(count: int, **members: Any) -> dict[str, Any]:
         "paths": True,
         **members,
     }
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def costs_of(path: list[list[int]], layer: list[list[float]]) -> float:

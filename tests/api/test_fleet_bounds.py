@@ -1,24 +1,16 @@
 """POST /fleet with the bounds and measures of dispatchers, against a live server."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import httpx
 import pytest
 
-from tests.helpers.serving import app_of, serving
 from tests.helpers.straight_lines import metres_between
 
 SPEED = 30 / 3.6  # metres in a second
 HOURS = 3600.0
 DEPOTS = {"depot", "kiosk"}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def request(measure: str | None = "lateness", **members: Any) -> dict[str, Any]:

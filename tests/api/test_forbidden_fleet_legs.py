@@ -1,14 +1,11 @@
 """Forbidden legs in fleets of more stops than can be enumerated: all objectives, all ways in."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
-
-from tests.helpers.serving import app_of, serving
 
 N = 12
 A, B = ({"name": name, "matrix": name} for name in ("a", "b"))
@@ -21,12 +18,6 @@ OBJECTIVES = {
     "three": [A, B, {**B, "name": "longest", "over": "max"}],
     **{measure: [A, {"name": "c", "measure": measure}] for measure in MEASURES},
 }
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def costs_with_no_way(n: int) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 import io
 import json
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -14,16 +13,10 @@ from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from tests.helpers.instances import every_tour
 from tests.helpers.sampled import third
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 
 N = 7
 IDS = ["depot", *(f"order-{i}" for i in range(1, N))]
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def costs_with_no_way(seed: int, share: float = 0.3) -> np.ndarray:

@@ -1,26 +1,17 @@
 """Requests of generated clients, which send null for every member that was not set."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
-import pytest
 
 from service.requests.day_fields import StopItem
 from service.requests.fleet import FleetRequest
 from service.requests.fleet_fields import FleetStopItem, VehicleItem
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import ReplanRequest
-from tests.helpers.serving import app_of, serving
 
 PLACES = [[24.94, 60.17], [24.96, 60.18], [24.9, 60.2], [24.97, 60.16]]
 WAY = {"name": "way", "from": "great_circle"}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def whole(form: Any, **given: Any) -> dict[str, Any]:

@@ -1,24 +1,17 @@
 """Fronts over the day, over HTTP."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import httpx
 import pytest
 
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 
 HOUR = 3600.0
 PEAK = [[0, 1.0], [7 * HOUR, 2.0], [9 * HOUR, 1.0]]
 TIMES = [[0, 1800, 3600, 900], [1800, 0, 900, 3600], [3600, 900, 0, 1800], [900, 3600, 1800, 0]]
 RISK = [[0, 5, 1, 2], [5, 0, 2, 9], [1, 2, 0, 3], [2, 9, 3, 0]]
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def stops(**more: Any) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 import json
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -35,12 +34,6 @@ CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 MANY_CITIES = np.random.default_rng(0).random((300, 4)).tolist()
 COSTS = np.random.default_rng(6).random((2, 12, 12))
 PATIENT = replace(LIMITS, seconds=600.0, cities=300)
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 @pytest.mark.parametrize(

@@ -34,12 +34,6 @@ TASK = {"grid": GRID, "cell_size": 0.5, "places": PLACES, "second_coordinates": 
 LATER = {"Prefer": "respond-async"}
 
 
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
-
-
 def changed(**members: Any) -> dict[str, Any]:
     """The task with other members, and without those that are None."""
     return {name: value for name, value in {**TASK, **members}.items() if value is not None}

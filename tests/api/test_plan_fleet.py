@@ -2,7 +2,6 @@
 
 import time
 import uuid
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -14,16 +13,10 @@ from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.plans import Plan, Route
 from service.fleet.schedule import schedule
 from tests.helpers.fleet_requests import fleet_of, fleet_request
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 from tests.helpers.straight_lines import metres_between, seconds_between
 
 GEOJSON = {"Accept": "application/geo+json"}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")

@@ -2,14 +2,13 @@
 
 import json
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
 
-from tests.helpers.serving import LIMITS, app_of, problem, serving
+from tests.helpers.serving import LIMITS, problem
 
 # A map without any symmetry, from the top: free ., obstacle #, unknown ?.
 DRAWN = """
@@ -51,12 +50,6 @@ PLAN: dict[str, Any] = {
     "paths": True,
 }
 OF_PICTURE = {**PLAN, **READING, "cell_size": SIDE, "origin": ORIGIN}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def with_picture(

@@ -2,7 +2,6 @@
 
 import json
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -12,17 +11,11 @@ from paretour import RobotFront
 from service.api.schemas import documented
 from tests.api.test_plan_coverage import GRID, PLACES, png
 from tests.helpers.robot_plans import check_answer
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 from tests.helpers.several_plans import with_several_plans
 
 ROBOTS = [{"id": "left", "start": 0}, {"id": "right", "start": 2}]
 REQUEST = {"grid": GRID, "cell_size": 0.5, "places": PLACES, "robots": ROBOTS, "paths": True}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")

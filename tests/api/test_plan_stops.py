@@ -5,7 +5,6 @@ import json
 import logging
 import time
 import uuid
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -14,7 +13,7 @@ import pytest
 
 from service.instance import Instance, tour_lengths
 from service.roads.great_circle import great_circle_matrix
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 from tests.helpers.straight_lines import matrix_of
 
 IDS = ["depot", *(f"order-{i}" for i in range(1, 9))]
@@ -30,12 +29,6 @@ OBJECTIVES = [
 ]
 REQUEST: dict[str, Any] = {"stops": STOPS, "objectives": OBJECTIVES, "start": "order-3"}
 NAMES = [{"name": "way", "unit": "m"}, {"name": "risk", "unit": "%"}]
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def check(front: dict[str, Any]) -> None:

@@ -1,6 +1,5 @@
 """POST /front/{id}/replan of fleets against a live server."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -9,7 +8,6 @@ import numpy as np
 import pytest
 from paretour import Refused
 
-from tests.helpers.serving import app_of, serving
 from tests.helpers.straight_lines import metres_between
 
 SPEED = 36 / 3.6  # metres in a second
@@ -18,12 +16,6 @@ RANDOM = np.random.default_rng(4)
 PLACES = RANDOM.uniform((24.90, 60.15), (25.00, 60.20), (13, 2)).tolist()
 DISTANCE = {"name": "distance", "from": "great_circle"}
 TIME = {"name": "time", "from": "great_circle", "speed": 36, "over": "max"}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def request(**van: Any) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """Fronts of three and four objectives over HTTP: planned, chosen from, replanned, refused."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from io import BytesIO
 from typing import Any
@@ -26,12 +25,6 @@ def cities(objectives: int) -> list[list[float]]:
 def matrices(objectives: int) -> np.ndarray:
     """Costs of each objective, which differ by direction."""
     return np.random.default_rng(objectives).random((objectives, N, N))
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def lengths_of(answer: dict[str, Any]) -> np.ndarray:

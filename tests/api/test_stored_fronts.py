@@ -1,7 +1,5 @@
 """Stored fronts over HTTP: given again, by angle, and to their caller alone."""
 
-from collections.abc import Iterator
-
 import httpx
 import numpy as np
 import pytest
@@ -15,12 +13,6 @@ from tests.helpers.serving import app_of, problem, serving
 
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 FRONT = {"coordinates": CITIES, "time_limit": 0}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def test_a_front_can_be_asked_for_again(client: httpx.Client) -> None:

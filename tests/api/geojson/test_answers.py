@@ -1,6 +1,5 @@
 """Fronts and tours as GeoJSON, by the rules of RFC 7946, and as text, against a live server."""
 
-from collections.abc import Iterator
 from io import StringIO
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 from paretour.kinds import parse_any
 
-from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.serving import problem
 
 ACCEPT = {"Accept": "application/geo+json"}
 LOCATIONS = [[24.94, 60.17], [24.95, 60.18], [24.97, 60.16], [24.93, 60.15], [24.96, 60.19]]
@@ -21,12 +20,6 @@ OBJECTIVES = [
     {"name": "risk", "unit": "%", "matrix": RISK},
 ]
 REQUEST: dict[str, Any] = {"stops": STOPS, "objectives": OBJECTIVES, "time_limit": 0.1}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=300) as client:
-        yield client
 
 
 def check(collection: dict[str, Any], tours: list[dict[str, Any]]) -> None:
