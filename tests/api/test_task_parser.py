@@ -3,12 +3,10 @@
 import asyncio
 import json
 import os
-import time
 import tracemalloc
-import warnings
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,15 +14,14 @@ import psutil
 import pytest
 from anyio import BrokenWorkerProcess, to_process
 
-from service.actor_info import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
 from service.errors import NoWorker, QueueFull, Refusal
 from service.files.reading import NamedFile
 from service.files.upload import Upload
-from service.instance import Kind
 from service.kinds.offers import parse_offers
 from service.requests.replan.way import ReplanSource
 from service.requests.task import Task, TaskSource
+from tests.helpers.odd_actors import BusyActor, SleepyActor, WarningActor
 from tests.helpers.offers import FIVE, HOUR, NEW_PLACE, NINE, as_stored, fleet_request, stored_fleet
 from tests.helpers.serving import ACTORS, LIMITS
 
@@ -101,15 +98,6 @@ def test_a_body_that_takes_all_memory_ends_its_process(monkeypatch: pytest.Monke
     assert refused.value.code == "body-too-complex"
 
 
-@dataclass(frozen=True, kw_only=True)
-class BusyActor(ActorInfo):
-    """An actor whose choice never ends."""
-
-    def serves(self, kind: Kind, objectives: int = 2) -> bool:  # noqa: ARG002
-        while True:
-            pass
-
-
 def test_a_body_that_takes_too_long_is_refused_and_its_process_goes_on() -> None:
     actors = {"pa-one-matrix": BusyActor(**vars(INFO["pa-one-matrix"]))}
 
@@ -124,15 +112,6 @@ def test_a_body_that_takes_too_long_is_refused_and_its_process_goes_on() -> None
     detail, same = asyncio.run(scenario())
     assert detail == "the body must be parsed within 0.2 s of a processor, and was not"
     assert same
-
-
-@dataclass(frozen=True, kw_only=True)
-class SleepyActor(ActorInfo):
-    """An actor whose choice takes time, and none of a processor."""
-
-    def serves(self, kind: Kind, objectives: int = 2) -> bool:
-        time.sleep(1)
-        return super().serves(kind, objectives)
 
 
 def test_time_that_other_work_takes_does_not_count_until_it_is_far_too_long() -> None:
@@ -190,16 +169,6 @@ def test_offers_may_take_their_time_limit_beside_the_seconds_of_parsing() -> Non
     task = parse_offers(ReplanSource(asked.encode(), front), limits, INFO)
     offers = asyncio.run(parser(seconds=0).find_offers(task))
     assert b'"possible":true' in offers
-
-
-@dataclass(frozen=True, kw_only=True)
-class WarningActor(ActorInfo):
-    """An actor whose choice warns, in the process that chooses it."""
-
-    def serves(self, kind: Kind, objectives: int = 2) -> bool:
-        for number in range(50):
-            warnings.warn_explicit("over\nflow" * 100, RuntimeWarning, "/a/choice.py", number)
-        return super().serves(kind, objectives)
 
 
 @pytest.mark.parametrize("refused", [False, True])
