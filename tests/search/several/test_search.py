@@ -24,7 +24,7 @@ from tests.helpers.instances import (
     small_integers,
     uniform,
 )
-from tests.helpers.sampled import at_night
+from tests.helpers.sampled import IS_WHOLE, at_night
 from tests.search.test_improve import covers, is_front
 
 several = pytest.mark.parametrize("objectives", [3, 4])
@@ -83,7 +83,7 @@ def test_a_front_covers_the_tours_it_began_with(kind: str, ends: str, objectives
     if ends != "closed":
         instance = opened(instance, ends)
     tours = random_routes(instance, 20)
-    found = improve(instance, tours, iterations=500)
+    found = improve(instance, tours, iterations=2000 if IS_WHOLE else 500)
     assert is_front(instance, found)
     assert covers(found.points, tour_lengths(instance, tours))
 
@@ -145,7 +145,7 @@ def test_forbidden_legs_are_in_no_tour() -> None:
 @pytest.mark.parametrize("n", [6, 12, 25])
 def test_no_front_exceeds_the_bound(n: int, kind: str, objectives: int) -> None:
     instance = small_integers(kind, n, n, objectives)
-    found = improve(instance, no_tours(n), iterations=2000)
+    found = improve(instance, no_tours(n), iterations=4000 if IS_WHOLE else 2000)
     reached = hypervolume(found.points, instance.reference_point)
     bound = hypervolume_bound(instance, instance.reference_point)
     assert reached <= bound <= 1
