@@ -19,6 +19,7 @@ from tests.helpers.serving import LIMITS
 
 # Times as long as a loop takes on this machine: 2.5 s where that is .1 s. They took from 2 to 90 s.
 MOST_LOOPS = 25
+FEW_SECONDS = 0.3  # are few on any machine
 LARGE: dict[str, Any] = {"cities": 10_000, "cells": 2**20, "size": 1000, "body_bytes": 2**24}
 
 
@@ -26,11 +27,11 @@ LARGE: dict[str, Any] = {"cities": 10_000, "cells": 2**20, "size": 1000, "body_b
 def test_a_hostile_file_is_refused_after_little_work(name: str) -> None:
     file = NamedFile(*HOSTILE[name]())
     limits = type(LIMITS)(**{**vars(LIMITS), **LARGE})
-    loop, begin = seconds_of_loop(), time.thread_time()
+    begin = time.thread_time()
     with pytest.raises(Refusal) as refused:
         read_upload(Upload([file], None), limits, {})
     seconds = time.thread_time() - begin
-    assert seconds < MOST_LOOPS * max(loop, seconds_of_loop())
+    assert seconds < FEW_SECONDS or seconds < MOST_LOOPS * seconds_of_loop()
     assert refused.value.status in (413, 422)
     assert "MemoryError" not in refused.value.detail
 

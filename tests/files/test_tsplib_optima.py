@@ -5,25 +5,28 @@ from pathlib import Path
 import httpx
 import pytest
 
+from tests.helpers.sampled import few
+
 FOLDER = Path(__file__).parent / "tsplib"
+# As TSPLIB gives them. The first five have weights of one kind each, and the others of these.
 OPTIMA = {
     "gr17": 2085,
-    "gr21": 2707,
-    "gr24": 1272,
-    "fri26": 937,
     "bayg29": 1610,
     "bays29": 2020,
     "ulysses16": 6859,
-    "ulysses22": 7013,
     "att48": 10628,
-}  # as TSPLIB gives them
+    "gr21": 2707,
+    "gr24": 1272,
+    "fri26": 937,
+    "ulysses22": 7013,
+}
 
 
 def test_every_file_has_an_optimum() -> None:
     assert {path.name for path in FOLDER.iterdir()} == {f"{name}.tsp" for name in OPTIMA}
 
 
-@pytest.mark.parametrize(("name", "optimum"), OPTIMA.items())
+@pytest.mark.parametrize(("name", "optimum"), few(5, OPTIMA.items()))
 def test_the_plan_for_a_file_has_the_length_of_its_optimum(
     name: str, optimum: int, released: str
 ) -> None:
