@@ -34,10 +34,12 @@ ANSWER: dict[str, Any] = {
     "id": "",
     "kind": "robots",
     "status": "done",
+    "cities": 3,
     "objectives": OBJECTIVES,
     "places": REQUEST["places"],
     "points": 1,
     "hypervolume": 0.5,
+    "timings_ms": {},
     "terminated": "converged",
     "front": [
         {
