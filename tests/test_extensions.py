@@ -88,10 +88,12 @@ def guide_package(packages: Path) -> Iterator[dict[str, str]]:
 
 
 @pytest.mark.skipif(not shutil.which("curl"), reason="curl is not installed")
-def test_the_package_of_the_guide_plans_in_a_service(packages: Path) -> None:
+def test_the_package_of_the_guide_plans_in_a_service(
+    packages: Path, quick_actors: dict[str, str]
+) -> None:
     with (
         guide_package(packages) as named,
-        serving_settings({"PARETOUR_WORKERS": "1", **named}) as url,
+        serving_settings({"PARETOUR_WORKERS": "1", **quick_actors, **named}) as url,
     ):
         [answer] = run_page(PAGE, packages, url)
         front = json.loads(answer)

@@ -11,6 +11,7 @@ from tests.benchmarks import fleet_table, provenance
 from tests.benchmarks.fleet_instances import fleet_of
 from tests.benchmarks.rivals import earlier_fleets
 from tests.benchmarks.street_fleets import street_fleets
+from tests.helpers.sampled import at_night
 
 # A vehicle holds two of three customers. One that visits 2 after 1 is on its way for 24.
 WINDOWS = """T1
@@ -129,6 +130,7 @@ def test_recipes_are_planned_and_printed(fleets: Any, capsys: pytest.CaptureFixt
     assert "| paretour without a search | 0.5" in printed  # of the literature's box
 
 
+@at_night
 def test_late_orders_on_streets_are_planned_by_us_and_by_the_earlier_engine(fleets: Any) -> None:
     commit = f"{earlier_fleets.COMMIT}^{{commit}}"
     known = subprocess.run(["git", "cat-file", "-e", commit], cwd=provenance.ROOT, check=False)

@@ -47,18 +47,23 @@ def test_every_way_to_ask_gives_the_same_front(
         assert found(dict(answer)) == found(by_hand)
 
 
-def test_a_front_is_a_table_and_a_line_on_stderr(cities: Path) -> None:
-    ended = paretour("front", cities, "--size", 3, "--time-limit", 0)
+def test_a_front_is_a_table_and_a_line_on_stderr(
+    cities: Path, quick_actors: dict[str, str]
+) -> None:
+    ended = paretour("front", cities, "--size", 3, "--time-limit", 0, **quick_actors)
     assert ended.returncode == 0
     assert "first length" in ended.stdout
     assert ended.stderr.startswith("3 of ")
     assert "hypervolume" in ended.stderr
 
 
-def test_a_front_may_be_lines_of_csv(cities: Path) -> None:
-    arguments = ("front", cities, "--time-limit", 0, "--repairs", 0, "--angles", "10,45,80")
-    rows = list(csv.DictReader(io.StringIO(paretour(*arguments, "--csv").stdout)))
-    front = json.loads(paretour(*arguments, "--json").stdout)["front"]
+def test_a_front_may_be_lines_of_csv(cities: Path, quick_actors: dict[str, str]) -> None:
+    arguments = ("front", cities, "--time-limit", 0, "--angles", "10,45,80")
+    as_csv, as_json = (
+        paretour(*arguments, form, **quick_actors).stdout for form in ("--csv", "--json")
+    )
+    rows = list(csv.DictReader(io.StringIO(as_csv)))
+    front = json.loads(as_json)["front"]
     assert len(front) <= 3
     assert [
         {
@@ -71,9 +76,10 @@ def test_a_front_may_be_lines_of_csv(cities: Path) -> None:
     ] == front
 
 
-def test_a_front_is_drawn(cities: Path, tmp_path: Path) -> None:
+def test_a_front_is_drawn(cities: Path, tmp_path: Path, quick_actors: dict[str, str]) -> None:
     picture = tmp_path / "front.png"
-    assert paretour("front", cities, "--time-limit", 0, "--plot", picture).returncode == 0
+    drawn = paretour("front", cities, "--time-limit", 0, "--plot", picture, **quick_actors)
+    assert drawn.returncode == 0
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 

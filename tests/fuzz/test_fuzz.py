@@ -9,12 +9,12 @@ import pytest
 from tests.fuzz.attack import largest_memory, parse_many, post_many, strict_json
 from tests.fuzz.bodies import GENERATORS, extreme
 from tests.fuzz.fleets import extreme_fleet
-from tests.helpers.sampled import tenth, third
+from tests.helpers.sampled import sixth, tenth
 from tests.helpers.serving import ACTORS, LIMITS, app_of, serving, workers_of
 
 INFO = {actor.info.name: actor.info for actor in ACTORS}
 COUNT = tenth(2000)
-SAMPLE = third(15)
+SAMPLE = sixth(15)
 EXTREMES = tenth(500)
 
 

@@ -73,6 +73,7 @@ CALLS = {
 }
 # The names of functions that one process calls, and those that later ones do.
 AT_NIGHT = (
+    (["half", "eighth", "factorial", "third"], ["of_others", "sixteenths", "refused"]),
     (["of_others", "refused"], ["eighth", "sixteenths", "half", "third", "of_others"]),
     (["of_others"], ["more_of_others"], ["more_of_others", "of_others"]),
 )
@@ -88,8 +89,11 @@ def refusal(function, *arguments):
 @pytest.mark.parametrize(
     "order",
     [
-        (["half", "eighth", "factorial", "third"], ["of_others", "sixteenths", "refused"]),
-        (["sixteenths", "eighteenth"], ["refused", "of_others", "half"], ["eighth", "negative"]),
+        (
+            ["sixteenths", "eighteenth"],
+            ["refused", "of_others", "half"],
+            ["eighth", "factorial", "negative"],
+        ),
         *(AT_NIGHT if IS_WHOLE else ()),
     ],
 )

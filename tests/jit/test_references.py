@@ -48,6 +48,10 @@ def doubled(state):
 def copied(state):
     return state.table.rows.copy()
 
+@jit.compiled
+def lost(state):
+    return state.table.nothing
+
 def state(flag=True):
     rows = np.arange(6.0).reshape(2, 3)
     inner = Inner(np.array([7.0, 1.0]))
@@ -56,22 +60,20 @@ def state(flag=True):
 
 
 def test_members_are_read_and_arrays_among_them_are_changed(tmp_path: Path) -> None:
-    """By the process that compiles the kernels, and by the next, which loads them."""
+    """By the process that compiles the kernels, and by the next, which loads them.
+
+    A member that there is not is an error.
+    """
     (tmp_path / "kernels.py").write_text(KERNELS)
     code = (
         "given = state()\n"
         "print(total(given), doubled(given), given.table.inner.numbers.tolist(),"
-        " total(state(False)), copied(given).sum())"
+        " total(state(False)), copied(given).sum())\n"
     )
-    found = [printed(tmp_path, code) for _ in range(2)]
-    assert found == ["43.5 50.5 [14.0, 2.0] 37.0 15.0\n"] * 2
-
-
-def test_a_member_that_there_is_not_is_an_error(tmp_path: Path) -> None:
-    kernel = "\n@jit.compiled\ndef lost(state):\n    return state.table.nothing\n"
-    (tmp_path / "kernels.py").write_text(KERNELS + kernel)
-    code = (
+    wrong = (
         "try:\n    lost(state())\nexcept Exception as error:\n"
         "    print(type(error).__name__, 'nothing' in str(error))"
     )
-    assert printed(tmp_path, code) == "TypingError True\n"
+    first, second = printed(tmp_path, code + wrong), printed(tmp_path, code)
+    assert first == second + "TypingError True\n"
+    assert second == "43.5 50.5 [14.0, 2.0] 37.0 15.0\n"

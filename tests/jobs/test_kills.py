@@ -12,7 +12,7 @@ import pytest
 
 from tests.helpers.engines import Served, engine_of
 from tests.helpers.jobs import CITIES, check, ended, later
-from tests.helpers.sampled import third
+from tests.helpers.sampled import sixth
 from tests.helpers.serving import problem
 
 # Long enough for a report on the fastest machine.
@@ -28,7 +28,7 @@ FLEET = {
     "time_limit": 0.8,
 }
 CALLERS = 3
-KILLS = third(10)
+KILLS = sixth(12)
 
 
 @pytest.mark.parametrize("kind", ["embedded", "cluster"])

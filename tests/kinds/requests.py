@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-CITIES = 100
+CITIES = 50
 _SIDE = 20  # cells of a map
 
 
@@ -65,7 +65,7 @@ def requests() -> Iterator[tuple[str, Asked]]:
     """Yield a request of each kind, by its name in the tables of tests."""
     plane = np.random.default_rng(3).random((CITIES, 2)).tolist()
     cities = np.random.default_rng(4).random((CITIES, 4)).tolist()
-    vehicles = [{"id": "van", "count": 4, "start": 0, "end": 0, "capacity": [30]}]
+    vehicles = [{"id": "van", "count": 4, "start": 0, "end": 0, "capacity": [15]}]
     fleet = stops()
     for stop in fleet["stops"][1:]:
         stop["demand"] = [1]
