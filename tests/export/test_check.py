@@ -58,7 +58,8 @@ def test_a_comparison_says_how_many_tours_part_after_a_tie() -> None:
 def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Path) -> None:
     trained = load_weights(ROOT / f"models/checkpoints/{path.stem}.pt")
     # The export itself goes further.
-    compare(trained.actor, onnx.load(path), sizes=(3, 60), counts=(20,), repairs=(0, 1, 10))
+    with unchecked_types():
+        compare(trained.actor, onnx.load(path), sizes=(3, 60), counts=(20,), repairs=(0, 1, 10))
 
 
 def test_late_repairs_are_those_of_torch() -> None:
@@ -69,7 +70,8 @@ def test_late_repairs_are_those_of_torch() -> None:
 
 
 def test_the_file_joins_many_cities_as_torch_does() -> None:
-    compare(*small("pa-one"), sizes=(MANY + 1,), counts=(3,), repairs=(0,))
+    with unchecked_types():  # fewer cities have the same axes
+        compare(*small("pa-one"), sizes=(MANY + 1,), counts=(3,), repairs=(0,))
 
 
 def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:
@@ -80,7 +82,7 @@ def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]
         values = numpy_helper.to_array(weights)
         if values.ndim == 2 and values.dtype == "float32" and values.min() < 0:  # not a constant
             weights.CopyFrom(numpy_helper.from_array(-values, weights.name))
-    with pytest.raises(TourMismatch, match=r"tours of .* part at position"):
+    with unchecked_types(), pytest.raises(TourMismatch, match=r"tours of .* part at position"):
         compare(actor, changed, sizes=(20,), counts=(20,))
 
 

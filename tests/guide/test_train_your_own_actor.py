@@ -16,7 +16,8 @@ from tests.benchmarks import __main__ as benchmarks
 from tests.benchmarks import provenance
 from tests.guide.pages import GUIDE, commands
 from tests.guide.sessions import run_page
-from tests.helpers.processes import serve_process
+from tests.helpers.serving import serving_settings
+from tests.helpers.type_checks import unchecked_types
 
 PAGE = GUIDE / "train-your-own-actor.md"
 FEWER = {
@@ -70,12 +71,13 @@ def test_the_recipe_trains_exports_and_serves_an_actor(
     modules = [each[2:] for each in words if each[1:2] == ["-m"]]
     # The commands after the benchmark are other ways to train.
     measured = [module for module, *_ in modules].index("tests.benchmarks")
-    for module, *arguments in modules[:measured]:
-        COMMANDS[module](fewer(arguments))
+    with unchecked_types():  # tests/models and tests/export check the same code with them
+        for module, *arguments in modules[:measured]:
+            COMMANDS[module](fewer(arguments))
     assert "tours are the same" in capsys.readouterr().out
     settings = {"PARETOUR_WORKERS": "1", "PARETOUR_OWN_ACTORS": "runs/actors"}
-    with serve_process(settings) as service:
-        [answer] = run_page(PAGE, quick, service.url)
+    with serving_settings(settings) as url:
+        [answer] = run_page(PAGE, quick, url)
     assert json.loads(answer)["actor"]["name"] == "my-one"
     _, *arguments = modules[measured]
     monkeypatch.setattr("sys.argv", ["benchmarks", *fewer(arguments), "--count", "1"])
