@@ -1,6 +1,6 @@
 """Why plans leave stops out: the price of serving each, or what keeps each vehicle from it."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import truediv
 from typing import NamedTuple, get_args
 
@@ -63,7 +63,6 @@ def explain(
     A stop that no plan serves is inserted into the plan that leaves out the fewest.
 
     Args:
-        fleet: The fleet.
         plans: The m plans.
         points: Their lengths under d objectives, shape (m, d).
         ended: Called before each insertion; once it returns True, the other stops that no plan
@@ -103,7 +102,12 @@ def _served_elsewhere(
 
 def with_all_stops(fleet: Fleet, plan: Plan) -> Plan:
     """Return a plan with the stops that it leaves out where they cost the least, if they fit."""
-    for stop in unassigned(fleet.rules, plan):
+    return with_stops(fleet, plan, unassigned(fleet.rules, plan))
+
+
+def with_stops(fleet: Fleet, plan: Plan, stops: Iterable[int]) -> Plan:
+    """Return a plan with those of some stops that it leaves out, as `with_all_stops` does."""
+    for stop in stops:
         if stop not in plan.visited():
             plan = with_stop(fleet, plan, stop) or plan
     return plan
@@ -128,10 +132,9 @@ def _cheapest(fleet: Fleet, plan: Plan, routes: Sequence[_Inserted]) -> Plan | N
     def cost(inserted: _Inserted) -> float:
         number, route = inserted
         if fleet.rules.groups.waiting:  # then the times of other routes may change
-            return sum(map(truediv, plan_lengths(fleet, _exchanged(plan, number, route)), scale))
+            return sum(map(truediv, plan_lengths(fleet, exchanged(plan, number, route)), scale))
         of_routes = [*known[:number], route_lengths(fleet, route), *known[number + 1 :]]
-        routes = (*plan.routes[:number], route, *plan.routes[number + 1 :])
-        lengths = routes_together(fleet, routes, of_routes)
+        lengths = routes_together(fleet, exchanged(plan, number, route).routes, of_routes)
         if number == len(known):
             lengths[0] += fleet.rules.vehicles[route.vehicle].fixed
         return sum(map(truediv, lengths, scale))
@@ -139,10 +142,10 @@ def _cheapest(fleet: Fleet, plan: Plan, routes: Sequence[_Inserted]) -> Plan | N
     scale = fleet.scale.tolist()
     if not routes:
         return None
-    return _exchanged(plan, *min(routes, key=cost))
+    return exchanged(plan, *min(routes, key=cost))
 
 
-def _exchanged(plan: Plan, number: int, route: Route) -> Plan:
+def exchanged(plan: Plan, number: int, route: Route) -> Plan:
     """Return a plan with another route of a number, or one more route."""
     return Plan((*plan.routes[:number], route, *plan.routes[number + 1 :]))
 
@@ -164,7 +167,7 @@ def _insertions(fleet: Fleet, plan: Plan, stop: int) -> tuple[list[_Inserted], d
     """
     found: list[_Inserted] = []
     reasons: dict[int, Broken] = {}
-    for number, route in _routes(fleet, plan):
+    for number, route in open_routes(fleet, plan):
         for extended in _extensions(fleet, route, stop):
             broken = first_broken(fleet, extended) or _broken_beside(fleet, plan, number, extended)
             if broken is None:
@@ -191,11 +194,11 @@ def _broken_beside(fleet: Fleet, plan: Plan, number: int, route: Route) -> Broke
     """Return the first rule that a plan breaks with an exchanged route, if visits wait."""
     if not fleet.rules.groups.waiting:
         return None
-    broken = routes_broken(fleet, _exchanged(plan, number, route))
+    broken = routes_broken(fleet, exchanged(plan, number, route))
     return next((each for _, each in broken), None)
 
 
-def _routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:
+def open_routes(fleet: Fleet, plan: Plan) -> Iterator[tuple[int, Route]]:
     """Yield the routes of a plan with their numbers, and one for each type with a vehicle left."""
     yield from enumerate(plan.routes)
     used = [route.vehicle for route in plan.routes]

@@ -21,7 +21,7 @@ from service.fleet.evaluation import (
     routes_broken,
 )
 from service.fleet.fleet import Array, Fleet
-from service.fleet.left_out import Reason, is_same_everywhere, with_stop
+from service.fleet.left_out import Reason, exchanged, is_same_everywhere, with_stops
 from service.fleet.plans import Plan, Route, path_of
 from service.fleet.rules import Rule
 from service.fleet.schedule import schedule, with_waits
@@ -117,7 +117,8 @@ def find_offers(
         ended: Called before each place is evaluated; once it returns True, the offers are what was
             found so far.
     """
-    plan = _with_needed(fleet, plan, order)
+    required = [stop for stop in fleet.rules.clients if stop in fleet.rules.required]
+    plan = with_stops(fleet, plan, (stop for stop in required if stop != order))
     slotted = with_slots(fleet, order, slots)
     search = _Search(slotted, plan, ended)
     found = [_Found(np.empty((0, len(fleet.rules.over)))) for _ in slots]
@@ -127,17 +128,6 @@ def find_offers(
     offers = tuple(search.offer(slot, each) for slot, each in enumerate(found))
     lengths = plan_lengths(fleet, plan)
     return Offers(plan, lengths, offers)
-
-
-def _with_needed(fleet: Fleet, plan: Plan, order: int) -> Plan:
-    visited = {*plan.visited()}
-    for stop in fleet.rules.clients:
-        if stop in fleet.rules.required and stop not in visited and stop != order:
-            longer = with_stop(fleet, plan, stop)
-            if longer is not None:
-                plan = longer
-                visited = {*plan.visited()}
-    return plan
 
 
 @dataclass(eq=False)
@@ -221,8 +211,7 @@ class _Search:
 
     def _with(self, row: int, route: Route) -> Plan:
         """Return the plan with a route in its place."""
-        number, routes = self._rows[row][0].number, self._plan.routes
-        return Plan((*routes[:number], route, *routes[number + 1 :]))
+        return exchanged(self._plan, self._rows[row][0].number, route)
 
     def _note(self, row: int, broken: Broken) -> None:
         """Remember a rule that a place breaks in all slots, or that all of its route do."""

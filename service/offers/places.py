@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from service.fleet.fleet import Fleet
+from service.fleet.left_out import open_routes
 from service.fleet.plans import Plan, Route
 
 
@@ -34,18 +35,10 @@ def places_in(fleet: Fleet, plan: Plan) -> Iterator[Places]:
     It may come anywhere in each route, or alone in the route of a vehicle that is left. A vehicle
     that may load again may do so just before the stop, or just after it.
     """
-    for number, route in enumerate(plan.routes):
-        yield from _of_route(fleet, number, route)
-    used = [route.vehicle for route in plan.routes]
-    for index, vehicle in enumerate(fleet.rules.vehicles):
-        if used.count(index) < vehicle.count:
-            yield from _of_route(fleet, len(plan.routes), Route(index, ()))
-
-
-def _of_route(fleet: Fleet, number: int, route: Route) -> Iterator[Places]:
-    stops = route.stops
-    yield Places(number, route.vehicle, stops, tuple(range(len(stops) + 1)))
-    for reload in fleet.rules.vehicles[route.vehicle].reload:
-        for place in range(len(stops) + 1):
-            longer = (*stops[:place], reload, *stops[place:])
-            yield Places(number, route.vehicle, longer, (place, place + 1))
+    for number, route in open_routes(fleet, plan):
+        stops = route.stops
+        yield Places(number, route.vehicle, stops, tuple(range(len(stops) + 1)))
+        for reload in fleet.rules.vehicles[route.vehicle].reload:
+            for place in range(len(stops) + 1):
+                longer = (*stops[:place], reload, *stops[place:])
+                yield Places(number, route.vehicle, longer, (place, place + 1))
