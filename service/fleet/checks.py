@@ -1,6 +1,6 @@
 """Check that what each stop and each type of vehicles asks for fits the rest of a fleet's rules."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Mapping, Sequence
 from math import inf
 from typing import NamedTuple
 
@@ -131,14 +131,17 @@ def check_visit(visit: Visit, part: str, basis: Basis) -> None:
     for number, window in enumerate(visit.windows):
         alone = len(visit.windows) == 1
         _check_span(window, f"{part}/window" if alone else f"{part}/windows/{number}", basis)
-    if visit.demand and len(visit.demand) != basis.dimensions:
-        numbers, came = basis.dimensions, len(visit.demand)
-        raise invalid(f"{part}/demand", "not-as-capacities", numbers=numbers, came=came)
-    if visit.pickup and len(visit.pickup) != basis.dimensions:
-        numbers, came = basis.dimensions, len(visit.pickup)
-        raise invalid(f"{part}/pickup", "not-as-capacities", numbers=numbers, came=came)
+    check_loads({"demand": visit.demand, "pickup": visit.pickup}, part, basis.dimensions)
     if visit.prize is not None and not basis.summed:
         raise invalid(f"{part}/prize", "unsummed")
+
+
+def check_loads(loads: Mapping[str, Sequence[int]], part: str, dimensions: int) -> None:
+    """Raise a refusal unless the loads of a stop, by the members that have them, fit capacities."""
+    for name, load in loads.items():
+        if load and len(load) != dimensions:
+            came = len(load)
+            raise invalid(f"{part}/{name}", "not-as-capacities", numbers=dimensions, came=came)
 
 
 def check_depot(visit: Visit, part: str) -> None:
@@ -214,8 +217,6 @@ def check_percents(
     Args:
         percents: Of each objective; None for no percentile.
         of_clock: Whether each objective is the time of routes.
-        vehicles: The types of vehicles.
-        spreads: Whether times spread from day to day.
     """
     for index, percent in enumerate(percents):
         part = f"objectives/{index}/percentile"

@@ -32,7 +32,7 @@ from service.requests.fields import (
 from service.requests.profile_fields import ProfileCostsItem
 from service.requests.spread_fields import Percentile, SpreadOfTimes
 from service.requests.stop_fields import NamedStop, StopReference, find_index, find_indexes
-from service.requests.validation import nearest
+from service.requests.task import types_of
 
 _MOST_LOAD = 10**9
 _MOST_COUNT = 10**6
@@ -103,14 +103,12 @@ class FleetStopItem(NamedStop):
         Raises:
             Refusal: No vehicle has that id, or windows are not in order.
         """
-        if self.vehicle is not None and self.vehicle not in types:
-            near = nearest(self.vehicle, types)
-            raise invalid(f"{part}/vehicle", "not-a-vehicle", came=self.vehicle, near=near)
+        able = () if self.vehicle is None else types_of(self.vehicle, types, part)
         wanted, due = self.due if isinstance(self.due, list) else (0.0, self.due)
         own = {
             "windows": tuple(spans_of(self.window, self.windows, f"{part}/window")),
             "due": inf if due is None else due,
-            "vehicles": () if self.vehicle is None else types[self.vehicle],
+            "vehicles": able,
             "wanted": wanted,
             "services": self._services(part, types),
         }
@@ -120,11 +118,8 @@ class FleetStopItem(NamedStop):
         """Return how long the visit takes by each type of vehicles; nothing if all are alike."""
         own: dict[int, float] = {}
         for index, each in enumerate(self.services):
-            if each.vehicle not in types:
-                near = nearest(each.vehicle, types)
-                where = f"{part}/services/{index}/vehicle"
-                raise invalid(where, "not-a-vehicle", came=each.vehicle, near=near)
-            own |= dict.fromkeys(types[each.vehicle], each.service)
+            able = types_of(each.vehicle, types, f"{part}/services/{index}")
+            own |= dict.fromkeys(able, each.service)
         count = sum(map(len, types.values()))
         return tuple(own.get(kind, self.service) for kind in range(count)) if own else ()
 

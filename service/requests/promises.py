@@ -21,8 +21,7 @@ from service.requests.fields import (
     optional,
 )
 from service.requests.stop_fields import StopReference, find_indexes
-from service.requests.task import VehicleName, types_by_id
-from service.requests.validation import nearest
+from service.requests.task import VehicleName, types_by_id, types_of
 
 
 class PromisedRouteItem(StrictModel):
@@ -53,9 +52,7 @@ class PromisedPlan:
     """A plan that is driven or was promised, each of whose routes has a type of vehicles.
 
     Args:
-        types: The types of vehicles.
-        names: The name of each.
-        routes: The routes.
+        names: The name of each type of vehicles.
         arrivals: When its vehicle reaches each stop, if that is given.
     """
 
@@ -129,10 +126,7 @@ def promised_plan(
 
 def _kind(item: PromisedRouteItem, part: str, by_id: Mapping[str, tuple[int, ...]]) -> int:
     """Return the type of the vehicle of a route."""
-    if item.vehicle not in by_id:
-        near = nearest(item.vehicle, by_id)
-        raise invalid(f"{part}/vehicle", "not-a-vehicle", came=item.vehicle, near=near)
-    shifts = by_id[item.vehicle]
+    shifts = types_of(item.vehicle, by_id, part)
     if item.shift >= len(shifts):
         raise invalid(f"{part}/shift", "no-such-shift", shifts=len(shifts), came=item.shift)
     return shifts[item.shift]

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from service.coverage.coverage import Coverage
-from service.errors import CityNames
+from service.errors import CityNames, invalid
 from service.fleet.fleet import LAYERS, Fleet
 from service.fleet.measures.table import Measure
 from service.fleet.plans import Route
@@ -28,6 +28,7 @@ from service.requests.stops import (
     costs_of_day,
 )
 from service.requests.straight_sources import are_straight, lines_of
+from service.requests.validation import nearest
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
 _MOST_STORED = 500  # stops; costs of more are worked out faster than read, where they are lines
@@ -60,12 +61,22 @@ def types_by_id(names: Sequence[VehicleName]) -> dict[str, tuple[int, ...]]:
     return types
 
 
+def types_of(id: str, types: Mapping[str, tuple[int, ...]], part: str) -> tuple[int, ...]:
+    """Return the types of vehicles of an id, which the member `vehicle` of a part has.
+
+    Raises:
+        Refusal: No vehicle has it.
+    """
+    if id not in types:
+        raise invalid(f"{part}/vehicle", "not-a-vehicle", came=id, near=nearest(id, types))
+    return types[id]
+
+
 @dataclass(frozen=True, eq=False)
 class UnmeasuredFleet:
     """The rules of a fleet, the names of its types of vehicles, and the sources of its costs.
 
     Args:
-        rules: The rules.
         vehicles: The name of each type of vehicles.
         stops: The stops, with the sources of two costs, by one profile of vehicles after another.
         driven: What is left of the routes of a plan that is being driven.
@@ -73,7 +84,6 @@ class UnmeasuredFleet:
         profiles: The names of these profiles; None for vehicles without one.
         spares: The types of vehicles of which none is left, though there may be more. Where visits
             name types, the first spare follows the last type of the rules.
-        names_of_spares: The name of each of them.
         changes: The members of a request to replan that remedies change; None if it is none.
     """
 
@@ -175,7 +185,6 @@ class Task:
     Args:
         subject: The stops that tours go through; the places of a map, for one robot or several; or
             the stops of a fleet.
-        options: The options for the planner.
         actor: The name of the actor that builds the first tours; empty for a fleet or several
             robots, if no actor that is loaded reads matrices.
         paths: Whether each tour comes with its path over the map.

@@ -11,6 +11,7 @@ from pydantic_core import from_json, to_json
 from service.actor_info import ActorInfo
 from service.errors import Fault, Refusal, invalid
 from service.errors.parts import Part, part_of, renamed
+from service.fleet.checks import check_loads
 from service.fleet.vehicles import Span
 from service.requests.fields import (
     PositiveTime,
@@ -117,7 +118,6 @@ class OffersTask:
     """What offers are asked for, checked.
 
     Args:
-        front: The id of the front.
         task: The rest of the fleet's day, with the order as a stop that may be visited at any time.
         order: The index of the order among its stops.
         slots: When the visit may begin, from and to.
@@ -204,10 +204,8 @@ def _check_order(order: OfferedOrder, fleet: UnmeasuredFleet) -> None:
     for name in _OF_SLOTS:
         if name in order.model_fields_set:
             raise invalid(f"order/{name}", "not-beside", member="slots")
-    numbers = fleet.rules.dimensions
-    for name, load in (("demand", order.demand), ("pickup", order.pickup)):
-        if load and len(load) != numbers:
-            raise invalid(f"order/{name}", "not-as-capacities", numbers=numbers, came=len(load))
+    loads = {"demand": order.demand, "pickup": order.pickup}
+    check_loads(loads, "order", fleet.rules.dimensions)
 
 
 def _check_count(part: str, count: int, most: int) -> None:

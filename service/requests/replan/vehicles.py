@@ -10,8 +10,7 @@ from service.fleet.vehicles import VehicleType
 from service.requests.replan.changes import NamedType, by_route
 from service.requests.replan.day import DaySoFar, Way
 from service.requests.replan.fleet_fields import ReplanFleetRequest
-from service.requests.task import UnmeasuredFleet, VehicleName
-from service.requests.validation import nearest
+from service.requests.task import UnmeasuredFleet, VehicleName, types_by_id, types_of
 
 
 @dataclass(frozen=True)
@@ -49,9 +48,7 @@ def vehicles_of_rest(
     """Return the vehicles of the rest.
 
     Args:
-        request: The changes.
         fleet: The fleet of the front, changed as they say.
-        day: The day so far.
         place_of: Returns the index of a vehicle's new position.
         by_routes: Whether each route that has not begun needs a type of its own.
 
@@ -171,11 +168,7 @@ def _on_the_way(
 
 
 def _left(limit: float, driven: float | None, part: str) -> float:
-    """Return what is left of a limit on driving.
-
-    Raises:
-        Refusal: It is not known how much was driven.
-    """
+    """Return what is left of a limit on driving."""
     if limit == inf:
         return inf
     if driven is None:
@@ -215,11 +208,7 @@ def changed_fleet(
     types = [*rules.vehicles, *fleet.spares]
     names: tuple[VehicleName, ...] = (*fleet.vehicles, *fleet.names_of_spares)
     for index, item in enumerate(request.vehicles):
-        own = [at for at, name in enumerate(names) if name.id == item.vehicle]
-        if not own:
-            near = nearest(item.vehicle, (name.id for name in names))
-            part = f"vehicles/{index}/vehicle"
-            raise invalid(part, "not-a-vehicle", came=item.vehicle, near=near)
+        own = types_of(item.vehicle, types_by_id(names), f"vehicles/{index}")
         if item.max_overtime is not None:
             for at in own:
                 types[at] = replace(types[at], max_overtime=item.max_overtime)
