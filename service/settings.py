@@ -6,11 +6,11 @@ Nothing else in the service reads the environment. The guide lists every setting
 import math
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeAlias, TypeVar
 from urllib.parse import urlsplit
 
 from pydantic import (
@@ -53,18 +53,24 @@ _LEAST = 0.001  # of shares, seconds and metres
 # No spaces, commas or semicolons: the server's name becomes part of a header.
 _TILES = re.compile(r"https?://[A-Za-z0-9.{}:-]+/[A-Za-z0-9_.~/{}?&=%@+-]*")
 _PARTS_OF_TILES = ("{z}", "{x}", "{y}")
+Each = TypeVar("Each")
 
 
 def _cores() -> int:
     return min(len(os.sched_getaffinity(0)), 4)
 
 
-def _split(value: object) -> object:
-    return [word.strip() for word in value.split(",") if word] if isinstance(value, str) else value
+def _split(value: str) -> list[str]:
+    return [word.strip() for word in value.split(",") if word]
 
 
-def _pair(value: object) -> object:
-    return tuple(value.partition(":")[::2]) if isinstance(value, str) else value
+def _pair(value: str) -> tuple[str, ...]:
+    return value.partition(":")[::2]
+
+
+def _as(read: Callable[[str], object]) -> BeforeValidator:
+    """Return what reads a text of the environment, and takes a value as it is."""
+    return BeforeValidator(lambda value: read(value) if isinstance(value, str) else value)
 
 
 def _names_server(value: str, *schemes: str) -> bool:
@@ -79,18 +85,6 @@ def _checked_redis_url(value: str) -> str:
     if not _names_server(value, "redis", "rediss"):
         raise ValueError("must be redis://HOST:PORT/NUMBER, or rediss:// for TLS")
     return value
-
-
-def _key_hash(value: object) -> object:
-    return KeyHash.read(value) if isinstance(value, str) else value
-
-
-def _target(value: object) -> object:
-    return Target.read(value) if isinstance(value, str) else value
-
-
-def _secret(value: object) -> object:
-    return Secret.read(value) if isinstance(value, str) else value
 
 
 def _checked_rate(value: str) -> str:
@@ -148,25 +142,16 @@ _whole = partial(_number, kind="whole number")
 Share = Annotated[float, _number(_LEAST, 1)]
 Seconds = Annotated[float, _number(_LEAST, _WEEK)]
 KeptSeconds = Annotated[float, _number(_LEAST, 10 * _YEAR)]
-Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
-KeyHashes = Annotated[
-    tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
-]
-WebhookTargets = Annotated[
-    tuple[Annotated[Target, BeforeValidator(_target)], ...], NoDecode, BeforeValidator(_split)
-]
-WebhookSecrets = Annotated[
-    tuple[Annotated[Secret, BeforeValidator(_secret)], ...], NoDecode, BeforeValidator(_split)
-]
+Listed: TypeAlias = Annotated[tuple[Each, ...], NoDecode, _as(_split)]
+Words = Listed[str]
+KeyHashes = Listed[Annotated[KeyHash, _as(KeyHash.read)]]
+WebhookTargets = Listed[Annotated[Target, _as(Target.read)]]
+WebhookSecrets = Listed[Annotated[Secret, _as(Secret.read)]]
 RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
 Address = Annotated[str, AfterValidator(_checked_address)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
-Profiles = Annotated[
-    tuple[Annotated[tuple[Name, Name], BeforeValidator(_pair)], ...],
-    NoDecode,
-    BeforeValidator(_split),
-]
+Profiles = Listed[Annotated[tuple[Name, Name], _as(_pair)]]
 
 
 class Settings(BaseSettings):
