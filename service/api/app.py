@@ -16,7 +16,7 @@ from service.api.auth import Access
 from service.api.body_budget import BodyBudget
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.files import file_router
-from service.api.geojson.answers import FrontAnswers, Streets
+from service.api.geojson.answers import FrontAnswers
 from service.api.metrics import Metrics
 from service.api.middleware import (
     BodyTimeoutMiddleware,
@@ -43,6 +43,7 @@ from service.api.webhook_event import add_webhooks
 from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.requests.limits import Limits
+from service.roads.client import RoadClient
 from service.webhooks.sender import Webhooks
 from service.webhooks.targets import Targets
 
@@ -79,7 +80,7 @@ class Edge:
     share: float = 0.5
     parser: ParserBounds = field(default_factory=ParserBounds)
     measure: Measure | None = None
-    streets: Streets | None = None
+    streets: RoadClient | None = None
     tiles: Tiles = field(default_factory=Tiles)
     agents: bool = False
     webhooks: Webhooks | None = None

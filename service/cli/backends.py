@@ -1,9 +1,12 @@
-"""Plan for the command: in this process, or by a service at a URL."""
+"""Plan for the command: in this process, or by a service at a URL, with progress on a console.
+
+Ctrl-C ends a search early: the front is then the best so far.
+"""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import httpx
 from paretour import Actor, Client, FrontOfAnyKind, Job, Offers, OffersRequest, Plan, Refused
@@ -17,28 +20,6 @@ from service.cli.progress import ConsoleDisplay, progress_bar
 if TYPE_CHECKING:
     from service.actor_info import ActorInfo
     from service.settings import Settings
-
-
-class Backend(Protocol):
-    """A planner of fronts, with progress on a console while it plans.
-
-    Ctrl-C ends a search early: the front is then the best so far.
-    """
-
-    def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front of any kind.
-
-        Raises:
-            KeyboardInterrupt: Ctrl-C was pressed before there was a front.
-        """
-
-    def actors(self) -> tuple[Actor, ...]:
-        """Return the actors to choose from."""
-
-
-def backend_for(service: Service) -> Backend:
-    """Return a service as a backend, or without a URL this process."""
-    return LocalBackend() if service.url is None else RemoteBackend(service.url, service.api_key)
 
 
 @dataclass(frozen=True)
@@ -124,6 +105,14 @@ class LocalBackend:
 
         infos = load_with(known, load_settings())
         return tuple(Actor(**asdict(infos[name])) for name in sorted(infos))
+
+
+Backend = LocalBackend | RemoteBackend
+
+
+def backend_for(service: Service) -> Backend:
+    """Return a service as a backend, or without a URL this process."""
+    return LocalBackend() if service.url is None else RemoteBackend(service.url, service.api_key)
 
 
 def _result(job: Job[FrontOfAnyKind], plan: Plan, console: Console) -> FrontOfAnyKind:

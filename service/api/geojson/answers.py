@@ -6,10 +6,9 @@ Lines of tours are straight from stop to stop, or follow the streets as a routin
 import asyncio
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from paretour.text_sets import label, text_set, unnamed
 from pydantic_core import to_json
 from starlette.requests import Request
@@ -18,7 +17,7 @@ from starlette.responses import Response
 from service.api.auth import client_of
 from service.api.body_budget import BodyBudget
 from service.api.disconnect import unless_disconnected
-from service.api.geojson.features import Drawing, Line
+from service.api.geojson.features import Drawing
 from service.api.request_headers import GEOJSON, TEXT, accepts_geojson, prefers_text
 from service.api.responses import compressed, json_bytes, record_under, root_path_of
 from service.errors import Fault, Refusal
@@ -26,6 +25,7 @@ from service.jobs.record import Record
 from service.kinds.table import KINDS
 from service.objectives import OBJECTIVES
 from service.requests.fields import Geometry
+from service.roads.client import RoadClient
 
 VARY = {"Vary": "Accept"}
 # For the OpenAPI document.
@@ -71,32 +71,15 @@ FRONT_CONTENT = {"content": {**CONTENT["content"], **TEXT_CONTENT["content"]}}
 Stops = Sequence[dict[str, Any]]
 
 
-class Streets(Protocol):
-    """Knows lines along the streets; see RoadClient."""
-
-    async def lines(
-        self,
-        locations: NDArray[np.float64],
-        ids: Sequence[str],
-        ways: Sequence[NDArray[np.int64]],
-        seconds: float,
-        profiles: Sequence[str | None],
-    ) -> list[Line]:
-        """Return the line along the streets of each way through stops."""
-
-    async def close(self) -> None:
-        """Close the connections to the engine."""
-
-
 class FrontAnswers:
     """Answers requests with fronts and tours.
 
     Args:
-        streets: The routing engine's streets, None where none is configured.
+        streets: The routing engine, whose streets lines may follow; None where there is none.
         budget: The bytes of all answers that are being made and sent.
     """
 
-    def __init__(self, streets: Streets | None, budget: BodyBudget) -> None:
+    def __init__(self, streets: RoadClient | None, budget: BodyBudget) -> None:
         self._streets = streets
         self._budget = budget
 
@@ -125,8 +108,6 @@ class FrontAnswers:
         A front that was planned for this request is sent even where the budget has no room.
 
         Args:
-            request: The request to answer.
-            record: The front's record.
             geometry: What the lines follow.
             seconds: The time that is left for this.
             plan: The number of the one plan to draw; None draws all that the front holds.
@@ -200,7 +181,6 @@ def points_text(objectives: Sequence[Mapping[str, Any]], lengths: Sequence[Seque
 
     Args:
         objectives: The name and unit of each objective; none where the request named none.
-        lengths: The lengths of each tour or plan.
     """
     labels = [label(each["name"], each.get("unit")) for each in objectives]
     return text_set(labels or unnamed(len(lengths[0]) if len(lengths) else OBJECTIVES), lengths)
