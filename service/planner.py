@@ -68,7 +68,6 @@ def plan(
 
     Args:
         constructor: Builds the tours that the search starts from.
-        instance: The instance.
         options: The options of the front and the search.
         watch: Asked every millisecond or two whether to stop; planning then ends with the best
             front so far. It also says when to report. The time limit is that of the options.

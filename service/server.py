@@ -182,7 +182,6 @@ def make_server(
     """Return a server of HTTP/1.1 alone, over these connections.
 
     Args:
-        app: The application.
         connections: The connections, and the proxies that are trusted.
         drain_seconds: What requests in progress have at the end.
         root_path: The path that a proxy takes away from those of all requests.

@@ -24,9 +24,7 @@ def open_session(content: bytes, path: Path, threads: int) -> onnxruntime.Infere
     """Open a session that runs in a number of threads, for the content of an ONNX file.
 
     Args:
-        content: The content.
         path: Where the file lies. The optimised graph of a released network is kept.
-        threads: The number of threads.
 
     Raises:
         ValueError: ONNX Runtime cannot run it.

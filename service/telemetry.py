@@ -70,7 +70,6 @@ def log_loading(
     """Make an application log, from its start on, how far its search is loaded.
 
     Args:
-        app: The application.
         check_ready: Raises a refusal until it is ready.
         compiling: Returns how far the compilation is, which may go on after that; else None.
     """

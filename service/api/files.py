@@ -62,14 +62,7 @@ class FileAnswer(BaseModel):
 def file_router(
     parser: TaskParser, budget: BodyBudget, most_bytes: int, answers: BodyBudget
 ) -> APIRouter:
-    """Return the route that reads files in the processes that parse bodies.
-
-    Args:
-        parser: The parser of bodies.
-        budget: The budget for the bodies of all requests.
-        most_bytes: The most bytes of one body.
-        answers: The budget for all answers.
-    """
+    """Return the route that reads files in the processes that parse bodies."""
     router = APIRouter(tags=["files"])
 
     @router.post(

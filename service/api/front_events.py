@@ -58,7 +58,6 @@ async def events_after(states: AsyncIterator[JobState], seen: Seen) -> AsyncIter
     """Yield the states of a job as server-sent events, until it is finished.
 
     Args:
-        states: The states.
         seen: What the client has seen, which is left out.
     """
     coming = asyncio.ensure_future(anext(states, None))

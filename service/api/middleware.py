@@ -56,7 +56,6 @@ class SecurityHeadersMiddleware(_Middleware):
     """Tells browsers to load only files of the service, and to embed the page nowhere.
 
     Args:
-        app: The application.
         images: Another source of images, by default none.
     """
 
@@ -112,7 +111,6 @@ class RequestMiddleware(_Middleware):
     document.
 
     Args:
-        app: The application.
         observers: What requests are reported to, such as the log and the metrics.
     """
 

@@ -37,7 +37,6 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
     """Complete FastAPI's document with what only the service knows.
 
     Args:
-        document: The document.
         schemas: The schemas that request bodies refer to, by name.
     """
     document["info"]["description"] = _DESCRIPTION

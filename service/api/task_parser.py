@@ -194,11 +194,7 @@ class TaskParser:
         raise _too_complex("without the loss of its process, and two were lost")
 
     async def _start_process(self) -> None:
-        """Start a process unless one is idle. The body is not to blame where that takes long.
-
-        Raises:
-            NoWorker: It does not start; the machine may have no time for it.
-        """
+        """Start a process unless one is idle. The body is not to blame where that takes long."""
         for _ in range(_STARTS):
             with suppress(BrokenWorkerProcess), CancelScope(shield=True):
                 # Shielded, as anyio does not end a process that is left as it starts.

@@ -91,11 +91,7 @@ def _ranges(option: Option) -> list[str]:
 
 
 def _picked(picks: list[int], question: Question, console: Console) -> list[int]:
-    """Return the picks with that of a question, which is asked for, or without the last one.
-
-    Raises:
-        UsageError: Nobody can be asked, or the input ends.
-    """
+    """Return the picks with that of a question, which is asked for, or without the last one."""
     numbers = [str(number) for number in range(len(question.options))]
     demand = f"a pick is needed, 0 to {numbers[-1]}: --picks {_joined([*picks, 0])}"
     if not sys.stdin.isatty():

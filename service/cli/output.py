@@ -100,8 +100,6 @@ def plans_as_rows(front: FrontOfPlans, kind: Kind, numbers: Iterable[int] | None
     """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops.
 
     Args:
-        front: The front.
-        kind: Its kind.
         numbers: Those of the plans to return; by default all.
     """
     names = front.names

@@ -91,7 +91,6 @@ class RedisEngine:
 
     Args:
         redis: The connections for notifications.
-        store: The store of all replicas.
         send: Called with the id of each record to plan, in a thread.
         queue: How many jobs may wait in addition to one for each worker.
         share: The share of all of these that one client may hold. It may always hold one more than

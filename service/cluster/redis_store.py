@@ -48,7 +48,6 @@ class RedisStore(RecordScript):
         """Admit a record if there is a place for it; a repeat needs none.
 
         Args:
-            record: The record.
             queue: How many records may be unfinished in addition to one for each worker.
             share: The share of all of these that one client may hold.
             waits: Whether the client waits for the front, so that a worker must run now.

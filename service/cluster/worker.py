@@ -51,8 +51,6 @@ class RecordWorker:
 
     Args:
         make_runner: Called in each process; it must be picklable.
-        redis_url: The Redis with the records.
-        workers: How many processes there are.
         seconds: The time limit of a record.
         roads: The client of a routing engine.
     """

@@ -23,8 +23,6 @@ def repairs_worth(inputs: Kind, n: int, objectives: int) -> int:
 
     Args:
         inputs: The kind of instance that the network reads.
-        n: The number of cities.
-        objectives: The number of objectives.
 
     >>> [repairs_worth("coordinates", n, objectives=2) for n in (20, 200, 1000, 5000)]
     [9, 82, 94, 150]

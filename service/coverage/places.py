@@ -36,9 +36,7 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
     """Return the caller's places, or those that cover a region; and one for a pose without one.
 
     Args:
-        coverage: The task.
         free: The cells free for the robot, shape (rows, columns).
-        max_places: The greatest number of places.
 
     Raises:
         InvalidCoverage: A place or a pose is not free or cannot be reached, or the second objective

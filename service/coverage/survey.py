@@ -147,7 +147,6 @@ def survey(
     """Return the places of a coverage task and the instance of the costs between them.
 
     Args:
-        coverage: The task.
         max_places: The greatest number of places that a spacing may give.
         stop: Called once for each place, and before and after; True ends the survey.
         seconds: The most processor time that the searches for paths may take.

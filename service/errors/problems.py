@@ -110,11 +110,7 @@ PROBLEMS: Mapping[str, Problem] = {
         422, "{detail}", (*_PLANS, *_OFFERS, _LIST, _STORED, _QUESTIONS, *_TOUR)
     ),
     "no-plan": Problem(422, "{reason}", (*_PLANS, *_OFFERS)),
-    "no-actor": Problem(
-        422,
-        "{kind} need an actor that reads them, and none is loaded",
-        _PLANS,
-    ),
+    "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
     "no-repairs": Problem(
         422, "repairs must be 0 for {name}, which cannot repair tours, got {came}", _PLANNED
     ),

@@ -43,7 +43,6 @@ def checked(found: Any, instance: Instance, at: str, rows: int | None = None) ->
     """Return the result of `called(...)` as tours, shape (t, n).
 
     Args:
-        found: The result.
         instance: The instance with n cities.
         at: The function in words, for the error.
         rows: The number of tours that there must be; None for any number, of a search. Only the

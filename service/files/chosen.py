@@ -64,8 +64,7 @@ def without_unused(source: Source, table: Table, fields: Collection[str]) -> Tab
     """Return a table without the columns that are chosen to be details or ignored.
 
     Args:
-        source: Its file, which is told the fields that its columns may be taken for.
-        table: The table.
+        source: The file of the table, which is told the fields that columns may be taken for.
         fields: These fields; DETAIL is among them for stops.
 
     Raises:

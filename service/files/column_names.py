@@ -142,7 +142,6 @@ def fields_of(heading: Sequence[str], chosen: Sequence[str | None] = ()) -> list
     without closing ones are windows.
 
     Args:
-        heading: The names of the columns.
         chosen: The field that was chosen for each column, or None.
     """
     taken = best_fields(heading, NAMES_OF_STOPS, chosen)

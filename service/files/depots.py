@@ -122,7 +122,6 @@ def with_depots(
     Args:
         columns: The table of the stops. The first stops are its rows.
         stops: All stops.
-        vehicles: The vehicles.
         plane: The points of the stops in the plane, if they are not on the earth. Those of stops
             that are added for vehicles are added here too.
     """

@@ -43,7 +43,6 @@ def measured(
     """Return both objectives of stops on the earth; if `timed`, the second is time in seconds.
 
     Args:
-        source: The file.
         timed: Whether the second is time.
         stops: The stops, whose distances say how fast vehicles are without a routing engine.
         factor: How much faster than usual the vehicles are.
@@ -150,8 +149,6 @@ def fleet_of_tables(
 
     Args:
         source: The file of the stops.
-        stops: The stops.
-        vehicles: The vehicles.
         plane: The points of the stops in the plane, if they are not on the earth.
         waits: Whether some stops wait for others, whoever drives.
     """

@@ -210,11 +210,7 @@ def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Fi
 
 
 def _joined(parts: Sequence[FilePart]) -> FrontRequest:
-    """Return the request of files about the same stops, one for each objective.
-
-    Raises:
-        UnreadableFile: Their stops differ, or more than one says where stops lie.
-    """
+    """Return the request of files about the same stops, one for each objective."""
     first = parts[0]
     for part in parts:
         if part.count != first.count:

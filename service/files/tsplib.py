@@ -163,11 +163,7 @@ def split_tsplib(source: Source, text: str) -> TsplibFile:
 
 
 def _add(file: TsplibFile, found: dict[str, Any], name: str, value: Any) -> None:
-    """Add what stands at a keyword.
-
-    Raises:
-        UnreadableFile: The keyword stands twice, with different values.
-    """
+    """Add what stands at a keyword."""
     if name in found and name not in _REPEATED and (found[name] != value or value == []):
         raise file.source.refusal("keyword-twice", name[:60])
     found.setdefault(name, value)

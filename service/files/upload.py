@@ -97,11 +97,7 @@ def read_upload(upload: Upload, limits: Limits, actors: Mapping[str, ActorInfo])
 
 
 def _json(reading: Reading, most_bytes: int) -> bytes:
-    """Return a reading as JSON, without its details if it would be too long with them.
-
-    Raises:
-        Refusal: It is too long.
-    """
+    """Return a reading as JSON, without its details if it would be too long with them."""
     answer = to_json(reading.document, inf_nan_mode="null")
     if len(answer) > most_bytes and reading.details:
         return _json(_without_details(reading), most_bytes)

@@ -22,7 +22,6 @@ def no_plan(fleet: Fleet, sentence: str, ended: Callable[[], bool]) -> Refusal:
     too soon.
 
     Args:
-        fleet: The fleet.
         sentence: What is known without them, as "no plan keeps every rule".
         ended: Called every few milliseconds; once it returns True, stops are no longer looked for.
     """

@@ -49,7 +49,6 @@ def network_sequences(fleet: Fleet, constructor: Constructor) -> list[Indices]:
     They begin after the depot of the first type of vehicles, if it has one.
 
     Args:
-        fleet: The fleet.
         constructor: The network, which must read matrices.
 
     Raises:
@@ -114,7 +113,6 @@ class Cutter:
     """Cuts sequences of stops into routes, again and again, and finds the best of all cuts.
 
     Args:
-        fleet: The fleet.
         sequences: At least one sequence of all c stops to visit, shape (c,); c is at least 1.
         stop: Called often; once it returns True, no further cuts are made.
 

@@ -197,7 +197,6 @@ class Fleet:
         Over the day it is a bound below that cost.
 
         Args:
-            layer: The number of the costs.
             starts: The stops where paths may start.
             back: Whether paths lead from the stops to the starts instead.
         """

@@ -106,7 +106,6 @@ def check_groups(groups: Groups, depots: Collection[int], shipped: Collection[in
     """Raise a refusal if a group has a stop that it cannot have, or asks for what cannot be.
 
     Args:
-        groups: The groups.
         depots: The stops at which vehicles start, end or load again.
         shipped: The stops of shipments.
     """
@@ -130,8 +129,6 @@ def check_waiting(groups: Groups, *, timed: bool, others: Mapping[str, bool]) ->
     """Raise a refusal of visits that wait for others, if they cannot.
 
     Args:
-        groups: The groups.
-        timed: Whether the fleet has a clock.
         others: Members of the request beside which visits cannot wait, and whether they are given.
     """
     gaps = enumerate(groups.gaps)

@@ -17,7 +17,6 @@ def least_paths(legs: Rows, n: int, starts: Sequence[int], combine: np.ufunc = n
 
     Args:
         legs: Returns the costs of the legs from a stop; infinite for forbidden legs.
-        n: The number of stops.
         starts: The stops where paths may start.
         combine: How the costs of legs make the cost of a path: np.add, or np.maximum.
     """

@@ -37,7 +37,6 @@ def plan_fleet(
     """Return the best front of plans found for a fleet within the time limit.
 
     Args:
-        fleet: The fleet.
         options: The options of the front and the search.
         constructor: The network whose tours are cut into plans where the time limit is 0; it must
             read matrices. A search does not ask it: its fronts are as good without.

@@ -55,7 +55,6 @@ def promised(visit: Visit, vehicle: int, arrival: float | None, slack: float) ->
     """Return a stop as it is promised.
 
     Args:
-        visit: The stop.
         vehicle: The type of vehicles that visits it; -1 if that has gone.
         arrival: When the vehicle arrives; None if that is not known.
         slack: How long before a window closes it must.

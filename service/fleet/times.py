@@ -91,8 +91,6 @@ def drive(
     At each stop the vehicle takes the first window that is not over, else the last one.
 
     Args:
-        chain: The route.
-        departure: When its vehicle leaves.
         reach: The largest time from which the departure was computed.
         allowed: The number of the first window that it may take at each stop; by default 0.
     """

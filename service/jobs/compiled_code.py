@@ -45,7 +45,6 @@ def warm_up(
     """Load parts from the cache, or compile them.
 
     Args:
-        parts: The parts.
         tell: Called with each part once it is loaded, and while some are compiled a few times a
             second with how far that is.
         before_compiling: Called once all parts that are in the cache are loaded, before any part is
@@ -116,8 +115,6 @@ class _CompilationProgress:
     """Counts functions that are compiled, and tells now and then how far that is.
 
     Args:
-        parts: The parts that are compiled.
-        processes: The number of processes that compile them.
         tell: Called with how far it is.
     """
 

@@ -19,7 +19,6 @@ class JobState:
     """A record with its status and front as of now, and what is known of its progress.
 
     Args:
-        record: The record.
         progress: The progress of its search, if it runs.
         compiling: The progress of the compilation that it waits for, if it waits.
     """

@@ -88,7 +88,6 @@ class UnsavedRecords:
         After some minutes the front is given up, and a failed record is stored instead.
 
         Args:
-            record: The record.
             error: What the store raised at first.
         """
         self._ids.add(record.id)
@@ -118,17 +117,9 @@ class LocalEngine:
     Jobs that are unfinished when the service ends stay in the store; the next service with that
     store resumes them. If the store does not accept a finished record, its front is reported all
     the same and stored later; until then no new job is accepted.
-
-    Args:
-        workers: The processes that plan.
-        store: Where records are kept.
     """
 
-    def __init__(
-        self,
-        workers: WorkerPool,
-        store: SqliteStore,
-    ) -> None:
+    def __init__(self, workers: WorkerPool, store: SqliteStore) -> None:
         self._workers = workers
         self._store = store
         self._unsaved = UnsavedRecords(store)

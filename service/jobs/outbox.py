@@ -59,7 +59,6 @@ class Outbox(Protocol):
         """Take deliveries that are due.
 
         Args:
-            most: The most deliveries.
             seconds: The time after which they are due again.
 
         Raises:

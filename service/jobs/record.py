@@ -62,7 +62,6 @@ def as_ended(
     """Return the record of a job that ended with this front, which may have no tour.
 
     Args:
-        record: The record of the job.
         front: The best front found.
         reason: Why the job was stopped; None if it was not.
         seconds: The time from the request to the end.

@@ -65,7 +65,6 @@ class Store(Outbox, Protocol):
             caller: The name of the API key.
             client: The caller or, without keys, an address.
             below: Only records with a number below this are returned.
-            most: The most records to return.
         """
 
     async def delete(self, record: Record) -> None:
@@ -128,7 +127,6 @@ def record_from(columns: Mapping[str, Any], webhook: str | None = None) -> Recor
     """Return the record in these columns. Columns that would be None may be missing.
 
     Args:
-        columns: The columns.
         webhook: The JSON of its webhook, if it has one.
 
     Raises:

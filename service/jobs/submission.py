@@ -21,7 +21,6 @@ class Submission:
 
     Args:
         number: Tells it from the pool's other submissions, also in messages.
-        task: The task.
         on_change: Called when a worker begins, and with each progress.
         client: The client whose turn in the queue, and whose share of the places, it takes.
     """

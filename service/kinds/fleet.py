@@ -204,7 +204,6 @@ def document_of_plans(
     """Return a front of plans as JSON, whose plans are encoded one after another.
 
     Args:
-        front: The front.
         encode: Returns a plan as JSON, which begins with the members that it is given.
         actor: The network; it is named where its tours were cut into plans.
         members: Other members of the document.

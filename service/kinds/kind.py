@@ -53,8 +53,6 @@ class Run(Protocol[S_contra]):
         """Return the front of a task whose costs by road have been measured.
 
         Args:
-            subject: The subject of the task.
-            task: The task.
             tools: The actors and limits.
             watch: Asked often whether to stop, and told the progress regularly.
 

@@ -140,9 +140,7 @@ def robot_fleet(surveyed: Survey, shared: SharedCoverage) -> RobotFleet:
     return RobotFleet(fleet, places, list(types.values()))
 
 
-def _stops_and_types(
-    surveyed: Survey,
-) -> tuple[Indices, dict[tuple[int, int | None], list[int]]]:
+def _stops_and_types(surveyed: Survey) -> tuple[Indices, dict[tuple[int, int | None], list[int]]]:
     """Return the place of each stop, and the robots of each pair of stops to start and end at."""
     starts = {ends.start for ends in surveyed.robots}
     places = list(range(len(surveyed.places)))

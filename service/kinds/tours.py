@@ -116,10 +116,7 @@ def _plan(
     """Plan or replan the front of a task.
 
     Args:
-        task: The task.
         instance: The costs; over the day the mean ones.
-        tools: What plans.
-        watch: The watch over the work.
         surveyed: The map, if it has one.
         day: The costs over the day, if they depend on the time.
     """

@@ -20,7 +20,6 @@ def until_done(
     Where it is not told of Ctrl-C, it runs the function itself.
 
     Args:
-        run: The function.
         interrupted: The function that `interrupt_flag` yields.
         terminate: Called repeatedly after Ctrl-C: it ends a running call of the network.
     """

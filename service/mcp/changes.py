@@ -25,7 +25,6 @@ class Day:
     """What has changed since a front was planned.
 
     Args:
-        members: The members of the request.
         assumed: What was taken for granted, in sentences.
         parts: What the agent calls parts of the request: done/van/1 for routes/0/done/1.
     """
@@ -137,9 +136,7 @@ def _where(route: FleetRoute, last: int, now: float, depots: Collection[str]) ->
     """Return where a vehicle goes on, unless at the last visit, and when, if a visit has begun.
 
     Args:
-        route: Its route.
         last: The place in it that it has reached last.
-        now: The present time.
         depots: The stops that are no visits.
     """
     stop = route.stops[last]

@@ -18,7 +18,6 @@ def offers_text(offers: Offers, assumed: Sequence[str] = ()) -> str:
     """Return the text of offers: each slot that is possible with its price, and why others are not.
 
     Args:
-        offers: The offers.
         assumed: Sentences that say how the day so far was read.
     """
     possible = [_possible(offers, each) for each in offers.possible]

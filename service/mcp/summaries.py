@@ -31,7 +31,6 @@ def front_text(front: FrontOfAnyKind, link: str | None, assumed: Sequence[str] =
     """Return the text of a front: its ranges, up to five of its tours, and the stops of the knee.
 
     Args:
-        front: The front.
         link: The address of a page that shows the front, if there is one.
         assumed: Sentences that say how the file that it was planned from was read.
     """
@@ -98,8 +97,6 @@ def tour_text(front: FrontOfAnyKind, number: int, first_stop: int, link: str | N
     """Return the text of one tour or plan of a front.
 
     Args:
-        front: The front.
-        number: The number of the tour or plan in the front.
         first_stop: How many of its stops to leave out before the first that is shown.
         link: The address of a page that shows the front, if there is one.
     """
@@ -212,7 +209,6 @@ def _trade(
 
     Args:
         lengths: The lengths of the tours of the front, shape (k, m).
-        names: The names of the objectives.
         paid: The index of the objective that may be more than its least.
         bought: The index of the objective that becomes less.
         slack: How much more may be paid, as a share of the least.
@@ -259,7 +255,6 @@ def _stops(front: FrontOfAnyKind, ways: Sequence[Way], kept: Sequence[tuple[int,
     """Return the stops that have room, with their times, as members of the document.
 
     Args:
-        front: The front.
         ways: The routes of the plan, or the one of the tour.
         kept: The stops that have room: the number of the route, and the place in it.
     """
@@ -280,7 +275,6 @@ def _left(pairs: Sequence[Any], first: int, kept: Sequence[Any]) -> Named:
     """Return a member that says how many stops are not in the text, if there are any.
 
     Args:
-        pairs: All stops.
         first: How many stops are left out before the first that is shown.
         kept: The stops that are shown.
     """

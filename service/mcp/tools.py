@@ -44,7 +44,6 @@ class Planner:
     """A service that tools call.
 
     Args:
-        client: Its client.
         page: The address of its page, if it has one.
         state: Say what the service does before it plans, as compiling; by default nothing.
     """

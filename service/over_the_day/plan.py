@@ -49,7 +49,6 @@ def plan_over_the_day(
 
     Args:
         plan_under_means: Plans the front of the day's instance, which has mean costs.
-        day: The day.
         options: The options of the front and the search.
         earlier: What is left of the tours of the front that is replanned, if one is.
         watch: The watch over the work, as in plan(...).

@@ -42,8 +42,6 @@ def plan_reliably(
         plan: Plans a front, as `plan(...)` does.
         instance: The instance, with mean costs as matrices.
         spreads: The spread of each objective; None where its costs are certain.
-        options: The options.
-        watch: The watch over the work.
 
     Raises:
         Cancelled, NoTour: As in plan(...).

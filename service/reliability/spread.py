@@ -47,7 +47,6 @@ def addends(spread: Spread, means: Array) -> Array:
     other legs of a tour, which are taken to be the mean of all legs of the day.
 
     Args:
-        spread: The spread.
         means: The mean costs, shape (n, n), infinite for forbidden legs.
     """
     if spread.days is None:
@@ -67,7 +66,6 @@ def lengths_at(spread: Spread, means: Array, steps: tuple[Steps, Steps], percent
     """Return what the lengths of tours do not exceed on so many days of a hundred, shape (k,).
 
     Args:
-        spread: The spread.
         means: The mean costs, shape (n, n).
         steps: Where the steps of each tour begin and end, shape (k, s) both.
         percent: From 50 on.

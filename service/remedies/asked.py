@@ -27,8 +27,6 @@ class AskedFleet:
     """A fleet and the names that its request has for it.
 
     Args:
-        fleet: The fleet.
-        stops: The ids of the stops.
         vehicles: The id of each type of vehicles; those of several shifts have the same.
         unit: The unit of the clock, if there is one.
         at_fault: The stops that its refusal names, if it names some.

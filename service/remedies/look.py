@@ -74,8 +74,6 @@ def remedies_of(
         asked: The fleet, which has no plan, or none that was found.
         time_limit: The seconds that the request has for planning: no trial has more.
         most: The most seconds that a request may have.
-        plan: Plans a fleet.
-        watch: Says when to stop.
     """
     seconds = min(_MOST_SECONDS, max(_LEAST_SECONDS, time_limit))
     trial = min(max(_LEAST_TRIAL, _OF_A_STOP * asked.rules.n), _MOST_TRIAL)
@@ -107,7 +105,6 @@ class _Looking:
     """Tries rules one after another.
 
     Args:
-        fleet: The fleet.
         trial: The most seconds of a trial.
         plan: Plans a fleet.
         watch: Watches all trials, by the seconds that this thread computes.

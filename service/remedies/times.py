@@ -97,10 +97,7 @@ def _fewest_late(asked: AskedFleet, front: FleetFront, closing: Sequence[int]) -
 
     The plan is the one with the fewest.
     """
-    return min(
-        (_late_of(asked, front.fleet, plan, closing) for plan in front.plans),
-        key=len,
-    )
+    return min((_late_of(asked, front.fleet, plan, closing) for plan in front.plans), key=len)
 
 
 def _late_of(asked: AskedFleet, fleet: Fleet, plan: Plan, closing: Sequence[int]) -> list[int]:

@@ -43,7 +43,6 @@ def few_enough(instance: Instance, earlier: EarlierTours, most: int = MOST_TRIED
     The driven tour stays, and others that are evenly spread.
 
     Args:
-        instance: The instance.
         earlier: The earlier tours, shape (m, k).
         most: The most places that are tried for new cities in all tours together.
     """

@@ -24,7 +24,6 @@ def kept_shares(instance: Instance, tours: Tours, driven: NDArray[np.int64]) -> 
     other direction is kept too. The share is 1 if the driven tour has no legs.
 
     Args:
-        instance: The instance.
         tours: Shape (m, n).
         driven: The cities of the driven tour that are in the instance, in order, shape (k,).
 
@@ -79,7 +78,6 @@ def with_most_kept_at(
     by at most an eighth of a mean leg. The ends of the front stay.
 
     Args:
-        instance: The instance.
         driven: The cities of the driven tour, as in kept_shares().
         balance: The balance, in the box of the chosen tours.
         found: The front.

@@ -41,7 +41,6 @@ def replan(
     that are about as near to the balance and about as short.
 
     Args:
-        constructor: Builds further tours.
         instance: The rest of the way.
         earlier: The rest of the tours of the earlier front.
         options: The options of the front and the search.

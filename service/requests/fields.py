@@ -309,11 +309,7 @@ class PlanFields(SearchFields):
         return self.actor if "actor" in self.model_fields_set else None
 
     def _directions(self, m: int) -> NDArray[np.float64]:
-        """Return the directions of the preferences, shape (k, m), under m objectives.
-
-        Raises:
-            Refusal: One is not for each objective, or is 0 for all.
-        """
+        """Return the directions of the preferences, shape (k, m), under m objectives."""
         given = self.preferences
         if isinstance(given, int):
             return spread(given, m)

@@ -235,11 +235,7 @@ class FleetRequest(SearchFields):
                 raise invalid(f"vehicles/{index}/speed_factor", "slower-by-breakpoints", came=came)
 
     def _groups(self, ids: Mapping[str, int]) -> Groups:
-        """Return the groups of stops.
-
-        Raises:
-            Refusal: One of them is not a stop.
-        """
+        """Return the groups of stops."""
 
         def found(references: Sequence[int | str], part: str) -> tuple[int, ...]:
             return find_indexes(references, ids, part)
@@ -286,9 +282,6 @@ class FleetRequest(SearchFields):
         """Return the objectives that bring costs, and which of these costs each objective is of.
 
         Where more objectives have costs, some have the same. Of a measure they do not matter.
-
-        Raises:
-            Refusal: An objective has both costs and a measure, or there are too many costs.
         """
         # Objectives that share costs also share the clock, so only those that must do, or that ask
         # for percentiles of its times, have its days, or stand beside times of their own.

@@ -148,8 +148,6 @@ def limited_schemas(
     """Return the schemas of a request and of its parts, with the limits on its numbers.
 
     Args:
-        model: The form.
-        limits: The limits.
         actors: The names of the actors to choose from.
     """
     template = reference_to("{model}")["$ref"]

@@ -24,7 +24,6 @@ class Limits:
     """The largest amounts that a request may contain or ask for.
 
     Args:
-        body_bytes: Bytes of a body.
         cities: Stops in two planes.
         matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
@@ -32,11 +31,8 @@ class Limits:
         survey_seconds: Processor seconds to find the paths between the places of a map.
         fleet_stops: Stops of a fleet, all of whose costs are straight lines, and places that
             several robots share.
-        cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
             count for more.
-        preferences: Preferences of a front.
-        repairs: Repairs of the network's tours.
         size: Tours to return, or initial tours in a request.
         breakpoints: Breakpoints of all pairs of stops, in all objectives.
         seconds: The time limit of planning.
@@ -85,7 +81,6 @@ class Limits:
         """Return the most tours of n cities, each with its return, that an answer may have.
 
         Args:
-            n: The number of cities.
             id_bytes: Bytes of the ids in one tour.
         """
         return max(1, min(self.size, self.path_cells // max(n + 1, id_bytes // _ID_BYTES)))
@@ -125,9 +120,6 @@ def within_limits(request: AnyRequest, n: int, limits: Limits, id_bytes: int = 0
     """Return a request about n cities, with each default above its limit lowered to it.
 
     Args:
-        request: The request.
-        n: The number of cities.
-        limits: The limits.
         id_bytes: Bytes of the ids in one tour, or one plan, of the answer.
 
     Raises:
@@ -261,8 +253,6 @@ def check_router(
     """Raise a refusal where costs by road or traffic are asked for, and no engine has them.
 
     Args:
-        sources: The sources of costs.
-        limits: The limits.
         part_of: Returns the part of the request that has a source, by the number of the source.
     """
     for m, source in enumerate(map(base_of, sources)):
@@ -287,8 +277,6 @@ def check_fleet(
 
     Args:
         part: The part of the request that is refused.
-        stops: The stops.
-        limits: The limits.
         time_limit: The seconds of planning; with none, the network reads matrices.
         code: The code of what is wrong with the part.
     """
@@ -308,8 +296,6 @@ def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
     """Return the defaults for n cities, lowered so that none is over a limit.
 
     Args:
-        limits: The limits.
-        n: The number of cities.
         id_bytes: Bytes of the ids in one tour.
     """
     largest = {**limits.of_options, "size": limits.most_tours(n, id_bytes)}

@@ -114,8 +114,6 @@ def read_spreads(
     """Return the spread of each objective; nothing if no costs spread.
 
     Args:
-        items: The objectives.
-        n: The number of stops.
         timed: Whether tours depart at times of the day.
         bound: Whether a bound is asked for.
 

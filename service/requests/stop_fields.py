@@ -214,9 +214,8 @@ def find_index(
     """Return the index of a stop that is named by its id or its index.
 
     Args:
-        reference: The id or the index.
         ids: The index of each stop by its id; empty where the cities have no ids.
-        part: Its place in the request, such as initial_tours/0/2.
+        part: The place of the reference in the request, such as initial_tours/0/2.
         n: The number of stops that an index may be of; without it, an index is not checked.
         noun: What these stops are, for the sentence.
 

@@ -40,8 +40,6 @@ class Labels:
     """The caller's names of everything in a request: its n stops, in order, and its objectives.
 
     Args:
-        stops: The stops.
-        objectives: The objectives.
         parts: Of a request to replan: the part that has each stop, as add/0; empty for those of the
             earlier front. None where the request lists all stops.
     """
@@ -88,7 +86,6 @@ class Measured:
     """A source of costs: a measure of the way between the locations of stops.
 
     Args:
-        measure: The measure.
         speed: The km/h at which metres along great circles become seconds; None leaves metres.
         profile: Of vehicles, by road; None for what the operator has set.
     """
@@ -103,7 +100,6 @@ class Changed:
     """A source of costs: another source, with changed costs of some steps.
 
     Args:
-        base: The other source.
         steps: Where each step begins and ends, shape (m, 2).
         costs: The cost of each step, shape (m,).
     """
@@ -121,7 +117,6 @@ class OverTheDay:
     """A source of costs: those of another source, times a factor that changes over the day.
 
     Args:
-        base: The other source.
         begins: The times from which each factor holds, shape (s,), ascending seconds of the day.
         factors: Shape (s,), positive.
     """

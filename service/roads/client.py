@@ -80,10 +80,7 @@ class RoadClient:
         """Return the seconds by road between all stops at s times, shape (s, n, n).
 
         Args:
-            departures: The times, as 2026-11-27T07:30.
-            locations: The locations of the stops, as for `costs`.
-            ids: The names of the stops, as for `costs`.
-            profile: As for `costs`.
+            departures: The times, as 2026-11-27T07:30. The others are as of `costs`.
 
         Raises:
             Refusal: As of `costs`.
@@ -108,7 +105,6 @@ class RoadClient:
 
         Args:
             locations: The locations of the stops, as for `costs`.
-            ids: The names of the stops, as for `costs`.
             ways: One at least: indices of stops in the order of their visits, shape (m,) each, m at
                 least 2.
             seconds: The remaining time, if it is less than the settings allow.

@@ -103,11 +103,7 @@ class RouterTransport:
 
 
 async def _content(response: httpx.Response, most: int) -> bytes:
-    """Return the body of a response.
-
-    Raises:
-        RouterUnusable: It has too many bytes.
-    """
+    """Return the body of a response."""
     content = bytearray()
     async for chunk in response.aiter_raw():
         content += chunk

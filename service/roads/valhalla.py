@@ -76,8 +76,6 @@ class Valhalla:
     """Asks for ways by one costing model, between places within some metres of a road.
 
     Args:
-        costing: The costing model.
-        snap: The metres.
         departure: When ways begin, as 2026-11-27T07:30 in the time of the place: tables then are of
             the historical traffic at that time.
         most_route_stops: The most places of a route.

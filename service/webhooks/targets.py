@@ -119,11 +119,7 @@ class Targets:
 
 
 def _parsed(text: str) -> "httpx.URL":
-    """Return the http or https URL of a text.
-
-    Raises:
-        ValueError: It is not such a URL, is too long, or has a user's name or a fragment.
-    """
+    """Return the http or https URL of a text."""
     if len(text) > MOST_LETTERS or not text.isascii() or not text.isprintable() or " " in text:
         raise ValueError
     import httpx

@@ -69,11 +69,7 @@ class WebhookTransport:
         self._resolving.shutdown(wait=False, cancel_futures=True)
 
     async def _addresses(self, destination: Destination) -> Sequence[str]:
-        """Return all addresses of the host of a destination.
-
-        Raises:
-            Undeliverable: The host is unknown, or one of its addresses is not allowed.
-        """
+        """Return all addresses of the host of a destination."""
         loop = asyncio.get_running_loop()
         host, port = destination.url.host, destination.port
         try:

@@ -50,7 +50,6 @@ def page(
 
     Args:
         sentence: What stands above the chart.
-        labels: The label of each objective.
         lengths: The lengths of each item, shape (k, m).
         columns: Further numbers of each item, by heading.
     """

@@ -185,8 +185,6 @@ def rows(
     """Return a member of all items, lists of numbers of one width, as the rows of an array.
 
     Args:
-        items: The items.
-        name: The name of the member.
         reader: `floats` or `indexes`.
         width: The length of each list.
     """
@@ -204,9 +202,7 @@ def optional_column(
     """Return a member of all items; numbers, and lists of these, as an array.
 
     Args:
-        items: The items.
         cls: The dataclass of one, which says what the member is.
-        name: The name of the member.
         known: Of the members before it, by name, something of the same length.
 
     Returns:
@@ -288,7 +284,6 @@ def value_of(cls: type[T], **own: Read[Any]) -> Read[T]:
     the field.
 
     Args:
-        cls: The dataclass.
         **own: Readers of fields that need others than these.
     """
     return lambda value, where: read_rest(cls, members(value, where), {}, **own)

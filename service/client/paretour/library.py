@@ -111,11 +111,7 @@ def replan(front: Front | FleetFront, *, progress: bool = False, **request: Any)
 
 
 def _planned_here(front: FrontOfAnyKind) -> Any:
-    """Return what was planned in this process.
-
-    Raises:
-        ValueError: The front was not.
-    """
+    """Return what was planned in this process."""
     if front not in _planned:
         raise ValueError("front must be one that was planned in this process")
     return _planned[front]

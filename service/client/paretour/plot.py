@@ -14,7 +14,6 @@ def draw_lengths(lengths: NDArray[np.float64], labels: Sequence[str], axes: Any 
 
     Args:
         lengths: The lengths of k tours or plans, in order of the first, shape (k, m).
-        labels: The label of each objective.
         axes: The axes to draw into; None for those of a new figure.
 
     Returns:

@@ -67,8 +67,6 @@ def vehicles_of(
     """Return the vehicles of a file, equal ones as one type.
 
     Args:
-        file: The file.
-        depots: Its depots.
         clients: The other stops.
         windows: The windows of all stops; those of depots are shifts.
 
@@ -260,11 +258,7 @@ def _add_reloads(rows: _Rows, depots: Depots, at: int, vehicle: Vehicle) -> None
 
 
 def _start(rows: _Rows, depots: Depots, at: int) -> int:
-    """Return the depot of a vehicle.
-
-    Raises:
-        UnreadableFile: There are several, and nothing says at which it starts.
-    """
+    """Return the depot of a vehicle."""
     found = rows.number("VEHICLES_DEPOT", at)
     source = rows.file.source
     if found is not None:
@@ -283,11 +277,7 @@ def _start(rows: _Rows, depots: Depots, at: int) -> int:
 
 
 def _unit_cost(rows: _Rows) -> float:
-    """Return the cost of a unit of distance if it is the same for all vehicles, else 1.
-
-    Raises:
-        UnreadableFile: It is negative, or all are 0.
-    """
+    """Return the cost of a unit of distance if it is the same for all vehicles, else 1."""
     units = rows.unit_costs
     if min(units) < 0 or max(units) <= 0:
         raise rows.file.source.refusal("not-over-0", _UNIT_COST, came=min(units))

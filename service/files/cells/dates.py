@@ -149,11 +149,7 @@ def _date_in(text: str, day_first: bool) -> date:
 
 
 def _day_first(dated: Iterable[tuple[TimeColumn, list[Parts]]]) -> bool:
-    """Return whether dates such as 1/2/2026 begin with the day.
-
-    Raises:
-        UnreadableFile: All dates allow both readings.
-    """
+    """Return whether dates such as 1/2/2026 begin with the day."""
     slashed = [
         (each, part.date, [int(n) for n in re.split("[-/]", part.date)])
         for each, parts in dated
@@ -172,11 +168,7 @@ def _day_first(dated: Iterable[tuple[TimeColumn, list[Parts]]]) -> bool:
 
 
 def _zone_of(found: Iterable[tuple[TimeColumn, list[Parts]]]) -> int | None:
-    """Return the zone of the first time that has one; None if none has.
-
-    Raises:
-        UnreadableFile: Another time has none.
-    """
+    """Return the zone of the first time that has one; None if none has."""
     cells = [
         (each, text, part)
         for each, parts in found

@@ -73,7 +73,6 @@ def with_plain_numbers(
 
     Args:
         source: The file, with the decimal signs that are known of it and of the request.
-        table: The table.
         fields: The field that each column is taken for.
         columns: These columns. What is not a number in them stays as it is.
 

@@ -297,9 +297,6 @@ def seconds_in(
     """Return a time in seconds: hours and minutes, or a number with a unit or in its heading's.
 
     Args:
-        columns: The columns of the table.
-        row: The row.
-        at: The column.
         text: The text of the time, if it is only a part of the field.
         is_end: Whether a date without a time is the end of that day; by default the field says it.
     """

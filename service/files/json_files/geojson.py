@@ -95,11 +95,7 @@ def _fleet(columns: Columns, rest: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _clock(columns: Columns, objectives: Sequence[Mapping[str, Any]]) -> str:
-    """Return the name of the one objective that is time.
-
-    Raises:
-        UnreadableFile: None is, or several are.
-    """
+    """Return the name of the one objective that is time."""
     timed = [
         str(each.get("name"))
         for each in objectives

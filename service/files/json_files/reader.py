@@ -30,8 +30,6 @@ def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
     """Return the request in a text of JSON, or the request that is made from it.
 
     Args:
-        source: The file.
-        text: Its content.
         wanted: The kind of a request that does not show its own kind; None refuses such a request.
 
     Raises:

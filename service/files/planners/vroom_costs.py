@@ -49,8 +49,6 @@ def objectives_of(
     """Return both objectives, and convert what vehicles cost and their limits to these.
 
     Args:
-        source: The file.
-        problem: VROOM's problem.
         located: The stops, and the index of each in the matrices.
         vehicles: The vehicles, whose members are changed.
         timed: Whether stops or vehicles have times.
@@ -213,7 +211,6 @@ def _add_limits(
     """Add the limits on routes; note those of which there is no objective.
 
     Args:
-        source: The file.
         items: VROOM's vehicles.
         vehicles: The vehicles, whose members are changed.
         objectives: Both objectives.
@@ -237,7 +234,6 @@ def _limiting(
     """Return the members of vehicles that say VROOM's limits, which are on driving alone.
 
     Args:
-        source: The file.
         objectives: Both objectives, of which the second is the longest route.
         metres: The matrices of distances, if there are some.
         timed: Whether the second is the clock's.

@@ -30,9 +30,7 @@ def note_others(source: Source, items: Iterable[Mapping[str, Any]], of: str) -> 
     """Note each member of objects that is not read, once for all of them.
 
     Args:
-        source: The file.
-        items: The objects.
-        of: Their name, such as jobs.
+        of: What the objects are, such as jobs.
     """
     others = {
         name: None

@@ -30,9 +30,7 @@ def add_services(
     VROOM asks for one set-up where a vehicle visits several tasks at one place in a row.
 
     Args:
-        source: The file.
         vehicles: The id and the type of each vehicle. Types may have times of their own.
-        tasks: The tasks.
         depots: The places where vehicles start.
 
     Raises:

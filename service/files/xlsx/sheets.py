@@ -36,7 +36,6 @@ def sheets_of(source: Source, *, several: bool) -> list[Source]:
     The sheet of stops is the first one with places or, if none has any, with numbers.
 
     Args:
-        source: The spreadsheet.
         several: Whether it is one of several files: then only one sheet is read, and one of numbers
             may be a square of costs.
 
@@ -125,11 +124,7 @@ def _check_formulas(source: Source, book: Workbook, sheet: Sheet) -> None:
 
 
 def _texts(book: Workbook, sheet: Sheet) -> list[Row]:
-    """Return the rows of a sheet as texts, from its first column with any to its last.
-
-    Raises:
-        UnreadableFile: The rows are too wide and too many.
-    """
+    """Return the rows of a sheet as texts, from its first column with any to its last."""
     used = {column for cells in sheet.rows.values() for column in cells}
     if not used:
         return []

@@ -47,7 +47,6 @@ class WorkerPool:
 
     Args:
         make_runner: Called in each process; it must be picklable.
-        workers: How many processes there are.
         queue: How many submissions may wait while all of these are busy.
         share: The share of all places, of workers and queue, that one client may hold. It may
             always hold one more than there are workers.
@@ -172,7 +171,6 @@ class WorkerPool:
         """Take a place for a task and return its submission.
 
         Args:
-            task: The task.
             on_change: Called when a worker begins, and with each progress.
             deadline: When to stop it; None gives it the pool's `seconds` from when a worker begins.
             client: The client whose turn and place it takes.

@@ -59,7 +59,6 @@ class Runner(Protocol):
         """Return the front of a task.
 
         Args:
-            task: The task.
             stop: Called often; planning ends soon after it returns True.
             report: Called now and then with the progress, and with a function that writes the best
                 n tours found so far, which is valid until the report returns.

@@ -42,7 +42,6 @@ class WorkerSet:
 
     Args:
         make_runner: Called in each process; it must be picklable.
-        size: How many processes there are.
         on_message: Called with each message of a worker.
         on_lost: Called with each worker that is lost, once it is out of the set.
         on_failed: Called with the reason where no process gets ready in three tries.

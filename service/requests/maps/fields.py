@@ -138,10 +138,6 @@ class MapRequest(PlanRequest):
     def with_map(self, picture: bytes | None, most_cells: int) -> Self:
         """Return the request with the grid, the cell_size and the origin of its map in any form.
 
-        Args:
-            picture: The PNG or PGM file that came with the request.
-            most_cells: The most cells of a map.
-
         Raises:
             Refusal: Not exactly one map is given, or it cannot be read, or is too large; or a
                 field is given that does not apply to this form.

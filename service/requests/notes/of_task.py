@@ -20,7 +20,6 @@ def with_notes(task: Task, *, has_parts: bool = True) -> Task:
     """Return a task with notes on its stops and costs.
 
     Args:
-        task: The task.
         has_parts: Whether the request has all stops and costs as parts, to which notes can point.
     """
     stops = task.stops

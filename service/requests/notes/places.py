@@ -33,7 +33,6 @@ def doubtful_places(names: Sequence[str], places: Array) -> Iterator[Doubt]:
     """Yield notes on stops that lie at (0, 0), at sea, or far from all others.
 
     Args:
-        names: The name of each stop.
         places: Longitude and latitude of each in degrees, shape (n, 2).
     """
     nowhere: Mask = np.all(places == 0, axis=1)

@@ -19,9 +19,7 @@ def notes_on_prizes(rules: Rules, stops: Stops, names: Sequence[str], cost: str)
     """Yield a sentence if each stop may be left out, and costs more than its prize if it is alone.
 
     Args:
-        rules: The rules of the fleet.
         stops: Its stops, with the sources of their costs.
-        names: The names of the stops.
         cost: The name of the first objective.
     """
     prizes = np.array([rules.visits[stop].prize or 0.0 for stop in rules.clients])

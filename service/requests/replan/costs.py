@@ -211,13 +211,7 @@ def _row(costs: Sequence[float | None], part: str, own: int, size: int) -> Array
 def _changes(
     entries: Sequence[CostEntry], names: Sequence[str], stops: AllStops
 ) -> list[dict[tuple[int, int], float]]:
-    """Return the changed costs of each objective by step; of changes of one step the last counts.
-
-    Args:
-        entries: The changes.
-        names: The names of the objectives.
-        stops: All stops.
-    """
+    """Return the changed costs of each objective by step; of several the last one counts."""
     changed: list[dict[tuple[int, int], float]] = [{} for _ in names]
     ids = {stop.id: index for index, stop in enumerate(stops.stops)}
     for index, entry in enumerate(entries):
@@ -236,11 +230,7 @@ def _changes(
 def _changed_over_the_day(
     source: Source, name: str, entries: Mapping[tuple[int, int], float]
 ) -> Source:
-    """Return a source with changed costs: all day, or before the factors of the day.
-
-    Raises:
-        Refusal: The costs are those of traffic.
-    """
+    """Return a source with changed costs: all day, or before the factors of the day."""
     if isinstance(source, Traffic):
         raise invalid("costs", "costs-of-traffic", objective=name)
     steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))

@@ -24,7 +24,6 @@ class Way:
     Args:
         part: The part of the request that is about it.
         number: The number of its route in the plan.
-        type: The type of the vehicle.
         position: Where it goes on; None for a new place.
         left: What is left of its route, with the stops where it loads again.
         done: The stops that it has visited.
@@ -118,10 +117,7 @@ def day_of(
     """Return the day so far.
 
     Args:
-        request: The request to replan.
-        stored: The front.
-        fleet: The fleet that it is of.
-        ids: The index of each of its stops by its id.
+        ids: The index of each stop of the front by its id.
 
     Raises:
         Refusal: The request names a plan, a route or a stop that is not there, or one twice.

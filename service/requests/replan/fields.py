@@ -112,9 +112,7 @@ class ReplanRequest(PlanFields):
     ] = empty_list("the stops that were visited, in order")
     position: Annotated[
         Position | None,
-        Offered(
-            option="The stop from which the rest is planned; by default the last stop done.",
-        ),
+        Offered(option="The stop from which the rest is planned; by default the last stop done."),
     ] = optional(
         "where the way goes on: a stop, or a new place in the form of an added stop; by default the"
         " last stop that is done"

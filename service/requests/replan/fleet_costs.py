@@ -27,10 +27,8 @@ def sources_of_rest(
 
     Args:
         fleet: The fleet that is driven.
-        objectives: Its objectives.
         entries: Costs that have changed, for all profiles.
-        stops: All stops.
-        chosen: Those of the rest.
+        chosen: The stops of the rest.
 
     Raises:
         Refusal: Costs of a new stop are missing, or changed costs are of no objective or stop.
@@ -96,7 +94,6 @@ def _check_profiles(
     Args:
         pairs: The sources of both costs, by each profile.
         names: The name of the objective that each costs are of.
-        stops: All stops.
     """
     if not stops.new:
         return

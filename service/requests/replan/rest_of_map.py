@@ -147,12 +147,7 @@ def _all_places(
 
     Args:
         known: The places of the front, shape (n, 2).
-        coverage: The task of the front.
-        request: The request to replan.
         anywhere: Whether there are costs from and to any cell, not only those of known places.
-
-    Raises:
-        Refusal: A new place is not a cell of the grid, or has no costs.
     """
     new = []
     for index, item in enumerate(request.add):
@@ -174,11 +169,7 @@ def _all_places(
 
 
 def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, list[int] | None]:
-    """Return the field that says where the way goes on, and the cell; None if it names a place.
-
-    Raises:
-        Refusal: Two fields say it, it is not a cell of the grid, or the map has no origin.
-    """
+    """Return the field that says where the way goes on, and the cell; None if it names a place."""
     if not request.pose:
         if isinstance(request.position, list):
             return "position", request.position

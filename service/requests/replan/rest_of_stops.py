@@ -97,11 +97,7 @@ def rest_of_stops(
 def _hours_of_rest(
     front: EarlierFront, request: ReplanRequest, stops: AllStops, rest: RestOfWay
 ) -> Hours | None:
-    """Return the hours of the rest, which begins now; None if costs do not change over the day.
-
-    Raises:
-        Refusal: The present time is missing, or a time is given where none counts.
-    """
+    """Return the hours of the rest, which begins now; None if costs do not change over the day."""
     service = {part: item.service for part, item in stops.new.items()}
     if front.hours is None:
         given = {"now": request.now, **{f"{part}/service": s for part, s in service.items()}}

@@ -201,7 +201,6 @@ class RestOfWay:
         """Return what is left of a front's tours, in indexes of the rest.
 
         Args:
-            front: The front.
             request: The request, which may name the tour that is being driven.
             changed: The stops to or from which costs have changed; None where that may be any.
 
@@ -311,11 +310,7 @@ def _beside_gone(tours: Indices, is_left: NDArray[np.bool_]) -> Indices:
 
 
 def _driven_tour(front: EarlierFront, request: ReplanRequest) -> Indices:
-    """Return the tour being driven, shape (n,): by default the front's knee.
-
-    Raises:
-        Refusal: It does not have each stop of the front once.
-    """
+    """Return the tour being driven, shape (n,): by default the front's knee."""
     if not request.tour:
         return front.knee
     stops = _indexes(request.tour, front.ids, "tour")
