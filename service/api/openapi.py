@@ -63,8 +63,7 @@ def example_refusal(code: str, operation: str = "") -> Refusal:
 
 @cache
 def _examples() -> dict[str, Any]:
-    examples: dict[str, Any] = json.loads(_EXAMPLES.read_text(encoding="utf-8"))
-    return examples
+    return json.loads(_EXAMPLES.read_text(encoding="utf-8"))
 
 
 def _problem_schema() -> dict[str, Any]:

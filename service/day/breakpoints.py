@@ -29,8 +29,7 @@ class Breakpoints:
     @property
     def known(self) -> NDArray[np.bool_]:
         """Which pairs have breakpoints, shape (n, n)."""
-        known: NDArray[np.bool_] = self.spans[..., 0] < self.spans[..., 1]
-        return known
+        return self.spans[..., 0] < self.spans[..., 1]
 
     @property
     def count(self) -> int:
@@ -84,8 +83,7 @@ class Breakpoints:
         """
         # What is after the end of a span is in every second result. The last span may end with all.
         ends = self.spans[self.known].ravel()
-        bound: Array = better.reduceat(np.append(self.costs, 0.0), ends)[::2]
-        return bound
+        return better.reduceat(np.append(self.costs, 0.0), ends)[::2]
 
     def at(self, times: Array) -> Array:
         """Return the costs at k times, shape (k, n, n); infinite where a pair has no breakpoints.
@@ -112,5 +110,4 @@ class Breakpoints:
         between = before < after
         span = np.where(between, self.times[after] - times, 1.0)
         slopes = np.where(between, (self.costs[after] - costs) / span, 0.0)
-        found: Array = slopes * (time - times) + costs
-        return found
+        return slopes * (time - times) + costs

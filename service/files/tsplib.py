@@ -243,8 +243,7 @@ def plain(costs: Array) -> list[list[Any]]:
     """Return costs as rows for JSON: whole numbers as integers, None for a forbidden leg."""
     if np.isfinite(costs).all():
         whole = (costs == np.rint(costs)).all() and (np.abs(costs) < 2**53).all()
-        rows: list[list[Any]] = (costs.astype(np.int64) if whole else costs).tolist()
-        return rows
+        return (costs.astype(np.int64) if whole else costs).tolist()
     return [[cost if np.isfinite(cost) else None for cost in row] for row in costs.tolist()]
 
 

@@ -110,8 +110,7 @@ class LegByBreakpoints:
 
     def arrivals(self, times: Array) -> Array:
         """Return when who leaves at these times arrives."""
-        found: Array = times + np.interp(times, self._leaves, self._seconds)
-        return found
+        return times + np.interp(times, self._leaves, self._seconds)
 
     def departures(self, arrivals: Array) -> Array:
         """Return when who arrives at these times has left at the latest."""

@@ -184,8 +184,7 @@ class Fleet:
         """Return both costs between some stops, shape (2, k, k)."""
         if self.lines:
             return np.array([line.legs(stops[:, np.newaxis], stops) for line in self.lines])
-        among: Array = self.costs[:, stops[:, np.newaxis], stops]
-        return among
+        return self.costs[:, stops[:, np.newaxis], stops]
 
     def matrices(self) -> Array:
         """Return all costs, shape (2, n, n)."""
@@ -340,8 +339,7 @@ class Fleet:
         """The largest of each cost of a leg, as the slowest vehicle drives it, shape (2,)."""
         kinds = range(len(self.rules.vehicles))
         slowest = [min(self.rules.speed(kind, layer) for kind in kinds) for layer in range(LAYERS)]
-        legs: Array = self.largest_legs / slowest
-        return legs
+        return self.largest_legs / slowest
 
     def _unit(self, over: Over | Measure, layer: int) -> float:
         legs, rules = self._slowest_legs, self.rules

@@ -251,8 +251,7 @@ def _connected(fleet: Fleet, end: int | None, *, back: bool) -> NDArray[np.bool_
     From anywhere, all can.
     """
     starts = range(fleet.rules.n) if end is None else [end]
-    connected: NDArray[np.bool_] = np.isfinite(fleet.least_paths(0, starts, back=back))
-    return connected
+    return np.isfinite(fleet.least_paths(0, starts, back=back))
 
 
 def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:

@@ -104,5 +104,4 @@ class Kind(Generic[S]):
     def load(self) -> Run[S]:
         """Import the function that plans it, and return that."""
         module, name = self.planner
-        run: Run[S] = getattr(import_module(module), name)
-        return run
+        return getattr(import_module(module), name)

@@ -30,8 +30,7 @@ def with_times(
     Raises:
         ValueError: As of `number_in`.
     """
-    read: dict[str, Any] = _read(members, _shape_of(*forms), unit)
-    return read
+    return _read(members, _shape_of(*forms), unit)
 
 
 @cache

@@ -58,8 +58,7 @@ def addends(spread: Spread, means: Array) -> Array:
         levels = apart.sum(axis=(1, 2)) / max(1, legs.sum())
         shared = (apart * levels[:, np.newaxis, np.newaxis]).mean(axis=0)
         found = np.maximum(0.0, np.square(apart).mean(axis=0) + (n - 1) * shared)
-    forbidden: Array = np.where(np.isinf(means), np.inf, found)
-    return forbidden
+    return np.where(np.isinf(means), np.inf, found)
 
 
 def lengths_at(spread: Spread, means: Array, steps: tuple[Steps, Steps], percent: int) -> Array:
@@ -74,8 +73,7 @@ def lengths_at(spread: Spread, means: Array, steps: tuple[Steps, Steps], percent
         variances = np.square(_deviations(spread, means)[steps])
         return at_percent(means[steps].sum(axis=1), variances.sum(axis=1), percent)
     daily = np.sort([day[steps].sum(axis=1) for day in spread.days], axis=0)
-    least: Array = daily[max(1, ceil(percent * len(daily) / 100)) - 1]
-    return least
+    return daily[max(1, ceil(percent * len(daily) / 100)) - 1]
 
 
 def at_percent(means: Array, variances: Array, percent: int) -> Array:

@@ -323,8 +323,7 @@ class PlanFields(SearchFields):
                 part = f"preferences/{index}"
                 raise invalid(part, "no-direction", objectives=m, given=str(row))
         directions = np.array(rows)
-        unit: NDArray[np.float64] = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-        return unit
+        return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
     def options(self, objectives: int = OBJECTIVES) -> PlanOptions:
         """Return the options for the planner of a front under this number of objectives."""

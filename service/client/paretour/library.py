@@ -130,8 +130,7 @@ def offer_slots(front: FleetFront, **request: Unpack[OffersRequest]) -> Offers:
         Refused: The request is not valid.
     """
     earlier = _planned_here(front)
-    offers: Offers = _planner().offers(offers_plan(front, request), earlier)
-    return offers
+    return _planner().offers(offers_plan(front, request), earlier)
 
 
 class InstanceFailed(Exception):

@@ -52,5 +52,4 @@ def read_octile(source: Source) -> list[list[int]]:
             known = f"{_FREE}{_BLOCKED}"
             raise source.refusal("unknown-cell", row=number, known=known, came=min(wrong))
     cells = np.array([list(row) for row in rows])
-    grid: list[list[int]] = np.isin(cells, list(_BLOCKED)).astype(int).tolist()
-    return grid
+    return np.isin(cells, list(_BLOCKED)).astype(int).tolist()

@@ -153,8 +153,7 @@ def _map(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> _
 
 
 def _rows(mask: np.ndarray[Any, np.dtype[np.bool_]]) -> list[list[int]]:
-    rows: list[list[int]] = mask.astype(int).tolist()
-    return rows
+    return mask.astype(int).tolist()
 
 
 def _unreadable(name: str, refusal: Refusal) -> UnreadableFile:
@@ -186,8 +185,7 @@ def _shades(source: Source) -> Rows:
     deep = "" if bits == _BITS else f" Of {bits} bits, white is {2**bits - 1} and black 0."
     sentence = f"Costs are read from its shades: white 0, black 1 for each metre.{deep}"
     source.note("cost-layer", sentence)
-    costs: list[list[float]] = shades.round(_DIGITS if bits == _BITS else _DEEP_DIGITS).tolist()
-    return costs
+    return shades.round(_DIGITS if bits == _BITS else _DEEP_DIGITS).tolist()
 
 
 def _layers(layers: Sequence[tuple[Source, Rows]], grid: Rows) -> list[LayerRequest]:
