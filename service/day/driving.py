@@ -25,7 +25,7 @@ class Slices(NamedTuple):
 
     `begins`: when each slice begins, shape (s,); the first is minus infinity, and one more at the
     end is infinity. `factors` and `layers`: shape (s, m); in slice s a leg costs
-    factors[s, o] * matrices[layers[s, o], i, j].
+    factors[s, o] * matrices[i, j, layers[s, o]].
 
     `tables`: shape (m,), the number of each costs' breakpoints, -1 without any. `spans`: shape
     (t, n, n, 2). The breakpoints of a leg in a table are those from number spans[t, i, j, 0] on and
@@ -90,7 +90,8 @@ def slices_of(costs: Sequence[CostsOfDay]) -> Slices:
         factors[:, index], layers[:, index] = each.factors[own], each.layers[own] + len(matrices)
         matrices.extend(each.matrices)
     begins = np.append(firsts, np.inf)
-    return Slices(begins, factors, layers, np.stack(matrices), *_tables_of(costs))
+    # All costs of a leg lie beside each other: who drives it reads several.
+    return Slices(begins, factors, layers, np.stack(matrices, axis=-1), *_tables_of(costs))
 
 
 def _tables_of(costs: Sequence[CostsOfDay]) -> tuple[Indices, Indices, Array]:
@@ -148,7 +149,7 @@ def cost_of(day: Sliced, objective: int, i: int, j: int, time: float, known: int
     if has_knots(day, objective, i, j):
         return cost_by_knots(day, objective, i, j, time)
     layer = day.layers[known, objective]
-    return float(day.factors[known, objective] * day.matrices[layer, i, j])
+    return float(day.factors[known, objective] * day.matrices[i, j, layer])
 
 
 @compiled
@@ -177,7 +178,7 @@ def arrived(day: Sliced, i: int, j: int, time: float, known: int, pace: float) -
     left = 1.0
     while True:
         layer = day.layers[known, day.clock]
-        seconds = pace * day.factors[known, day.clock] * day.matrices[layer, i, j]
+        seconds = pace * day.factors[known, day.clock] * day.matrices[i, j, layer]
         ends = day.begins[known + 1]
         if time + left * seconds < ends or ends == np.inf:
             return time + left * seconds, known
@@ -197,7 +198,7 @@ def left_at(day: Sliced, i: int, j: int, arrival: float, pace: float) -> float:
     time, left = arrival, 1.0
     while True:
         layer = day.layers[known, day.clock]
-        seconds = pace * day.factors[known, day.clock] * day.matrices[layer, i, j]
+        seconds = pace * day.factors[known, day.clock] * day.matrices[i, j, layer]
         begins = day.begins[known]
         if time - left * seconds >= begins:
             return time - left * seconds

@@ -65,7 +65,7 @@ def estimate(traffic: Traffic, weights: Array, known: int, i: int, j: int) -> fl
     total = 0.0
     for objective in range(len(weights)):
         factor = weights[objective] * traffic.factors[known, objective]
-        total += factor * traffic.matrices[traffic.layers[known, objective], i, j]
+        total += factor * traffic.matrices[i, j, traffic.layers[known, objective]]
     return total
 
 

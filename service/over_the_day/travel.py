@@ -40,13 +40,13 @@ def _penalised(matrices: Array) -> Array:
 
     A leg that one of the matrices forbids is forbidden all day.
     """
-    np.einsum("kii->ki", matrices)[:] = 0.0  # a tour of one stop has a leg from it to itself
-    forbidden = np.isinf(matrices).any(axis=0)
+    np.einsum("iik->ik", matrices)[:] = 0.0  # a tour of one stop has a leg from it to itself
+    forbidden = np.isinf(matrices).any(axis=-1, keepdims=True)
     if not forbidden.any():
         return matrices
-    largest = matrices.max(axis=(1, 2), where=~forbidden, initial=0.0)
+    largest = matrices.max(axis=(0, 1), where=~forbidden, initial=0.0)
     penalties = 2 * matrices.shape[1] * np.where(largest > 0, largest, 1.0)
-    return np.where(forbidden, penalties[:, np.newaxis, np.newaxis], matrices)
+    return np.where(forbidden, penalties, matrices)
 
 
 class Moment(NamedTuple):
@@ -60,7 +60,7 @@ class Moment(NamedTuple):
 def traffic_of(day: Day) -> Traffic:
     """Return the day with common slices. O(k n^2) for k matrices."""
     slices = slices_of(day.costs)
-    forbidden: NDArray[np.bool_] = np.isinf(slices.matrices.max(axis=0))
+    forbidden: NDArray[np.bool_] = np.isinf(slices.matrices.max(axis=-1))
     matrices = _penalised(slices.matrices)
     return Traffic(
         *slices._replace(

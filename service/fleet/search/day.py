@@ -26,7 +26,7 @@ class FleetDay(NamedTuple):
         begins: As in `Slices`.
         factors: As in `Slices`.
         layers: As in `Slices`.
-        matrices: As in `Slices`, shape (k, p n, n): the rows of one profile of vehicles after those
+        matrices: As in `Slices`, shape (p n, n, k): the rows of one profile of vehicles after those
             of another. A forbidden leg costs a finite sum that no plan may cost.
         tables: As in `Slices`.
         spans: As in `Slices`, shape (t, p n, n, 2).
@@ -64,7 +64,7 @@ def day_of(fleet: Fleet, forbidden: float) -> FleetDay | None:
     matrices = np.where(np.isinf(slices.matrices), most, slices.matrices)
     knots = _MOST_KNOTS
     return FleetDay(
-        *slices._replace(matrices=np.ascontiguousarray(matrices)),
+        *slices._replace(matrices=matrices),
         clock=fleet.rules.clock,
         paces=1.0 / np.array([vehicle.speed_factor for vehicle in fleet.rules.vehicles]),
         rows=fleet.rules.n * np.array([vehicle.profile for vehicle in fleet.rules.vehicles]),

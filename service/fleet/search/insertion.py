@@ -6,7 +6,7 @@ A vehicle that may load again may do so just before or just after the stop.
 from service.fleet.rounding import is_over
 from service.fleet.search.companions import may_join, order_kept
 from service.fleet.search.problem import NEIGHBOURS, Problem
-from service.fleet.search.spots import Place, Spot, better_at, nowhere
+from service.fleet.search.spots import Place, Spot, best_noted, better_at, nowhere
 from service.fleet.search.waits import bound
 from service.fleet.search.working_plan import (
     BLINKS,
@@ -49,6 +49,7 @@ def best_place(state: State, stop: int, most: float) -> Place:
         inside, best = _beside_if_simple(state, stop, best)
     else:
         inside, best = _beside(state, stop, best)
+    best = best_noted(state, stop, best)
     if inside < _FEW or (best.slot < 0 and _looks_far(plan)):
         best = _anywhere(state, stop, best)
     for kind in range(plan.counts[TYPE], plan.counts[TYPES_END]):
@@ -56,7 +57,8 @@ def best_place(state: State, stop: int, most: float) -> Place:
         if slot >= 0 and has_room(problem, plan, stop, slot):
             best = _better(state, stop, slot, len(problem.demand) + 2 * slot, best)
     # Of two equal places that in a route of its own is the better: it depends on nothing.
-    return _between_trips(state, stop, best) if plan.counts[MORE_TRIPS] > 0 else best
+    best = _between_trips(state, stop, best) if plan.counts[MORE_TRIPS] > 0 else best
+    return best_noted(state, stop, best)
 
 
 @inlined
@@ -145,13 +147,19 @@ def _anywhere(state: State, stop: int, best: Place) -> Place:
     """Return the cheapest place in all routes."""
     plan = state.plan
     for number in range(plan.counts[USED]):
-        best = in_route(state, stop, plan.used[number], best)
+        best = _along(state, stop, plan.used[number], best)
     return best
 
 
 @compiled
 def in_route(state: State, stop: int, slot: int, best: Place) -> Place:
     """Return the better of two places: the best so far, and the cheapest in a route."""
+    return best_noted(state, stop, _along(state, stop, slot, best))
+
+
+@compiled
+def _along(state: State, stop: int, slot: int, best: Place) -> Place:
+    """Return the better of two places: the best so far, and the cheapest known in a route."""
     problem, plan, _ = state
     if not has_room(problem, plan, stop, slot):
         return best

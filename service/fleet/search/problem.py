@@ -104,6 +104,7 @@ class Problem(NamedTuple):
     breaks: Array  # (v, b, 3), the earliest and the latest begin of each, and how long it takes
     initial: Indices  # (v,), the initial load in the first dimension
     early: bool  # whether vehicles leave as early as they may
+    postpones: bool  # whether best departures are found when an iteration ends, and not before
     plain: bool  # whether times along routes follow from spans, one for each stop
     departs: Array  # (v,)
     leaves_by: Array  # (v,)
@@ -205,6 +206,7 @@ def problem_of(fleet: Fleet) -> Problem:
         breaks=_breaks(vehicles),
         initial=np.array([(each.initial_load or (0,))[0] for each in vehicles]),
         early=rules.leave == "early",
+        postpones=fleet.day is not None and _postpones(rules),
         plain=rules.clock is not None and fleet.day is None and not weighs and _plain_times(rules),
         departs=_floats([vehicle.way[0] for vehicle in vehicles]),
         leaves_by=_floats([min(v.leaves_by, v.way[1]) for v in vehicles]),
@@ -331,6 +333,12 @@ def _plain_times(rules: Rules) -> bool:
         return False
     several = any(len(windows) > 1 or windows[0][0] > windows[0][1] for windows in rules.windows)
     return not (several or min(rules.holds) < np.inf or any(v.breaks for v in rules.vehicles))
+
+
+def _postpones(rules: Rules) -> bool:
+    """Return whether a route that keeps all rules does so at its best departure too."""
+    strict = rules.capped or rules.reloads or rules.groups.before
+    return not (strict or any(vehicle.breaks for vehicle in rules.vehicles))
 
 
 def _windows(rules: Rules) -> Array:

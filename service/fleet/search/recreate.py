@@ -14,6 +14,7 @@ from service.fleet.search.spots import Place, Spot, put, take_back
 from service.fleet.search.waits import bind, bound, insert_firsts_first, settle, unbind
 from service.fleet.search.weighed import promised_stops
 from service.fleet.search.working_plan import (
+    AS_BEFORE,
     BLINKS,
     MORE_TRIPS,
     OUTSIDE,
@@ -55,6 +56,19 @@ def recreate(state: State, order: int) -> None:
     plan.counts[BLINKS] = _MANY_BLINKS if often else _FEW_BLINKS
     plan.counts[UNTIL_BLINK] = 1 + random_below(plan.random, 2 * plan.counts[BLINKS] - 1)
     _prepare(state, order)
+    _insert_removed(state)
+    if problem.grouped:
+        drop_halves(state)
+    if problem.reloads and random_below(plan.random, SELDOM) == 0:
+        for number in range(plan.counts[SAVED]):
+            load_anew(state, plan.saved[number])
+
+
+@inlined
+def _insert_removed(state: State) -> None:
+    """Insert the removed stops in their order, then let all changed routes leave at their best."""
+    problem, plan, _ = state
+    plan.counts[AS_BEFORE] = problem.postpones
     for number in range(plan.counts[REMOVED]):
         stop = plan.removed[number]
         most = _most(problem, plan, stop)
@@ -65,11 +79,10 @@ def recreate(state: State, order: int) -> None:
         if place.slot >= 0:
             save_slot(problem, plan, place.slot)
             insert(state, stop, place)
-    if problem.grouped:
-        drop_halves(state)
-    if problem.reloads and random_below(plan.random, SELDOM) == 0:
+    plan.counts[AS_BEFORE] = 0
+    if problem.postpones:
         for number in range(plan.counts[SAVED]):
-            load_anew(state, plan.saved[number])
+            measure(state, plan.saved[number])
 
 
 @inlined

@@ -14,7 +14,13 @@ from service.fleet.search.problem import (
     SECOND,
     Problem,
 )
-from service.fleet.search.working_plan import WorkingPlan, begin_at, service_at
+from service.fleet.search.working_plan import (
+    AS_BEFORE,
+    WorkingPlan,
+    begin_at,
+    service_at,
+    slot_of,
+)
 from service.jit import compiled, inlined, standalone
 
 _is_over = inlined(is_over)
@@ -24,20 +30,21 @@ _is_over = inlined(is_over)
 def drive_over_the_day(day: FleetDay, problem: Problem, plan: WorkingPlan, slot: int) -> bool:
     """Write the costs and times along a route that leaves at its best departure.
 
-    Return whether it keeps all windows.
+    Return whether it keeps all windows. With `counts[AS_BEFORE]`, it leaves when it did before if
+    it keeps them so: its best departure takes several times as long to find.
     """
     kind, start = problem.kind[slot], len(problem.demand) + 2 * slot
     departs = max(problem.departs[kind], plan.value[slot, RELEASED])
-    if not drive_from(day, problem, plan, slot, departs):
-        return False
-    if _is_over(departs, problem.leaves_by[kind]):
-        return False
-    if problem.early or problem.leaves_by[kind] <= departs:
-        return True
-    leaves = best_departure(day, problem, plan, slot)
-    if leaves > departs and not drive_from(day, problem, plan, slot, leaves):
-        return drive_from(day, problem, plan, slot, departs)
-    return plan.ready[start] >= departs
+    in_time = not _is_over(departs, problem.leaves_by[kind])
+    if in_time and not problem.early and problem.leaves_by[kind] > departs:
+        leaves = plan.ready[start]
+        kept = plan.counts[AS_BEFORE] and departs < leaves <= problem.leaves_by[kind]
+        if kept and drive_from(day, problem, plan, slot, leaves):
+            return True
+        leaves = best_departure(day, problem, plan, slot)
+        if leaves > departs and drive_from(day, problem, plan, slot, leaves):
+            return True
+    return drive_from(day, problem, plan, slot, departs) and in_time
 
 
 @compiled
@@ -84,6 +91,39 @@ def drive_from(
     )
     plan.value[slot, day.clock] = moment.time - departure
     return not _is_over(moment.time, problem.returns[kind])
+
+
+@compiled
+def driven_with(
+    day: FleetDay, problem: Problem, plan: WorkingPlan, stop: int, before: int
+) -> tuple[float, float, float]:
+    """Return both costs of a route with a stop after a node, and when it ends.
+
+    Its vehicle leaves when it does now, and loads once. The end is infinite if a visit is late.
+    """
+    slot = slot_of(problem, plan, before)
+    kind, (_, end) = problem.kind[slot], _ends(problem, slot)
+    first, second, reach = plan.value[slot, FIRST], plan.value[slot, SECOND], plan.ready[end]
+    at, node, moment = problem.place[before], stop, _moment(day, plan.ready[before])
+    while True:
+        moment = driven(day, (at, problem.place[node]), kind, moment.time, moment.slice)
+        first, second = first + moment.first, second + moment.second
+        if node != stop:
+            first, second = first - plan.step[node, 0], second - plan.step[node, 1]
+        if node == end:
+            reach = moment.time
+            break
+        begin = begin_at(problem, node, moment.time)
+        if begin == np.inf:
+            return first, second, np.inf
+        moment = _moment(day, begin + service_at(problem, problem.profile[slot], node))
+        if node != stop and moment.time <= plan.ready[node]:
+            break  # from here on, all is as it was
+        at, node = node, plan.next[before if node == stop else node]
+    if first >= problem.forbidden or _is_over(reach, problem.returns[kind]):
+        return first, second, np.inf
+    lasts = plan.value[slot, day.clock] + reach - plan.ready[end]
+    return (lasts, second, reach) if day.clock == 0 else (first, lasts, reach)
 
 
 @inlined

@@ -15,10 +15,14 @@ from service.fleet.search.problem import (
     Problem,
 )
 from service.fleet.search.route import measure
+from service.fleet.search.routes_of_day import driven_with
 from service.fleet.search.spans import head_at, times_with
 from service.fleet.search.values import Values, drives_too_far, grown_cost
 from service.fleet.search.weighed import weighed_with
 from service.fleet.search.working_plan import (
+    AS_BEFORE,
+    MOST_NOTED,
+    NOTED,
     State,
     WorkingPlan,
     begin_at,
@@ -71,15 +75,47 @@ def nowhere(most: float) -> Place:
 
 @inlined
 def better_at(state: State, stop: int, spot: Spot, best: Place) -> Place:
-    """Return the better of two places: the best so far, and a spot with room."""
+    """Return the better of two places: the best so far, and a spot with room.
+
+    Where only a trial says what it costs, it is noted for best_noted().
+    """
+    plan = state.plan
     cost = _estimated(state.problem.day, state, stop, spot, best.cost)
     if cost >= best.cost:
         return best
-    if state.problem.tried[state.problem.kind[spot.slot]]:
-        cost = _tried(state, stop, spot)
-        if cost >= best.cost:
-            return best
-    return Place(cost, spot.slot, spot.before, spot.via, spot.onward, -1)
+    if not state.problem.tried[state.problem.kind[spot.slot]]:
+        return Place(cost, spot.slot, spot.before, spot.via, spot.onward, -1)
+    if plan.counts[NOTED] == MOST_NOTED:
+        best = best_noted(state, stop, best)
+    number = plan.counts[NOTED]
+    plan.spots[number, 0], plan.spots[number, 1] = spot.slot, spot.before
+    plan.spots[number, 2], plan.spots[number, 3] = spot.via, spot.onward
+    plan.estimates[number] = cost
+    plan.counts[NOTED] += 1
+    return best
+
+
+@compiled
+def best_noted(state: State, stop: int, best: Place) -> Place:
+    """Return the best of a place and the spots noted.
+
+    They are tried in the order of what they are estimated to cost, so that few are.
+    """
+    plan = state.plan
+    while True:
+        least = -1
+        for number in range(plan.counts[NOTED]):
+            if plan.estimates[number] < (best.cost if least < 0 else plan.estimates[least]):
+                least = number
+        if least < 0:
+            break
+        plan.estimates[least] = np.inf
+        slot, before, via, onward = plan.spots[least]
+        cost = _tried_by_type(state.problem.day, state, stop, Spot(slot, before, via, onward))
+        if cost < best.cost:
+            best = Place(cost, slot, before, via, onward, -1)
+    plan.counts[NOTED] = 0
+    return best
 
 
 @inlined
@@ -107,16 +143,54 @@ def take_back(plan: WorkingPlan, stop: int, onward: int) -> None:
     plan.via[after] = onward
 
 
+@inlined
+def _tried_by_type(day: FleetDay | None, state: State, stop: int, spot: Spot) -> float:
+    """Return what a stop costs in a spot, over the day without a trial where that is enough.
+
+    One branch is left where this is compiled: that of the type of the day.
+    """
+    if day is None:
+        return _tried(state, stop, spot)
+    cost = _on_the_way(day, state, stop, spot.slot, spot.before)
+    return cost if cost < np.inf else _tried(state, stop, spot)
+
+
+@compiled
+def _on_the_way(day: FleetDay, state: State, stop: int, slot: int, before: int) -> float:
+    """Return what a stop costs after a node if its vehicle leaves when it does now.
+
+    At its best departure it costs as much or less. Infinite if it would be late for a visit, or if
+    more than its costs and windows counts.
+    """
+    problem, plan, direction = state
+    start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]
+    more = not problem.simple or problem.weighs or problem.early or problem.rests[kind] > 0
+    more |= problem.capped or problem.longest[kind] < np.inf
+    if more or direction.lateness > 0 or direction.load_distance > 0:
+        return np.inf
+    if plan.size[slot] == 0 or problem.release[stop] > plan.ready[start]:
+        return np.inf
+    first, second, end = driven_with(day, problem, plan, stop, before)
+    if end == np.inf:
+        return np.inf
+    overtime = max(0.0, end - problem.shift_end[kind])
+    late, loaded = plan.value[slot, LATENESS], plan.value[slot, LOADED]
+    weighed = weighed_with(state, stop, slot, before)
+    return grown_cost(state, slot, 1, Values(first, second, overtime, late, loaded, weighed))
+
+
 @compiled
 def _tried(state: State, stop: int, spot: Spot) -> float:
     """Return what a stop costs in a spot; infinite if it breaks a rule there."""
     plan, slot = state.plan, spot.slot
     cost, onward = -plan.cost[slot], plan.via[plan.next[spot.before]]
+    as_before, plan.counts[AS_BEFORE] = plan.counts[AS_BEFORE], 0
     put(plan, stop, spot)
     fits = measure(state, slot)
     cost += plan.cost[slot]
     take_back(plan, stop, onward)
     measure(state, slot)
+    plan.counts[AS_BEFORE] = as_before
     return cost if fits else np.inf
 
 

@@ -20,10 +20,12 @@ from service.jit import by_reference, compiled, inlined
 # Places of the counts: slots with stops; stops outside, and those of them that must be visited;
 # what is saved; the number of the iteration; stops to insert; in how many places one is passed by,
 # and how many come before the next; and the number of the stop that is inserted, of all so far;
-# whether vehicles may begin one trip more; and the first of the types of vehicles that may begin
-# routes, and the one after the last.
+# whether vehicles may begin one trip more; the first of the types of vehicles that may begin
+# routes, and the one after the last; the spots noted for the stop; and whether routes leave, for
+# now, when they did before.
 USED, OUTSIDE, MISSING, SAVED, SAVED_STOPS, SAVED_OUTSIDE, STAMP, REMOVED = range(8)
-BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS, TYPE, TYPES_END = 8, 9, 10, 11, 12, 13
+BLINKS, UNTIL_BLINK, TRY, MORE_TRIPS, TYPE, TYPES_END, NOTED, AS_BEFORE = range(8, 16)
+MOST_NOTED = 128  # spots for a stop that are tried once all are found
 MOST_STATES = 24  # ways to have taken so many breaks up to a stop, of which none is always better
 
 _is_over = inlined(is_over)
@@ -79,6 +81,8 @@ class WorkingPlan(NamedTuple):
     key: Array  # (n,), by which they are sorted
     buffer: Nodes  # (n,), scratch space
     places: Nodes  # (2 k + 1,), scratch space: the nodes before places for a stop
+    spots: Indices  # (s, 4), spots for a stop to try, and what it is estimated to cost there
+    estimates: Array  # (s,)
     saved: Nodes  # (r,), slots that changed
     saved_size: Nodes  # (r,)
     saved_stops: Nodes  # (n,)
@@ -86,7 +90,7 @@ class WorkingPlan(NamedTuple):
     saved_outside: Nodes  # (n,)
     touched: Indices  # (r,), by slot: the iteration that changed it last
     ruined: Indices  # (n,), by stop: the iteration that last took stops out of its trip
-    counts: Indices  # (14,)
+    counts: Indices  # (16,)
     random: Indices  # (1,)
 
 
@@ -149,6 +153,8 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         key=np.zeros(n),
         buffer=_nothing(n),
         places=_nothing(2 * NEIGHBOURS + 1),
+        spots=np.zeros((MOST_NOTED, 4), np.int64),
+        estimates=np.zeros(MOST_NOTED),
         saved=_nothing(r),
         saved_size=_nothing(r),
         saved_stops=_nothing(n),
@@ -156,7 +162,7 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved_outside=_nothing(n),
         touched=np.zeros(r, np.int64),
         ruined=np.zeros(n, np.int64),
-        counts=np.zeros(14, np.int64),
+        counts=np.zeros(16, np.int64),
         random=np.array([_mixed(seed)], np.int64),
     )
     plan.counts[TYPES_END] = len(problem.capacity)
