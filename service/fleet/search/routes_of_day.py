@@ -95,20 +95,34 @@ def drive_from(
 
 @compiled
 def driven_with(
-    day: FleetDay, problem: Problem, plan: WorkingPlan, stop: int, before: int
+    day: FleetDay, problem: Problem, plan: WorkingPlan, where: tuple[int, int], leaves: float
 ) -> tuple[float, float, float]:
-    """Return both costs of a route with a stop after a node, and when it ends.
+    """Return both costs of a route with one more stop, and when it ends.
 
-    Its vehicle leaves when it does now, and loads once. The end is infinite if a visit is late.
+    Its vehicle loads once. The end is infinite if a visit is late.
+
+    Args:
+        day: The day.
+        problem: The fleet.
+        plan: Where the route is; it is not changed.
+        where: The stop, and the node after which it is put.
+        leaves: When the vehicle leaves, as now or before.
     """
+    stop, before = where
     slot = slot_of(problem, plan, before)
-    kind, (_, end) = problem.kind[slot], _ends(problem, slot)
+    kind, (start, end) = problem.kind[slot], _ends(problem, slot)
     first, second, reach = plan.value[slot, FIRST], plan.value[slot, SECOND], plan.ready[end]
-    at, node, moment = problem.place[before], stop, _moment(day, plan.ready[before])
+    as_now, passed = leaves == plan.ready[start], False
+    node = before if as_now else start
+    moment = _moment(day, plan.ready[node] if as_now else leaves)
     while True:
+        at = problem.place[node]
+        node = stop if node == before else plan.next[before if node == stop else node]
         moment = driven(day, (at, problem.place[node]), kind, moment.time, moment.slice)
         first, second = first + moment.first, second + moment.second
-        if node != stop:
+        if node == stop:
+            passed = True
+        else:
             first, second = first - plan.step[node, 0], second - plan.step[node, 1]
         if node == end:
             reach = moment.time
@@ -117,12 +131,11 @@ def driven_with(
         if begin == np.inf:
             return first, second, np.inf
         moment = _moment(day, begin + service_at(problem, problem.profile[slot], node))
-        if node != stop and moment.time <= plan.ready[node]:
+        if passed and node != stop and moment.time <= plan.ready[node]:
             break  # from here on, all is as it was
-        at, node = node, plan.next[before if node == stop else node]
     if first >= problem.forbidden or _is_over(reach, problem.returns[kind]):
         return first, second, np.inf
-    lasts = plan.value[slot, day.clock] + reach - plan.ready[end]
+    lasts = reach - leaves
     return (lasts, second, reach) if day.clock == 0 else (first, lasts, reach)
 
 

@@ -109,9 +109,10 @@ def best_noted(state: State, stop: int, best: Place) -> Place:
                 least = number
         if least < 0:
             break
-        plan.estimates[least] = np.inf
+        estimate, plan.estimates[least] = plan.estimates[least], np.inf
         slot, before, via, onward = plan.spots[least]
-        cost = _tried_by_type(state.problem.day, state, stop, Spot(slot, before, via, onward))
+        spot = Spot(slot, before, via, onward)
+        cost = _tried_by_type(state.problem.day, state, stop, spot, estimate)
         if cost < best.cost:
             best = Place(cost, slot, before, via, onward, -1)
     plan.counts[NOTED] = 0
@@ -144,35 +145,49 @@ def take_back(plan: WorkingPlan, stop: int, onward: int) -> None:
 
 
 @inlined
-def _tried_by_type(day: FleetDay | None, state: State, stop: int, spot: Spot) -> float:
+def _tried_by_type(
+    day: FleetDay | None, state: State, stop: int, spot: Spot, estimate: float
+) -> float:
     """Return what a stop costs in a spot, over the day without a trial where that is enough.
 
     One branch is left where this is compiled: that of the type of the day.
     """
     if day is None:
         return _tried(state, stop, spot)
-    cost = _on_the_way(day, state, stop, spot.slot, spot.before)
-    return cost if cost < np.inf else _tried(state, stop, spot)
+    if _is_driven_alone(state, stop, spot.slot):
+        return _on_the_way(day, state, (stop, spot.before), spot.slot, estimate)
+    return _tried(state, stop, spot)
 
 
-@compiled
-def _on_the_way(day: FleetDay, state: State, stop: int, slot: int, before: int) -> float:
-    """Return what a stop costs after a node if its vehicle leaves when it does now.
-
-    At its best departure it costs as much or less. Infinite if it would be late for a visit, or if
-    more than its costs and windows counts.
-    """
+@inlined
+def _is_driven_alone(state: State, stop: int, slot: int) -> bool:
+    """Return whether costs and windows alone say what one more stop costs, however early it is."""
     problem, plan, direction = state
     start, kind = len(problem.demand) + 2 * slot, problem.kind[slot]
     more = not problem.simple or problem.weighs or problem.early or problem.rests[kind] > 0
     more |= problem.capped or problem.longest[kind] < np.inf
-    if more or direction.lateness > 0 or direction.load_distance > 0:
-        return np.inf
-    if plan.size[slot] == 0 or problem.release[stop] > plan.ready[start]:
-        return np.inf
-    first, second, end = driven_with(day, problem, plan, stop, before)
+    more |= direction.lateness > 0 or direction.load_distance > 0
+    return not (more or plan.size[slot] == 0 or problem.release[stop] > plan.ready[start])
+
+
+@compiled
+def _on_the_way(
+    day: FleetDay, state: State, where: tuple[int, int], slot: int, estimate: float
+) -> float:
+    """Return what a stop costs after a node if its vehicle leaves when it does now.
+
+    At its best departure it costs as much or less. If it is in time only when it leaves before,
+    return the estimate, and infinity if it is not.
+    """
+    problem, plan, _ = state
+    kind, (stop, before) = problem.kind[slot], where
+    leaves = plan.ready[len(problem.demand) + 2 * slot]
+    first, second, end = driven_with(day, problem, plan, where, leaves)
     if end == np.inf:
-        return np.inf
+        departs = max(problem.departs[kind], plan.value[slot, RELEASED])
+        if departs >= leaves:
+            return np.inf
+        return estimate if driven_with(day, problem, plan, where, departs)[2] < np.inf else np.inf
     overtime = max(0.0, end - problem.shift_end[kind])
     late, loaded = plan.value[slot, LATENESS], plan.value[slot, LOADED]
     weighed = weighed_with(state, stop, slot, before)
