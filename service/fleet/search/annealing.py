@@ -3,12 +3,11 @@
 import math
 
 from service.fleet.rounding import is_over
-from service.fleet.search.changes import begin_iteration, measure_changed
+from service.fleet.search.changes import begin_iteration, measure_changed, recall
 from service.fleet.search.ejection import eject
 from service.fleet.search.found import Found, offer
 from service.fleet.search.other_vehicle import SELDOM, change_vehicles, choose_type
 from service.fleet.search.recreate import ORDERS, raise_prices, recreate, try_outside
-from service.fleet.search.route import measure
 from service.fleet.search.rows import write_point
 from service.fleet.search.ruin import ruin, uniform
 from service.fleet.search.values import lacking, values_of
@@ -162,7 +161,6 @@ def restore(state: State) -> None:
             before = stop
         plan.next[before], plan.previous[end] = end, before
         first += plan.saved_size[number]
-    for number in range(counts[SAVED]):  # once all know again which stops ride with them
-        measure(state, plan.saved[number])
+    recall(state)  # once all know again which stops ride with them
     if problem.waits.given:
         settle(state, True)

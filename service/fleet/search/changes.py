@@ -1,6 +1,6 @@
 """Note what an iteration changes in a plan, to undo it, and work out what the change costs."""
 
-from service.fleet.search.problem import FIRST, RELEASED, Problem
+from service.fleet.search.problem import COLUMNS, FIRST, RELEASED, Problem
 from service.fleet.search.route import measure, set_cost, set_times
 from service.fleet.search.values import drives_too_far
 from service.fleet.search.working_plan import (
@@ -35,9 +35,73 @@ def save_slot(problem: Problem, plan: WorkingPlan, slot: int) -> None:
         counts[SAVED_STOPS] += 1
         size += 1
         node = plan.next[node]
+    if _recalls(problem):
+        _keep_known(plan, slot, start)
     plan.saved[counts[SAVED]] = slot
     plan.saved_size[counts[SAVED]] = size
     counts[SAVED] += 1
+
+
+@inlined
+def _recalls(problem: Problem) -> bool:
+    """Return whether what was known of a route is kept: to work it out takes long over the day."""
+    return problem.postpones and not (problem.carries or problem.weighs)
+
+
+@inlined
+def _keep_known(plan: WorkingPlan, slot: int, start: int) -> None:
+    """Keep what is known along a route."""
+    node = start
+    while True:
+        known = plan.known[node]
+        known[0], known[1], known[2] = plan.step[node, 0], plan.step[node, 1], plan.along[node]
+        known[3], known[4], known[5] = plan.ahead[node], plan.ready[node], plan.late[node]
+        for number in range(3):
+            known[6 + number], known[9 + number] = plan.head[node, number], plan.tail[node, number]
+        if node == start + 1:
+            break
+        node = plan.next[node]
+    known = plan.known_of[slot]
+    known[0], known[1] = plan.cost[slot], plan.plain[slot]
+    for column in range(COLUMNS):
+        known[2 + column] = plan.value[slot, column]
+    for dimension in range(plan.load.shape[1]):
+        known[2 + COLUMNS + dimension] = plan.load[slot, dimension]
+
+
+@inlined
+def recall(state: State) -> None:
+    """Work out what is known of changed routes whose stops are again those of before."""
+    problem, plan, _ = state
+    for number in range(plan.counts[SAVED]):
+        slot = plan.saved[number]
+        if plan.saved_size[number] > 0 and _recalls(problem):
+            plan.size[slot] = plan.saved_size[number]
+            _recall_known(plan, slot, len(problem.demand) + 2 * slot)
+        else:
+            measure(state, slot)
+
+
+@inlined
+def _recall_known(plan: WorkingPlan, slot: int, start: int) -> None:
+    """Set what is known along a route to what was kept of it."""
+    node = start
+    while True:
+        known = plan.known[node]
+        plan.step[node, 0], plan.step[node, 1], plan.along[node] = known[0], known[1], known[2]
+        plan.ahead[node], plan.ready[node], plan.late[node] = int(known[3]), known[4], known[5]
+        for number in range(3):
+            plan.head[node, number], plan.tail[node, number] = known[6 + number], known[9 + number]
+        if node == start + 1:
+            break
+        node = plan.next[node]
+    mark_used(plan, slot)
+    known = plan.known_of[slot]
+    plan.cost[slot], plan.plain[slot] = known[0], known[1]
+    for column in range(COLUMNS):
+        plan.value[slot, column] = known[2 + column]
+    for dimension in range(plan.load.shape[1]):
+        plan.load[slot, dimension] = int(known[2 + COLUMNS + dimension])
 
 
 @inlined

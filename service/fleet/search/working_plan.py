@@ -88,6 +88,8 @@ class WorkingPlan(NamedTuple):
     saved_stops: Nodes  # (n,)
     saved_via: Nodes  # (n,)
     saved_outside: Nodes  # (n,)
+    known: Array  # (n + 2 r, 12), by node, and (r, x + d + 2), by slot: see changes.py
+    known_of: Array
     touched: Indices  # (r,), by slot: the iteration that changed it last
     ruined: Indices  # (n,), by stop: the iteration that last took stops out of its trip
     counts: Indices  # (16,)
@@ -160,6 +162,8 @@ def make_working_plan(problem: Problem, seed: int) -> WorkingPlan:
         saved_stops=_nothing(n),
         saved_via=_nothing(n),
         saved_outside=_nothing(n),
+        known=np.zeros((nodes, 12)),
+        known_of=np.zeros((r, COLUMNS + d + 2)),
         touched=np.zeros(r, np.int64),
         ruined=np.zeros(n, np.int64),
         counts=np.zeros(16, np.int64),
